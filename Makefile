@@ -1,0 +1,44 @@
+# Needs Python 3.11 or later, git, make and a C compiler; everything else is set up in .venv.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+CACHE := .cache
+LOG := $(CACHE)/test.log
+
+.PHONY: generate check test bench format clean
+
+# What is made from schemas and from the compiler itself, and is checked in.
+generate: $(INSTALLED)
+	@$(BIN)/python -m protogen.problems.docs docs/problems.md
+	@$(BIN)/protogen schema-json --output schemas/protogen.schema.json
+	@$(BIN)/protogen generate --quiet
+
+# Style and types, without running anything.
+check: $(INSTALLED)
+	@$(BIN)/ruff check --quiet
+	@$(BIN)/ruff format --check --quiet || { $(BIN)/ruff format --check; exit 1; }
+	@$(BIN)/mypy --no-error-summary
+
+# Everything that must hold. Prints the closing line of pytest, and more only if something fails.
+test: check
+	@mkdir -p $(CACHE)
+	@$(BIN)/python -m pytest -n auto --cov --cov-report= >$(LOG) 2>&1 || { cat $(LOG); exit 1; }
+	@$(BIN)/coverage report --fail-under=95 >$(LOG).coverage || { cat $(LOG).coverage; exit 1; }
+	@tail -n 1 $(LOG)
+
+bench: $(INSTALLED)
+	@for benchmark in benchmarks/bench_*.py; do $(BIN)/python $$benchmark || exit 1; done
+
+format: $(INSTALLED)
+	@$(BIN)/ruff check --quiet --fix --exit-zero
+	@$(BIN)/ruff format --quiet
+
+clean:
+	@rm -rf $(VENV) $(CACHE) .coverage .coverage.* .hypothesis .mypy_cache .pytest_cache .ruff_cache
+
+$(INSTALLED): pyproject.toml
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[dev]'
+	@touch $@

@@ -1,0 +1,3 @@
+"""The version of protogen."""
+
+VERSION = "0.1.0"

@@ -1,0 +1,33 @@
+"""What all tests share: the profiles of Hypothesis, the root of the project, tools."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import tooling
+from hypothesis import HealthCheck, settings
+
+# Deadlines measure the machine rather than the code; the CPU is shared with other workers.
+settings.register_profile(
+    "default", max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.register_profile(
+    "ci", settings.get_profile("default"), max_examples=150, derandomize=True, print_blob=True
+)
+settings.register_profile("thorough", settings.get_profile("default"), max_examples=5000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
+
+
+@pytest.fixture(scope="session")
+def project_root() -> Path:
+    """Return the folder that holds `pyproject.toml`."""
+    return Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def require_tool() -> Callable[[str], str]:
+    """Return the function that finds a program, or skips the test (see `tooling`)."""
+    return tooling.require_tool
