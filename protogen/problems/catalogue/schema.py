@@ -1,0 +1,18 @@
+"""Problems of what a schema says: keys, names, types, sizes, identities, framing."""
+
+from __future__ import annotations
+
+from protogen.problems.catalogue.code import Code
+from protogen.problems.catalogue.fields import FIELD_CODES
+from protogen.problems.catalogue.frames import FRAME_CODES
+from protogen.problems.catalogue.framing import FRAMING_CODES
+from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
+from protogen.problems.catalogue.messages import MESSAGE_CODES
+
+SCHEMA_CODES: tuple[Code, ...] = (
+    *KEY_AND_NAME_CODES,
+    *FIELD_CODES,
+    *FRAME_CODES,
+    *FRAMING_CODES,
+    *MESSAGE_CODES,
+)
