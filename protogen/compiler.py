@@ -1,0 +1,62 @@
+"""A schema file -> the resolved protocol, or every problem that stands in the way."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from protogen.model.protocol import Protocol
+from protogen.passes.context import Context
+from protogen.passes.resolve import resolve
+from protogen.problems import Problem, Problems, Severity, SourceMap
+from protogen.schema.load import load_syntax
+
+
+@dataclass(frozen=True, slots=True)
+class Compilation:
+    """What became of one schema file. There is a protocol exactly where there is no error."""
+
+    path: str
+    protocol: Protocol | None
+    problems: tuple[Problem, ...]
+    sources: SourceMap
+
+    @property
+    def errors(self) -> tuple[Problem, ...]:
+        """The problems that are errors."""
+        return tuple(item for item in self.problems if item.severity is Severity.ERROR)
+
+
+def compile_file(path: str | os.PathLike[str], *, examples: bool = False) -> Compilation:
+    """Compile a schema.
+
+    With `examples`, each example is also decoded and encoded by the Python that would be
+    generated; one that does not hold is an error like any other.
+    """
+    problems = Problems()
+    sources = SourceMap()
+    protocol = _protocol(path, problems, sources)
+    if protocol is not None and examples:
+        from protogen.examples import verify_examples  # construct is needed only here
+
+        verify_examples(protocol, problems)
+        protocol = None if problems.errors else protocol
+    return Compilation(os.fspath(path), protocol, tuple(problems), sources)
+
+
+def _protocol(
+    path: str | os.PathLike[str], problems: Problems, sources: SourceMap
+) -> Protocol | None:
+    loaded = load_syntax(path, problems, sources)
+    if loaded is None:
+        return None
+    merged = loaded.merged
+    context = Context(
+        syntax=loaded.syntax,
+        find=merged.find,
+        find_key=lambda loc: merged.find(loc, key=True),
+        problems=problems,
+        files=merged.files,
+        doubtful=loaded.doubtful,
+    )
+    return resolve(context)

@@ -1,0 +1,249 @@
+"""A frame taken apart, byte by byte: what `explain` and the reference show.
+
+This reads bytes to show them; it decides nothing. Whether they are a frame, and why not, is what a
+decoder says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from protogen.model.dissect import Cursor, Row, dissect
+from protogen.model.frame import (
+    ChecksumPart,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+)
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.readings import character, type_name
+from protogen.model.wire import Unit, Wire, fixed_size, unstuff
+from protogen.runtime import checksum as sums
+
+__all__ = ["Row", "annotate"]
+
+_SURPLUS = "nothing is due here"
+
+
+def annotate(
+    protocol: Protocol, sender: str, data: bytes, *, covers: Sequence[str] | None = None
+) -> tuple[Row, ...]:
+    """Return what each byte of `data`, which `sender` is said to have sent, stands for.
+
+    The `wire` of all rows, joined, is `data`. Bytes that are no frame are taken apart as far as
+    they look like one. With `covers`, `data` holds only those parts, without transparency, as a
+    document prints them. Raises KeyError if there is no such sender.
+    """
+    known = protocol.sender(sender)
+    if covers is None:
+        return _Frame(known, known.frame.parts, unstuff(known.frame, data)).rows()
+    parts = [part for part in known.frame.parts if part.name in covers]
+    plain = Wire(tuple(Unit(byte, bytes((byte,))) for byte in data))
+    return _Frame(known, parts, plain).rows()
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A part that was read, for the checksums that cover it."""
+
+    content: bytes
+    wire: bytes
+
+
+class _Frame:
+    """Reads the parts of one frame."""
+
+    def __init__(self, sender: Sender, parts: Sequence[Part], wire: Wire) -> None:
+        self._sender = sender
+        self._parts = parts
+        self._wire = wire
+        self._cursor = Cursor(wire.units, 0)
+        self._rows: list[Row] = []
+        self._found: dict[str, _Found] = {}
+        self._numbers: dict[str, int] = {}
+
+    def rows(self) -> tuple[Row, ...]:
+        """Read all parts."""
+        for part in self._parts:
+            if not self._ended:
+                self._part(part)
+        self._leftovers()
+        return tuple(self._rows)
+
+    def _part(self, part: Part) -> None:
+        start = len(self._rows)
+        begin = self._cursor.position
+        if isinstance(part, PayloadPart):
+            self._rows += self._payload(part)
+        elif self._is_absent(part):
+            return
+        else:
+            self._rows.append(self._fixed(part))
+        units = self._wire.units[begin : self._cursor.position]
+        wire = b"".join(row.wire for row in self._rows[start:])
+        self._found[part.name] = _Found(bytes(unit.byte for unit in units), wire)
+
+    def _is_absent(self, part: Part) -> bool:
+        if not (isinstance(part, ChecksumPart) and part.when_payload):
+            return False
+        return all(
+            not self._found[other.name].content
+            for other in self._parts
+            if isinstance(other, PayloadPart) and other.name in self._found
+        )
+
+    @property
+    def _ended(self) -> bool:
+        """Whether the bytes ended inside of a part, so that there is nothing for those behind."""
+        if self._cursor.left:
+            return False
+        return bool(self._wire.rest) or any(row.cut for row in self._rows[-1:])
+
+    # --- parts of a fixed size --------------------------------------------------------------
+
+    def _fixed(self, part: Part) -> Row:
+        piece = self._cursor.take(fixed_size(part))
+        if piece.missing:
+            return piece.row(part.name, _part_type(part))
+        match part:
+            case LiteralPart(bytes=literal):
+                fault = "" if piece.bytes == literal else f"must be {_hex(literal)}"
+                return piece.row(part.name, "literal", fault=fault)
+            case ChecksumPart():
+                return self._checksum(part, piece.bytes, piece.row(part.name, type_name(part.type)))
+            case NumberPart():
+                value = int.from_bytes(piece.bytes, part.type.byte_order)
+                return self._number(part, value, piece.row(part.name, type_name(part.type)))
+        return piece.row(part.name, "")
+
+    def _number(self, part: NumberPart, value: int, row: Row) -> Row:
+        self._numbers[part.name] = value
+        fault = "" if part.least <= value <= part.greatest else _outside(part)
+        meaning = character(value) if part.type.role == "char" else ""
+        if isinstance(part, LengthPart):
+            meaning = f"bytes of {', '.join(part.counts)}"
+        elif isinstance(part, IdentityPart):
+            meaning = " ".join(filter(None, (meaning, self._names_of(part, value))))
+        return row.reads(value, meaning, fault)
+
+    def _names_of(self, part: IdentityPart, value: int) -> str:
+        """The messages that the identity parts up to this one leave."""
+        index = [item.name for item in self._sender.frame.identity].index(part.name)
+        if index + 1 < len(self._sender.frame.identity):
+            return ""
+        names = [message.name for message in self._candidates()]
+        return " or ".join(names) or "no message has this identity"
+
+    def _checksum(self, part: ChecksumPart, data: bytes, row: Row) -> Row:
+        value = int.from_bytes(data, part.type.byte_order)
+        if any(name not in self._found for name in self._covered(part)):
+            return row.reads(value, part.algorithm.name)
+        pieces = [self._found[name] for name in self._covered(part)]
+        covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
+        due = _checksum_of(part).compute(covered)
+        fault = "" if value == due else f"must be {due:#0{2 * part.type.size + 2}x}"
+        return row.reads(value, f"{part.algorithm.name} of {', '.join(part.covers)}", fault)
+
+    def _covered(self, part: ChecksumPart) -> list[str]:
+        return [name for name in part.covers if name in {item.name for item in self._parts}]
+
+    # --- the payload ------------------------------------------------------------------------
+
+    def _payload(self, part: PayloadPart) -> list[Row]:
+        size = self._payload_size(part)
+        inside = self._cursor.part(size)
+        message = self._message(size)
+        if message is None:
+            rows = [inside.take(size).row(part.name, "bytes")] if size else []
+        else:
+            rows = dissect(message.fields, inside)
+        if inside.left:
+            rows.append(inside.take(inside.left).row(part.name, "bytes", fault=_SURPLUS))
+        return rows or [inside.take(0).row(part.name, "", meaning="empty")]
+
+    def _payload_size(self, part: PayloadPart) -> int:
+        """As the length part says, else what the parts behind it leave."""
+        behind = self._parts[self._parts.index(part) + 1 :]
+        here = max(0, self._cursor.left - sum(map(fixed_size, behind)))
+        length = self._sender.frame.length
+        if length is None or length.name not in self._numbers:
+            return here
+        others = [name for name in length.counts if name != part.name]
+        counted = sum(fixed_size(self._sender.frame.part(name)) for name in others)
+        if part.name not in length.counts:
+            return here
+        return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
+
+    def _message(self, size: int) -> Message | None:
+        """The message with this identity and payload size, else the one that is closest."""
+        candidates = self._candidates()
+        fitting = [message for message in candidates if size in message.sizes]
+        yielded = self._yielded()
+        named = [message for message in fitting if message.name == yielded]
+        return next(iter((*named, *fitting, *candidates)), None)
+
+    def _yielded(self) -> str | None:
+        identity = self._identity()
+        for overload in self._sender.overloads:
+            if overload.identity == identity:
+                return overload.yields
+        return None
+
+    def _candidates(self) -> list[Message]:
+        identity = self._identity()
+        return [message for message in self._sender.messages if message.identity == identity]
+
+    def _identity(self) -> tuple[int | None, ...]:
+        return tuple(self._numbers.get(part.name) for part in self._sender.frame.identity)
+
+    # --- what is left -----------------------------------------------------------------------
+
+    def _leftovers(self) -> None:
+        if self._cursor.left:
+            piece = self._cursor.take(self._cursor.left)
+            self._rows.append(piece.row("", "", fault=_SURPLUS))
+        if self._wire.rest or self._wire.fault:
+            fault = self._wire.fault
+            meaning = "" if fault else "stands for no byte"
+            self._rows.append(self._bare(self._wire.rest, meaning, fault))
+        if self._wire.behind:
+            self._rows.append(self._bare(b"".join(unit.wire for unit in self._wire.behind)))
+
+    def _bare(self, wire: bytes, meaning: str = "", fault: str = "") -> Row:
+        offset = sum(len(row.wire) for row in self._rows)
+        return Row(
+            offset=offset, wire=wire, bytes=b"", path="", type="", meaning=meaning, fault=fault
+        )
+
+
+def _part_type(part: Part) -> str:
+    match part:
+        case NumberPart(type=type) | ChecksumPart(type=type):
+            return type_name(type)
+    return "literal"
+
+
+def _outside(part: NumberPart) -> str:
+    return f"must be from {part.least} to {part.greatest}"
+
+
+def _hex(data: bytes) -> str:
+    return data.hex(" ").upper()
+
+
+def _checksum_of(part: ChecksumPart) -> sums.Checksum:
+    spec = part.algorithm
+    match spec.kind:
+        case "xor":
+            return sums.Xor8(spec.init)
+        case "sum":
+            return sums.Sum8(spec.init, spec.negated)
+        case "fletcher":
+            return sums.Fletcher16()
+        case "crc":
+            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

@@ -1,0 +1,88 @@
+"""What the compiler works out about a sender's frames: how a receiver cuts them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from protogen.model.sizes import SizeSet
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartLiteral:
+    """A frame starts with these bytes. Protected: they occur nowhere else in a valid frame."""
+
+    bytes: bytes
+    protected: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartSet:
+    """A frame starts with one of these bytes. Protected: no other byte of a frame is one."""
+
+    least: int
+    greatest: int
+    protected: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AfterEnd:
+    """A frame starts behind an end, or where the stream starts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Anywhere:
+    """Nothing marks the start: sizes and the checksum tell whether a frame starts at a byte."""
+
+
+Start = StartLiteral | StartSet | AfterEnd | Anywhere
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class End:
+    """The literal that closes a frame. Protected: it occurs nowhere else in a valid frame."""
+
+    bytes: bytes
+    protected: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageFraming:
+    """Frame sizes on the wire and rate of one message."""
+
+    message: str
+    least: int
+    greatest: int
+    per_second: Fraction | None
+    """Frames of the greatest size per second at the link's rate; None where that is not known."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Framing:
+    """The framing properties of one sender, for decoders, and in words for people."""
+
+    start: Start
+    end: End | None
+    head: int
+    """Unstuffed bytes in front of the payload."""
+    tail: int
+    """Unstuffed bytes behind the payload, the end literal not counted, optional parts included."""
+    payload: SizeSet
+    """Payload sizes that a frame can carry (unknown messages included)."""
+    least: int
+    """Wire bytes of the smallest frame."""
+    greatest: int
+    """Wire bytes that no frame exceeds; a decoder needs no more memory than that."""
+    overhead: SizeSet
+    """Wire bytes that are not payload, before any stuffing."""
+    seven_bit: bool
+    """Whether every payload byte has its most significant bit clear."""
+    cut_ambiguous: bool
+    """Whether an encoder has to check that a decoder cuts its frame where it ends."""
+    self_synchronising: bool
+    why_synchronising: str
+    finds_start: str
+    finds_end: str
+    undetected: tuple[str, ...]
+    """Single-byte errors that go unnoticed, one sentence each; empty: none."""
+    messages: tuple[MessageFraming, ...]

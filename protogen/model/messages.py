@@ -1,0 +1,88 @@
+"""Messages, and what a document shows of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from protogen.model.fields import Field
+from protogen.model.origin import NOTHING, About
+from protogen.model.sizes import SizeSet
+from protogen.problems.span import Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contradiction:
+    """How an example differs from the schema."""
+
+    fails: str
+    why: str
+    reads: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Example:
+    """Bytes and what they mean. `covers` names the parts that they hold; None: a whole frame."""
+
+    name: str
+    sender: str
+    bytes: bytes
+    covers: tuple[str, ...] | None
+    values: dict[str, Any] | None
+    parts: dict[str, int]
+    contradicts: Contradiction | None = None
+    about: About = NOTHING
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Message:
+    """One message."""
+
+    name: str
+    title: str
+    summary: str
+    senders: tuple[str, ...]
+    identity: tuple[int, ...]
+    """Raw value of each identity part, in wire order."""
+    fields: tuple[Field, ...]
+    sizes: SizeSet
+    """Payload sizes."""
+    unspecified: bool = False
+    """The document does not say what the payload holds: one field `data` of bytes."""
+    examples: tuple[Example, ...] = ()
+    about: About = NOTHING
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Overload:
+    """Messages of one sender that share an identity."""
+
+    name: str
+    sender: str
+    identity: tuple[int, ...]
+    messages: tuple[str, ...]
+    yields: str | None
+    """Told apart by payload size where None; else not at all, and this one is yielded."""
+    decision: str | None = None
+    about: About = NOTHING
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One message of an exchange."""
+
+    message: str
+    example: str | None
+    about: About = NOTHING
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exchange:
+    """A named sequence of messages."""
+
+    name: str
+    title: str
+    steps: tuple[Step, ...]
+    about: About = NOTHING

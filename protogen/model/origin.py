@@ -1,0 +1,30 @@
+"""Where something of the model was written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """A place in a document. `lines` and `section` are texts as people write them."""
+
+    document: str | None = None
+    revision: str | None = None
+    lines: str | None = None
+    section: str | None = None
+    url: str | None = None
+    license: str | None = None
+    note: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class About:
+    """What people read about a thing: its meaning, and where that is written down."""
+
+    doc: str = ""
+    source: Source | None = None
+
+
+NOTHING = About()
+"""No text and no source."""

@@ -1,0 +1,102 @@
+"""The root of the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from protogen.model.frame import Frame
+from protogen.model.framing import Framing
+from protogen.model.messages import Exchange, Message, Overload
+from protogen.model.origin import NOTHING, About, Source
+from protogen.model.types import Enum, Flags, Struct
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """The line. `baud` is in bits per second, `idle_timeout` in seconds."""
+
+    baud: int | None = None
+    data_bits: int = 8
+    parity: str = "none"
+    stop_bits: int = 1
+    idle_timeout: Fraction | None = None
+    about: About = NOTHING
+
+    @property
+    def bits_per_byte(self) -> int:
+        """Bit times of one character: start bit, data, parity, stop bits."""
+        return 1 + self.data_bits + (self.parity != "none") + self.stop_bits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Endpoint:
+    """A named side of the link."""
+
+    name: str
+    title: str
+    doc: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Decision:
+    """What was chosen where the document does not say, or says two things."""
+
+    name: str
+    question: str
+    document: str
+    choice: str
+    because: str
+    source: Source | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sender:
+    """An endpoint that sends: its frame, what a receiver knows of it, and its messages."""
+
+    name: str
+    frame: Frame
+    framing: Framing
+    messages: tuple[Message, ...]
+    overloads: tuple[Overload, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Protocol:
+    """A serial protocol, resolved."""
+
+    name: str
+    title: str
+    version: str | None
+    source: Source | None
+    about: About
+    files: tuple[str, ...]
+    """The schema's file name, then those that it extends."""
+    link: Link
+    byte_bits: int
+    endpoints: tuple[Endpoint, ...]
+    senders: tuple[Sender, ...]
+    """In the order of the endpoints; an endpoint that sends nothing is left out."""
+    enums: tuple[Enum, ...]
+    flags: tuple[Flags, ...]
+    structs: tuple[Struct, ...]
+    """Named types in the order of their first use, inner ones first."""
+    messages: tuple[Message, ...]
+    exchanges: tuple[Exchange, ...]
+    decisions: tuple[Decision, ...]
+    spec_hash: str
+    """SHA-256, in hex, of layout, framing and meaning of values."""
+
+    def sender(self, name: str) -> Sender:
+        """The sender called `name`; raises KeyError."""
+        for sender in self.senders:
+            if sender.name == name:
+                return sender
+        raise KeyError(name)
+
+    def message(self, name: str) -> Message:
+        """The message called `name`; raises KeyError."""
+        for message in self.messages:
+            if message.name == name:
+                return message
+        raise KeyError(name)

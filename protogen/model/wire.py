@@ -1,0 +1,120 @@
+"""Which bytes on the wire carry which byte of a frame's parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Encoding,
+    Escape,
+    Frame,
+    LiteralPart,
+    NumberPart,
+    Part,
+    Substitution,
+)
+from protogen.runtime import transparency as stuffing
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """One byte of a part, and the bytes on the wire that carry it."""
+
+    byte: int
+    wire: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """A frame's bytes, unstuffed as far as that is possible."""
+
+    units: tuple[Unit, ...]
+    rest: bytes = b""
+    """What is behind the units and stands for no byte."""
+    fault: str = ""
+    """Why the rest could not be unstuffed."""
+    behind: tuple[Unit, ...] = ()
+    """What follows that."""
+
+
+def fixed_size(part: Part) -> int:
+    """Unstuffed bytes of a part other than the payload."""
+    match part:
+        case LiteralPart(bytes=literal):
+            return len(literal)
+        case NumberPart(type=type) | ChecksumPart(type=type):
+            return type.size
+    return 0
+
+
+def unstuff(frame: Frame, data: bytes) -> Wire:
+    """Take the frame `data` apart into units."""
+    if frame.transparency is None:
+        return Wire(_plain(data))
+    names = [part.name for part in frame.parts]
+    first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
+    start = min(len(data), sum(map(fixed_size, frame.parts[:first])))
+    end = max(start, len(data) - _closing(frame, frame.parts[last + 1 :], data))
+    unstuffer = _unstuffer(frame.transparency.encoding, frame.transparency.lenient)
+    units, rest, fault = _region(unstuffer, data[start:end])
+    before, behind = _plain(data[:start]), _plain(data[end:])
+    if rest or fault:
+        return Wire((*before, *units), rest, fault, behind)
+    return Wire((*before, *units, *behind))
+
+
+def _plain(data: bytes) -> tuple[Unit, ...]:
+    return tuple(Unit(byte, bytes((byte,))) for byte in data)
+
+
+def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
+    """Bytes behind the region; 0 where the closing literal is missing, as the frame is cut."""
+    last = frame.parts[-1]
+    if isinstance(last, LiteralPart) and not data.endswith(last.bytes):
+        return 0
+    return sum(map(fixed_size, parts))
+
+
+def _region(unstuffer: stuffing.Unstuffer, region: bytes) -> tuple[tuple[Unit, ...], bytes, str]:
+    """Return the units of a region, the bytes behind them that are none, and what is wrong."""
+    units: list[Unit] = []
+    done = 0
+    fault = ""
+    try:
+        for end, byte in enumerate(region, start=1):
+            released = unstuffer.push(byte)
+            if released:
+                units += _units(released, region[done:end])
+                done = end
+        units += _units(unstuffer.finish(), region[done:])
+    except stuffing.TransparencyError as error:
+        fault = str(error)
+    carried = sum(len(unit.wire) for unit in units)
+    return tuple(units), region[carried:], fault
+
+
+def _units(released: bytes, held: bytes) -> Iterator[Unit]:
+    """Share the wire bytes that were held among the bytes that they turned out to be."""
+    for index, byte in enumerate(released):
+        last = index == len(released) - 1
+        yield Unit(byte, held[index:] if last else held[index : index + 1])
+
+
+def _unstuffer(encoding: Encoding, lenient: bool) -> stuffing.Unstuffer:
+    return _transparency(encoding, lenient).decoder()
+
+
+def _transparency(encoding: Encoding, lenient: bool) -> stuffing.Transparency:
+    match encoding:
+        case Substitution(table=table):
+            return stuffing.Substitution(dict(table), lenient)
+        case Escape(byte=byte, of=of, xor=xor):
+            return stuffing.Escape(byte, frozenset(of), xor, lenient)
+        case Base16():
+            return stuffing.Base16Upper(lenient)
+        case Cobs():
+            return stuffing.Cobs(lenient)

@@ -1,0 +1,1 @@
+"""Syntax tree -> protocol model: one question a pass, in a visible order."""

@@ -1,0 +1,70 @@
+"""What every pass is given: the syntax tree, the places of its nodes, and where problems go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from protogen.model.origin import NOTHING, About, Source
+from protogen.problems import Problems, Span
+from protogen.schema.syntax.base import Source as SourceSyntax
+from protogen.schema.syntax.protocol import ProtocolSyntax
+
+Loc = tuple[str | int, ...]
+"""Where in the schema: keys and indexes from the root."""
+
+Find = Callable[[Loc], Span]
+
+
+@dataclass(slots=True)
+class Tally:
+    """How often something was found to be wrong, the same problem counted each time."""
+
+    errors: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """One schema on its way through the passes."""
+
+    syntax: ProtocolSyntax
+    find: Find
+    """The place of a value."""
+    find_key: Find
+    """The place of the key of a value."""
+    problems: Problems
+    files: tuple[str, ...]
+    doubtful: frozenset[Loc] = frozenset()
+    """Items of which not everything could be read: what seems wrong with them may be no more than
+    a consequence, so it is not reported."""
+    tally: Tally = field(default_factory=Tally)
+
+    def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
+        """Report a problem at a value."""
+        self._report(self.find, code, loc, message, hint)
+
+    def error_at_key(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
+        """Report a problem at the key of a value."""
+        self._report(self.find_key, code, loc, message, hint)
+
+    def _report(self, find: Find, code: str, loc: Loc, message: str, hint: str | None) -> None:
+        self.tally.errors += 1
+        if loc[:2] not in self.doubtful:
+            self.problems.add(code, find(loc), message, hint)
+
+    @property
+    def failed(self) -> bool:
+        """Whether an error has been reported so far."""
+        return bool(self.tally.errors or self.problems.errors)
+
+
+def source_of(syntax: SourceSyntax | None) -> Source | None:
+    """The model's form of a source."""
+    return None if syntax is None else Source(**dict(syntax))
+
+
+def about(doc: str | None, source: SourceSyntax | None) -> About:
+    """What people read about a thing."""
+    if doc is None and source is None:
+        return NOTHING
+    return About(doc=(doc or "").strip(), source=source_of(source))

@@ -1,0 +1,29 @@
+"""Which decisions does the schema record, and does every reference to one name one?"""
+
+from __future__ import annotations
+
+from protogen.model.protocol import Decision
+from protogen.passes.context import Context, Loc, source_of
+from protogen.passes.draft import Draft
+from protogen.problems import hint_for
+
+
+def resolve_decisions(context: Context, draft: Draft) -> None:
+    """The decisions, in the order of the schema."""
+    decisions = context.syntax.decisions
+    draft.decisions = tuple(
+        Decision(
+            name=name,
+            question=item.question.strip(),
+            document=item.document.strip(),
+            choice=item.choice.strip(),
+            because=item.because.strip(),
+            source=source_of(item.source),
+        )
+        for name, item in decisions.items()
+    )
+    for name, overload in context.syntax.overloads.items():
+        if overload.decision is not None and overload.decision not in decisions:
+            loc: Loc = ("overloads", name, "decision")
+            text = f"there is no decision `{overload.decision}`"
+            context.error("PG165", loc, text, hint_for(overload.decision, decisions))

@@ -1,0 +1,42 @@
+"""What the passes have worked out so far: the mutable model under construction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from protogen.model.frame import Frame
+from protogen.model.framing import Framing
+from protogen.model.messages import Exchange, Message, Overload
+from protogen.model.protocol import Decision
+from protogen.passes.context import Context
+from protogen.passes.named_types import NamedTypes
+
+
+@dataclass(slots=True)
+class Draft:
+    """Results by pass; a later pass reads those of earlier ones and adds its own."""
+
+    named: NamedTypes
+    senders: tuple[str, ...] = ()
+    frames: dict[str, Frame] = field(default_factory=dict)
+    messages: dict[str, Message] = field(default_factory=dict)
+    unidentified: set[str] = field(default_factory=set)
+    """Messages whose identity is wrong: no receiver could have them, so later passes don't."""
+    overloads: dict[str, list[Overload]] = field(default_factory=dict)
+    """By sender."""
+    framings: dict[str, Framing] = field(default_factory=dict)
+    decisions: tuple[Decision, ...] = ()
+    exchanges: tuple[Exchange, ...] = ()
+
+    @classmethod
+    def of(cls, context: Context) -> Draft:
+        """An empty draft."""
+        return cls(named=NamedTypes(context))
+
+    def sent_by(self, sender: str) -> list[Message]:
+        """The messages of a sender that have an identity, in the order of the schema."""
+        return [
+            message
+            for message in self.messages.values()
+            if sender in message.senders and message.name not in self.unidentified
+        ]

@@ -1,0 +1,77 @@
+"""The framing properties, in words for people."""
+
+from __future__ import annotations
+
+from protogen.model.frame import Frame
+from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
+from protogen.model.messages import Message
+
+
+def finds_start(start: Start) -> str:
+    """How a receiver finds where a frame starts."""
+    match start:
+        case StartLiteral(protected=True):
+            return f"at {_hex(start.bytes)}, which occurs nowhere else in a frame"
+        case StartLiteral():
+            return (
+                f"at {_hex(start.bytes)}, which can also occur inside a frame: a false start is "
+                "given up when the frame does not check, and its bytes are read again"
+            )
+        case StartSet(protected=True):
+            return f"at a byte {_span(start)}, which occurs nowhere else in a frame"
+        case StartSet():
+            return f"at a byte {_span(start)}, which can also occur inside a frame"
+        case AfterEnd():
+            return "behind the end of the frame before, or at the start of the stream"
+        case Anywhere():
+            return "at any byte from which sizes and checksum are right"
+
+
+def finds_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
+    """How a receiver finds where a frame ends."""
+    if frame.length is not None:
+        where = f"`{frame.length.name}` gives the size"
+        return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
+    if end is None:
+        if all(message.sizes.fixed is not None for message in messages):
+            return "the identity gives the size; an unknown message ends at the next start"
+        return "identity and fields give the size; an unknown message ends at the next start"
+    if end.protected:
+        return f"at {_hex(end.bytes)}, which occurs nowhere else in a frame"
+    return (
+        f"the identity gives the size of messages of one size, and {_hex(end.bytes)} must follow; "
+        f"other messages end at the first {_hex(end.bytes)}, also if it was meant as data"
+    )
+
+
+def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, str]:
+    """Whether a receiver that joins anywhere finds the next frame for sure, and why."""
+    match start:
+        case StartLiteral(protected=True) | StartSet(protected=True):
+            return True, "the start can't occur inside a frame, so every start is one"
+        case AfterEnd() if end is not None and end.protected:
+            return True, "the end can't occur inside a frame, so a frame starts behind every end"
+        case AfterEnd():
+            return False, (
+                "the end can occur in the data, so a receiver may start in the middle of a frame; "
+                f"it finds its way back behind a true end{_helped(frame)}"
+            )
+    return False, f"the start can occur in the data; {_checked(frame)}"
+
+
+def _helped(frame: Frame) -> str:
+    return ", when the checksum has rejected what it read until then" if frame.checksums else ""
+
+
+def _checked(frame: Frame) -> str:
+    if frame.checksums:
+        return "false starts are told from true ones by size and checksum"
+    return "with no checksum, a false start can be taken for a frame"
+
+
+def _hex(data: bytes) -> str:
+    return data.hex(" ").upper()
+
+
+def _span(start: StartSet) -> str:
+    return f"{start.least:02X} to {start.greatest:02X}"

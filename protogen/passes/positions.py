@@ -1,0 +1,19 @@
+"""Where does each field of a message or struct begin?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from protogen.model.fields import Field
+from protogen.model.sizes import SizeSet
+
+
+def placed(fields: Iterable[Field]) -> tuple[Field, ...]:
+    """The fields with their positions, behind each other."""
+    found: list[Field] = []
+    behind = SizeSet.exactly(0)
+    for field in fields:
+        found.append(replace(field, position=behind.fixed))
+        behind += field.type.sizes
+    return tuple(found)

@@ -1,0 +1,91 @@
+"""The passes in order, and the model that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import PurePath
+
+from protogen.model.protocol import Endpoint, Link, Protocol, Sender
+from protogen.passes.codes import check_codes
+from protogen.passes.context import Context, about, source_of
+from protogen.passes.decisions import resolve_decisions
+from protogen.passes.draft import Draft
+from protogen.passes.examples import attach_examples, resolve_exchanges
+from protogen.passes.framing import analyse_framing
+from protogen.passes.identities import check_identities
+from protogen.passes.messages import resolve_frames, resolve_messages
+from protogen.passes.names import check_names
+from protogen.passes.spec_hash import spec_hash
+
+Pass = Callable[[Context, Draft], None]
+
+PASSES: tuple[Pass, ...] = (
+    check_names,
+    resolve_decisions,
+    resolve_frames,
+    check_codes,
+    resolve_messages,
+    check_identities,
+    attach_examples,
+    resolve_exchanges,
+    analyse_framing,
+)
+"""Each pass asks one question, reports what is wrong, and leaves something to go on with."""
+
+
+def resolve(context: Context) -> Protocol | None:
+    """The model of a schema, or None if a pass found an error."""
+    draft = Draft.of(context)
+    for ask in PASSES:
+        ask(context, draft)
+    return None if context.failed else _assemble(context, draft)
+
+
+def _assemble(context: Context, draft: Draft) -> Protocol:
+    syntax = context.syntax
+    protocol = Protocol(
+        name=syntax.protocol,
+        title=syntax.title or syntax.protocol,
+        version=syntax.version,
+        source=source_of(syntax.source),
+        about=about(syntax.doc, None),
+        files=tuple(PurePath(file).name for file in context.files),
+        link=_link(context),
+        byte_bits=syntax.byte_bits,
+        endpoints=tuple(
+            Endpoint(name=name, title=item.title, doc=item.doc or "")
+            for name, item in syntax.endpoints.items()
+        ),
+        senders=tuple(_sender(draft, name) for name in draft.senders),
+        enums=draft.named.enums,
+        flags=draft.named.flags,
+        structs=draft.named.structs,
+        messages=tuple(draft.messages.values()),
+        exchanges=draft.exchanges,
+        decisions=draft.decisions,
+        spec_hash="",
+    )
+    return replace(protocol, spec_hash=spec_hash(protocol))
+
+
+def _link(context: Context) -> Link:
+    link = context.syntax.link
+    return Link(
+        baud=link.baud,
+        data_bits=link.data_bits,
+        parity=link.parity,
+        stop_bits=link.stop_bits,
+        idle_timeout=link.idle_timeout,
+        about=about(link.doc, link.source),
+    )
+
+
+def _sender(draft: Draft, name: str) -> Sender:
+    return Sender(
+        name=name,
+        frame=draft.frames[name],
+        framing=draft.framings[name],
+        messages=tuple(draft.sent_by(name)),
+        overloads=tuple(draft.overloads[name]),
+    )

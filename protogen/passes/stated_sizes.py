@@ -1,0 +1,67 @@
+"""Which sizes does a schema insist on?
+
+A count without a `range` and a fill without `max` take what the frame has room for. Everything else
+states how large it can be, and the frame has to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from protogen.model.fields import Field
+from protogen.model.types import (
+    Array,
+    Counted,
+    Extent,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+
+_Count = Callable[[Extent], int]
+_Choose = Callable[[Iterable[int]], int]
+
+
+def greatest_stated(fields: Iterable[Field]) -> int:
+    """The bytes that the frame must have room for."""
+    return sum(_size(field.type, _most, max) for field in fields)
+
+
+def least_stated(fields: Iterable[Field]) -> int:
+    """The bytes that a payload can be as short as, where what may vary freely is as long as it can.
+
+    A frame that has to be longer than that can't carry some payload that the schema states.
+    """
+    return sum(_size(field.type, _fewest, min) for field in fields)
+
+
+def _most(extent: Extent) -> int:
+    return extent.counts.greatest if _is_stated(extent) else extent.counts.least
+
+
+def _fewest(extent: Extent) -> int:
+    stated = isinstance(extent, Fixed) or (isinstance(extent, Counted) and extent.stated)
+    return extent.counts.least if stated else extent.counts.greatest
+
+
+def _is_stated(extent: Extent) -> bool:
+    return isinstance(extent, Fixed) or extent.stated
+
+
+def _size(type_: Type, count: _Count, choose: _Choose) -> int:
+    match type_:
+        case Integer() | Float():
+            return type_.size
+        case Text() | Octets():
+            return count(type_.extent)
+        case Array():
+            return count(type_.extent) * _size(type_.element, count, choose)
+        case Struct():
+            return sum(_size(field.type, count, choose) for field in type_.fields)
+        case Switch():
+            return choose(_size(case.type, count, choose) for case in type_.cases)

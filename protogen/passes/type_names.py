@@ -1,0 +1,87 @@
+"""The built-in type names, and what they say about layout."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from protogen.model.types import ByteOrder, Float, Integer
+
+_INTEGER = re.compile(r"[us]int(0|[1-9][0-9]{0,5})")
+
+GREATEST_WIDTH = 64
+"""Bits of the widest integer."""
+
+PLAIN_NAMES = ("byte", "char", "bool", "float32", "float64", "ascii", "bytes")
+"""Built-in types that carry no width in their name."""
+
+COMMON_NAMES = (
+    *PLAIN_NAMES,
+    *(f"{sign}int{bits}" for bits in range(1, 65) for sign in "us"),
+)
+"""Everything that a type may be called before a schema declares its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How numbers lie in the payload or frame at hand. `byte_order` None: nobody has said."""
+
+    byte_bits: Literal[7, 8]
+    byte_order: ByteOrder | None
+
+
+def integer_width(name: str) -> int | None:
+    """N of `uintN` or `sintN`, whatever it is; None for other names."""
+    match = _INTEGER.fullmatch(name)
+    return int(match[1]) if match else None
+
+
+def has_width(name: str) -> bool:
+    """Whether the name is no integer's, or that of one that exists: of 1 to 64 bits."""
+    width = integer_width(name)
+    return width is None or 1 <= width <= GREATEST_WIDTH
+
+
+def is_builtin(name: str) -> bool:
+    """Whether a schema may not declare a type of this name."""
+    return name in PLAIN_NAMES or integer_width(name) is not None
+
+
+def integer(name: str, layout: Layout) -> Integer | None:
+    """The integer type that a built-in name stands for, or None if it is no integer.
+
+    The byte order of a number of one byte is `little`; of others the layout's, `little` where the
+    layout has none (the caller reports that).
+    """
+    width = integer_width(name)
+    if width is not None and has_width(name):
+        return _ordered(
+            Integer(bits=width, signed=name[0] == "s", byte_bits=layout.byte_bits), layout
+        )
+    if name == "byte":
+        return Integer(bits=8, byte_bits=8, role="byte")
+    if name == "char":
+        return Integer(bits=layout.byte_bits, byte_bits=layout.byte_bits, role="char")
+    if name == "bool":
+        return Integer(bits=1, byte_bits=layout.byte_bits, role="bool")
+    return None
+
+
+def _ordered(type_: Integer, layout: Layout) -> Integer:
+    if type_.size == 1 or layout.byte_order is None:
+        return type_
+    return Integer(
+        bits=type_.bits,
+        signed=type_.signed,
+        byte_bits=type_.byte_bits,
+        byte_order=layout.byte_order,
+    )
+
+
+def float_type(name: str, layout: Layout) -> Float | None:
+    """The float type that a built-in name stands for, or None if it is no float."""
+    if name not in ("float32", "float64"):
+        return None
+    bits: Literal[32, 64] = 32 if name == "float32" else 64
+    return Float(bits=bits, byte_bits=layout.byte_bits, byte_order=layout.byte_order or "little")

@@ -1,0 +1,115 @@
+"""Which single wrong bytes go unnoticed?
+
+A byte is checked if a checksum covers it that any change of one byte changes, or if it is fixed.
+What is left is said in one sentence each.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Frame,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    Part,
+    PayloadPart,
+)
+from protogen.model.framing import End, Start
+from protogen.model.messages import Message
+
+
+def undetected_errors(
+    frame: Frame, start: Start, end: End | None, messages: list[Message]
+) -> tuple[str, ...]:
+    """One sentence for each kind of wrong byte that a receiver takes for right."""
+    sentences = [_part(frame, part, end, messages) for part in frame.parts]
+    sentences.append(_weak_checksum(frame))
+    sentences.append(_stuffing(frame))
+    return tuple(sentence for sentence in sentences if sentence)
+
+
+def _part(frame: Frame, part: Part, end: End | None, messages: list[Message]) -> str:
+    if isinstance(part, LiteralPart | ChecksumPart) or _covered(frame, part.name):
+        return ""
+    if isinstance(part, LengthPart):
+        return _length(frame, part, end)
+    if isinstance(part, IdentityPart):
+        return _identity(frame, part, messages)
+    if isinstance(part, PayloadPart):
+        return f"a wrong byte in the payload{_inside(frame)}: nothing checks it"
+    return f"a wrong `{part.name}`: no checksum covers it"
+
+
+def _covered(frame: Frame, name: str) -> bool:
+    return any(name in checksum.covers for checksum in frame.checksums)
+
+
+def _length(frame: Frame, part: LengthPart, end: End | None) -> str:
+    if end is not None:
+        return ""  # The end literal then stands in the wrong place.
+    return f"a wrong `{part.name}`, where the bytes that follow happen to check"
+
+
+def _identity(frame: Frame, part: IdentityPart, messages: list[Message]) -> str:
+    """Messages that differ in this part only are confusable where they can have one size."""
+    index = frame.identity.index(part)
+    groups: dict[tuple[int, ...], list[Message]] = defaultdict(list)
+    for message in messages:
+        groups[message.identity[:index] + message.identity[index + 1 :]].append(message)
+    if any(_share_a_size(group) for group in groups.values()):
+        return f"a wrong `{part.name}` that makes it another message of the same size"
+    return ""
+
+
+def _share_a_size(messages: list[Message]) -> bool:
+    """Whether two of the messages, which differ in identity, can have the same size."""
+    distinct = {message.identity: message.sizes for message in messages}
+    by_least = sorted(distinct.values(), key=lambda sizes: sizes.least)
+    fixed = {sizes.least for sizes in by_least if sizes.step == 0}
+    varying = [sizes for sizes in by_least if sizes.step]
+    if len(fixed) + len(varying) < len(by_least):
+        return True
+    return any(one.meets(other) for one in varying for other in by_least if one is not other)
+
+
+def _inside(frame: Frame) -> str:
+    """What still shows most wrong bytes where the payload is encoded."""
+    encoding = frame.transparency.encoding if frame.transparency else None
+    if isinstance(encoding, Base16):
+        return " that is still a hex digit"
+    return ""
+
+
+def _weak_checksum(frame: Frame) -> str:
+    weak = [part for part in frame.checksums if _misses_single_bytes(part.algorithm)]
+    if not weak:
+        return ""
+    names = ", ".join(f"`{part.name}`" for part in weak)
+    return f"some wrong bytes that {names} covers: {weak[0].algorithm.name} does not see them"
+
+
+def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
+    """Fletcher takes 00 for FF; a CRC sees bursts up to its width if its polynomial is odd."""
+    if algorithm.kind == "fletcher":
+        return True
+    return algorithm.kind == "crc" and (algorithm.width < 8 or algorithm.poly % 2 == 0)
+
+
+def _stuffing(frame: Frame) -> str:
+    """One wrong byte on the wire can become several behind the stuffing."""
+    if frame.transparency is None or not frame.checksums:
+        return ""
+    if isinstance(frame.transparency.encoding, Base16):
+        return ""
+    if isinstance(frame.transparency.encoding, Cobs):
+        return "a wrong COBS code byte moves zeros, which the checksum misses in rare cases"
+    return (
+        "a wrong byte that makes or breaks a stuffed sequence changes several bytes and the size, "
+        "which length and checksum miss in rare cases"
+    )

@@ -1,0 +1,98 @@
+"""How many bytes does a frame take on the wire, stuffing included?"""
+
+from __future__ import annotations
+
+from protogen.model.frame import Base16, ChecksumPart, Cobs, Frame, IdentityPart, Part, PayloadPart
+from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
+from protogen.passes.capacity import part_size, tail_literals
+from protogen.passes.wire_code import ByteSet, code_of, covered_parts, part_bytes
+
+_COBS_BLOCK = 254
+
+
+class WireSizes:
+    """Sizes of one sender's frames. Bounds: stuffing is counted byte by byte at its worst."""
+
+    def __init__(self, frame: Frame, payload: ByteSet) -> None:
+        self._frame = frame
+        self._payload = payload
+        self._covered = covered_parts(frame)
+        self._encoding = frame.transparency.encoding if frame.transparency else None
+
+    @property
+    def head(self) -> int:
+        """Unstuffed bytes in front of the payload."""
+        return sum(part_size(part) for part in self._around()[0])
+
+    @property
+    def tail(self) -> int:
+        """Unstuffed bytes behind the payload but for the end literal."""
+        ends = {part.name for part in tail_literals(self._frame)}
+        return sum(part_size(part) for part in self._around()[1] if part.name not in ends)
+
+    @property
+    def overhead(self) -> SizeSet:
+        """Bytes that are not payload, before stuffing."""
+        fixed = sum(part_size(part) for part in self._frame.parts)
+        optional = sum(part_size(part) for part in self._frame.checksums if part.when_payload)
+        return SizeSet.between(fixed - optional, fixed, optional)
+
+    def frame(self, payload: SizeSet) -> SizeSet:
+        """Wire bytes of any frame with such a payload."""
+        return self._sizes(payload, {})
+
+    def message(self, message: Message) -> SizeSet:
+        """Wire bytes of the frames of one message, whose identity is known."""
+        names = [part.name for part in self._frame.identity]
+        return self._sizes(message.sizes, dict(zip(names, message.identity, strict=True)))
+
+    def _around(self) -> tuple[list[Part], list[Part]]:
+        parts = list(self._frame.parts)
+        middle = next(i for i, part in enumerate(parts) if isinstance(part, PayloadPart))
+        return parts[:middle], parts[middle + 1 :]
+
+    def _sizes(self, payload: SizeSet, identity: dict[str, int]) -> SizeSet:
+        least = self._total(payload.least, identity, worst=False)
+        greatest = self._total(payload.greatest, identity, worst=True)
+        exact = self._encoding is None or isinstance(self._encoding, Base16)
+        step = payload.step * (2 if self._encoding and exact else 1) if exact else 1
+        optional = any(part.when_payload for part in self._frame.checksums)
+        return SizeSet.between(least, greatest, 1 if optional else step)
+
+    def _total(self, payload: int, identity: dict[str, int], *, worst: bool) -> int:
+        present = [part for part in self._frame.parts if payload or not _optional(part)]
+        raw = [part for part in present if part.name not in self._covered]
+        covered = [part for part in present if part.name in self._covered]
+        size = sum(payload if isinstance(part, PayloadPart) else part_size(part) for part in raw)
+        if not covered:
+            return size
+        if isinstance(self._encoding, Cobs):
+            inside = sum(
+                payload if isinstance(part, PayloadPart) else part_size(part) for part in covered
+            )
+            return size + inside + (self._cobs_extra(inside) if worst else 0) + 1
+        return size + sum(self._stuffed(part, payload, identity, worst=worst) for part in covered)
+
+    def _cobs_extra(self, inside: int) -> int:
+        """Code bytes besides the first; a lenient decoder also takes a needless last one."""
+        assert self._frame.transparency is not None
+        return inside // _COBS_BLOCK + self._frame.transparency.lenient
+
+    def _stuffed(self, part: Part, payload: int, identity: dict[str, int], *, worst: bool) -> int:
+        """Wire bytes of a covered part: the shortest or longest codewords of what it can hold."""
+        code = code_of(self._encoding)
+        assert code is not None
+        choose = max if worst else min
+        if isinstance(part, IdentityPart) and part.name in identity:
+            value = identity[part.name].to_bytes(part.type.size, part.type.byte_order)
+            return sum(len(code[byte]) for byte in value)
+        per_byte = [
+            choose(len(code[value]) for value in values)
+            for values in part_bytes(part, self._payload)
+        ]
+        return per_byte[0] * payload if isinstance(part, PayloadPart) else sum(per_byte)
+
+
+def _optional(part: Part) -> bool:
+    return isinstance(part, ChecksumPart) and part.when_payload

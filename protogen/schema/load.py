@@ -1,0 +1,43 @@
+"""A schema file -> its syntax tree, with the schemas that it extends merged in."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from protogen.problems import Problems, SourceMap
+from protogen.schema.document import read_document
+from protogen.schema.extends import Merged, merge_bases
+from protogen.schema.nodes import MappingNode, to_data
+from protogen.schema.shape import Loc, read_shape
+from protogen.schema.syntax.protocol import ProtocolSyntax
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A schema as it was written, and where each of its nodes stands."""
+
+    syntax: ProtocolSyntax
+    merged: Merged
+    doubtful: frozenset[Loc] = frozenset()
+    """Items with a key that is unknown: what else seems wrong with them may come of that."""
+
+
+def load_syntax(
+    path: str | os.PathLike[str], problems: Problems, sources: SourceMap
+) -> Loaded | None:
+    """Read a schema. Whatever is wrong is reported; None where that leaves nothing to work on."""
+    document = read_document(path, problems, sources)
+    if document is None:
+        return None
+    merged = merge_bases(document, problems, sources)
+    if merged is None:
+        return None
+    if not isinstance(merged.root, MappingNode):
+        problems.add("PG102", merged.root.span, "a schema is a mapping, such as `protocol: name`")
+        return None
+    sound = not problems.errors
+    shape = read_shape(to_data(merged.root), merged.find, problems)
+    if shape is None or not sound:
+        return None
+    return Loaded(shape.syntax, merged, shape.doubtful)

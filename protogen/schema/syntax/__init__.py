@@ -1,0 +1,1 @@
+"""The syntax tree: what a schema file says, checked by shape."""

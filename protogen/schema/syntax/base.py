@@ -1,0 +1,170 @@
+"""What every part of the syntax tree shares: the strict base class and the scalar types.
+
+A syntax object says what was written, checked by shape only. Whether it makes sense together with
+the rest of the schema is asked by the passes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+
+NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
+"""Names are lower snake case: each target derives its own spelling from that."""
+
+_GREATEST_NUMBER = 400
+"""Characters of a number. No protocol needs more, and reading a longer one takes its time."""
+
+_RATIONAL = re.compile(
+    r"[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)"
+)
+_DURATION = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?) ?(us|ms|s)")
+_DURATION_UNITS = {
+    "us": Fraction(1, 1_000_000),
+    "ms": Fraction(1, 1000),
+    "s": Fraction(1),
+}
+_SPAN = re.compile(r"([0-9]{1,4})\.\.([0-9]{1,4})")
+
+
+class Syntax(BaseModel):
+    """Base of all syntax classes: unknown keys are errors, objects are immutable."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+def _as_written(value: object) -> object:
+    """Text keys take `1.10` or `2014` as the characters that stand in the file."""
+    return getattr(value, "text", value)
+
+
+def _to_int(value: object) -> object:
+    return int(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _to_fraction(value: object) -> object:
+    if isinstance(value, Fraction):
+        return value
+    if isinstance(value, int) and not isinstance(value, bool):
+        return Fraction(int(value))
+    if isinstance(value, float | str):
+        text = str(_as_written(value)).strip()
+        if len(text) <= _GREATEST_NUMBER and _RATIONAL.fullmatch(text):
+            return Fraction(text)
+    raise ValueError("expected an exact number such as 0.01, 1/16 or -3")
+
+
+def _to_duration(value: object) -> object:
+    if isinstance(value, Fraction):
+        return value
+    match = _DURATION.fullmatch(str(value))
+    if match is None:
+        raise ValueError("expected a time with its unit, such as 20 ms, 500 us or 1.5 s")
+    return Fraction(match[1]) * _DURATION_UNITS[match[2]]
+
+
+def _to_number(value: object) -> object:
+    """An integer, one character (its code), or a float as written."""
+    if isinstance(value, bool):
+        raise ValueError("expected a number or one character; true and false are neither")
+    if isinstance(value, int):
+        return int(value)
+    if isinstance(value, str) and len(value) == 1 and ord(value) < 256:
+        return ord(value)
+    raise ValueError("expected an integer or one character")
+
+
+def _to_byte(value: object) -> object:
+    """One byte: a number or a character."""
+    number = _to_number(value)
+    if isinstance(number, int) and 0 <= number <= 255:
+        return number
+    raise ValueError("a byte is a number from 0 to 255, or one character")
+
+
+def _to_bit_range(value: object) -> object:
+    """`5` is one bit, `6..7` runs from the lowest to the highest bit."""
+    if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
+        return (int(value), int(value))
+    match = _SPAN.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        raise ValueError("expected a bit number or LOW..HIGH, such as 6..7")
+    return (int(match[1]), int(match[2]))
+
+
+Text = Annotated[str, BeforeValidator(_as_written, json_schema_input_type=str | float | int)]
+"""Prose or a version: taken as written, also when it looks like a number."""
+
+Name = Annotated[str, StringConstraints(pattern=NAME_PATTERN, max_length=64)]
+"""A lower snake case name of something that the schema declares."""
+
+Int = Annotated[int, BeforeValidator(_to_int)]
+"""An integer, never a boolean or a quoted number."""
+
+Count = Annotated[int, BeforeValidator(_to_int), Field(ge=0)]
+"""An integer that is not negative."""
+
+Rational = Annotated[
+    Fraction, BeforeValidator(_to_fraction, json_schema_input_type=int | float | str)
+]
+"""An exact number: 0.01 is one hundredth and 1/16 one sixteenth."""
+
+Duration = Annotated[Fraction, BeforeValidator(_to_duration, json_schema_input_type=str)]
+"""A time in seconds, written with its unit."""
+
+RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | str)]
+"""A raw value: an integer, or one character that stands for its code."""
+
+ByteNumber = Annotated[int, BeforeValidator(_to_byte, json_schema_input_type=int | str)]
+"""One byte: a number from 0 to 255, or one character that stands for its code."""
+
+BitRange = Annotated[
+    tuple[int, int], BeforeValidator(_to_bit_range, json_schema_input_type=int | str)
+]
+"""The lowest and the highest bit of a bit range, counted from the least significant bit 0."""
+
+
+def pair_of(what: str) -> Callable[[Any], Any]:
+    """Let a list of exactly two stand for a pair; `what` says what the two are."""
+
+    def read(value: Any) -> Any:
+        if isinstance(value, list | tuple) and len(value) == 2:
+            return tuple(value)
+        raise ValueError(f"expected {what}")
+
+    return read
+
+
+def short_form(key: str) -> Callable[[Any], Any]:
+    """Let a bare scalar stand for a mapping that has only `key`."""
+
+    def expand(value: Any) -> Any:
+        return {key: value} if isinstance(value, str | int | float) else value
+
+    return expand
+
+
+class Source(Syntax):
+    """Where a fact is written down."""
+
+    document: Text | None = Field(None, description="File name or title of the document.")
+    revision: Text | None = Field(None, description="Revision, date or commit of the document.")
+    lines: Text | None = Field(None, description="Line or lines of the document, such as 61-65.")
+    section: Text | None = Field(None, description="Section or page of the document.")
+    url: Text | None = Field(None, description="Where the document can be found.")
+    license: Text | None = Field(None, description="Licence of the document or the code read.")
+    note: Text | None = Field(None, description="Anything else that a reader should know.")
+
+
+def _lines_only(value: Any) -> Any:
+    return {"lines": value} if isinstance(value, str | int | float) else value
+
+
+SourceRef = Annotated[
+    Source, BeforeValidator(_lines_only, json_schema_input_type=str | int | Source)
+]
+"""A source; a bare text or number stands for the lines of the schema's document."""

@@ -1,0 +1,193 @@
+"""Fields of a payload, and the types that a schema declares."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from protogen.schema.syntax.base import (
+    BitRange,
+    Count,
+    Name,
+    Rational,
+    RawNumber,
+    SourceRef,
+    Syntax,
+    Text,
+    pair_of,
+    short_form,
+)
+from protogen.schema.syntax.octets import OctetsForm, to_octets
+from protogen.schema.syntax.parts import ByteOrder
+
+
+class NamedValue(Syntax):
+    """A name for a raw value: an entry of an enum, or a special value."""
+
+    value: RawNumber = Field(description="The raw value, or one character.")
+    doc: Text | None = Field(None, description="What it means.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+class NamedBit(Syntax):
+    """A name for one bit."""
+
+    bit: Count = Field(description="Bit number, counted from the least significant bit 0.")
+    doc: Text | None = Field(None, description="What a set bit means.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+NamedValueRef = Annotated[
+    NamedValue,
+    BeforeValidator(short_form("value"), json_schema_input_type=int | str | NamedValue),
+]
+NamedBitRef = Annotated[
+    NamedBit,
+    BeforeValidator(short_form("bit"), json_schema_input_type=int | NamedBit),
+]
+
+
+class NamedBits(Syntax):
+    """A named run of bits of one integer."""
+
+    bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
+    values: dict[Name, NamedValueRef] | None = Field(None, description="Names of its values.")
+    doc: Text | None = Field(None, description="What the bits mean.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+NamedBitsRef = Annotated[
+    NamedBits,
+    BeforeValidator(short_form("bits"), json_schema_input_type=int | str | NamedBits),
+]
+
+
+class Fill(Syntax):
+    """As many elements or bytes as the payload has left."""
+
+    fill: Literal[True] = Field(description="To the end of the payload.")
+    max: Count | None = Field(None, description="The greatest number of elements or bytes.")
+
+
+def _to_fill(value: Any) -> Any:
+    return Fill(fill=True) if value == "fill" else value
+
+
+def _extent_form(value: Any) -> str:
+    if isinstance(value, dict | Fill) or value == "fill":
+        return "fill"
+    return "name" if isinstance(value, str) else "number"
+
+
+Extent = Annotated[
+    Annotated[Count, Tag("number")]
+    | Annotated[Name, Tag("name")]
+    | Annotated[Fill, BeforeValidator(_to_fill, json_schema_input_type=str | Fill), Tag("fill")],
+    Discriminator(_extent_form),
+]
+"""How many: a number, the name of an earlier field, or `fill`."""
+
+
+def _to_constant(value: Any) -> Any:
+    """A number, a text (also an enum's name) or bytes; which of them fits the type is not asked."""
+    if isinstance(value, bool | bytes | tuple):
+        return value
+    if isinstance(value, int):
+        return int(value)
+    if isinstance(value, float):
+        return float(value)
+    if isinstance(value, list):
+        return tuple(map(_to_element, value))
+    return str(value) if isinstance(value, str) else to_octets(value)
+
+
+def _to_element(value: Any) -> int:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return int(value)
+    raise ValueError("a list holds integers here")
+
+
+Constant = Annotated[
+    Any,
+    BeforeValidator(
+        _to_constant, json_schema_input_type=bool | int | float | str | OctetsForm | list[int]
+    ),
+]
+"""A value of a field: a number, a text (also an enum's name), or bytes."""
+
+
+NumberRange = Annotated[
+    tuple[Rational, Rational],
+    BeforeValidator(
+        pair_of("two numbers: [LEAST, GREATEST]"), json_schema_input_type=list[int | float | str]
+    ),
+]
+"""Least and greatest raw value, both included (for floats: the value itself)."""
+
+
+class FieldSyntax(Syntax):
+    """One field of a payload, or a declared type."""
+
+    type: Text | None = Field(
+        None,
+        description="uint1..uint64, sint1..sint64, byte, char, bool, float32, float64, ascii, "
+        "bytes, or a name declared under types.",
+    )
+    fields: dict[Name, FieldRef] | None = Field(
+        None, description="The field is a struct of these fields."
+    )
+    switch: Name | None = Field(
+        None, description="The field is one of several, chosen by this earlier field."
+    )
+    cases: dict[Any, FieldRef] | None = Field(
+        None,
+        description="What the field is for each value (name or number) of the switch field.",
+    )
+    count: Extent | None = Field(
+        None,
+        description="The field is an array: number of elements, the earlier field that counts "
+        "them, or fill (to the end of the payload).",
+    )
+    size: Extent | None = Field(
+        None,
+        description="Bytes of an ascii or bytes field: a number, the earlier field that gives it, "
+        "or fill (to the end of the payload).",
+    )
+    values: dict[Name, NamedValueRef] | None = Field(
+        None,
+        description="Enum: names of raw values. Unknown values are kept unless closed.",
+    )
+    closed: bool = Field(False, description="Values without a name are invalid.")
+    flags: dict[Name, NamedBitRef] | None = Field(None, description="Names of single bits.")
+    bits: dict[Name, NamedBitsRef] | None = Field(
+        None, description="Named bit ranges of one integer."
+    )
+    const: Constant | None = Field(None, description="The only valid value.")
+    default: Constant | None = Field(None, description="What an encoder writes by default.")
+    range: NumberRange | None = Field(None, description="Least and greatest raw value.")
+    scale: Rational | None = Field(
+        None,
+        description="physical value = raw value x scale + offset; exact, such as 1/16.",
+    )
+    offset: Rational | None = Field(
+        None,
+        description="physical value = raw value x scale + offset, in the field's unit.",
+    )
+    unit: Text | None = Field(None, description="Unit of the physical value.")
+    special: dict[Name, NamedValueRef] | None = Field(
+        None, description="Raw values that mean that there is no reading."
+    )
+    byte_order: ByteOrder | None = Field(None, description="Byte order of this field.")
+    unknown: bool = Field(False, description="The document does not say what the field is.")
+    doc: Text | None = Field(None, description="What the field means.")
+    source: SourceRef | None = Field(None, description="Where the field is written down.")
+
+
+FieldRef = Annotated[
+    FieldSyntax,
+    BeforeValidator(short_form("type"), json_schema_input_type=str | FieldSyntax),
+]
+"""A field; a bare type name stands for a field with nothing to add."""
+
+FieldSyntax.model_rebuild()

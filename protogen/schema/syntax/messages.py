@@ -1,0 +1,163 @@
+"""Messages with their examples, overloads, exchanges."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from protogen.schema.syntax.base import (
+    Count,
+    Name,
+    RawNumber,
+    SourceRef,
+    Syntax,
+    Text,
+    short_form,
+)
+from protogen.schema.syntax.fields import FieldRef
+from protogen.schema.syntax.octets import Octets
+from protogen.schema.syntax.parts import ByteOrder, PartRun
+
+Reason = Literal[
+    "noise", "checksum", "length", "stuffing", "truncated", "size", "encoding", "value"
+]
+"""Why bytes are no frame."""
+
+
+class Contradiction(Syntax):
+    """How an example of the document differs from the schema; checked to differ just so."""
+
+    fails: Reason | Literal["values", "unknown"] = Field(
+        description="The decoder's reason, `values` where it decodes to other values than the "
+        "document prints (give `reads`), or `unknown` where its identity is another's."
+    )
+    why: Text = Field(
+        description="What the document says elsewhere, and why the schema follows it."
+    )
+    reads: dict[Name, Any] | None = Field(
+        None, description="With fails: values, what the schema reads in these bytes."
+    )
+
+
+class Example(Syntax):
+    """Bytes and the values that they mean."""
+
+    frame: Octets | None = Field(None, description="The whole frame as on the wire.")
+    content: Octets | None = Field(
+        None, description="What a document prints without delimiters and checksum."
+    )
+    covers: PartRun | None = Field(None, description="The parts that `content` holds.")
+    sender: Name | None = Field(
+        None, description="Who sends it, where the message has several senders."
+    )
+    values: dict[Name, Any] | None = Field(
+        None,
+        description="Field values: raw numbers, enum names, lists, mappings for structs.",
+    )
+    parts: dict[Name, RawNumber] | None = Field(
+        None,
+        description="Values of frame parts that matter, such as a number or a counter.",
+    )
+    contradicts: Contradiction | None = Field(
+        None, description="The example differs from the schema, in this way."
+    )
+    doc: Text | None = Field(None, description="What the example shows.")
+    source: SourceRef | None = Field(None, description="Where it is printed.")
+
+
+def _listed(value: Any) -> Any:
+    listed = tuple(value) if isinstance(value, list | tuple) else (value,)
+    if not listed:
+        raise ValueError("expected an endpoint, or a list of endpoints")
+    names = [name for name in listed if isinstance(name, str)]
+    if len(set(names)) < len(names):
+        raise ValueError("an endpoint stands here twice")
+    return listed
+
+
+Senders = Annotated[
+    tuple[Name, ...], BeforeValidator(_listed, json_schema_input_type=str | list[str])
+]
+"""One endpoint or several."""
+
+
+def _to_identity(value: Any) -> Any:
+    """One number stands for the only identity part, which the passes know."""
+    return value if isinstance(value, dict) else {"": value}
+
+
+Identity = Annotated[
+    dict[str, RawNumber],
+    BeforeValidator(_to_identity, json_schema_input_type=int | str | dict[str, int | str]),
+]
+"""Identity: a number or character, or a mapping of part to value."""
+
+
+def _text_or_mapping(value: Any) -> str:
+    return "text" if isinstance(value, str) else "mapping"
+
+
+class MessageSyntax(Syntax):
+    """One message: who sends it, how it is told apart, and its fields."""
+
+    id: Identity | None = Field(
+        None,
+        description="Identity: a number or character, or one for each identity part.",
+    )
+    from_: Senders = Field(alias="from", description="The endpoint that sends it, or a list.")
+    title: Text | None = Field(None, description="Name of the message in the document.")
+    summary: Text | None = Field(None, description="One line that says what the message is.")
+    doc: Text | None = Field(None, description="What a reader should know.")
+    source: SourceRef | None = Field(None, description="Where the message is written down.")
+    byte_order: ByteOrder | None = Field(None, description="Byte order of its fields.")
+    fields: Annotated[
+        Annotated[Literal["unspecified"], Tag("text")]
+        | Annotated[dict[Name, FieldRef], Tag("mapping")],
+        Discriminator(_text_or_mapping),
+    ] = Field(
+        default_factory=dict,
+        description="Fields in wire order, or `unspecified`: the document does not say.",
+    )
+    min_size: Count | None = Field(None, description="Least payload size if unspecified.")
+    max_size: Count | None = Field(None, description="Greatest payload size if unspecified.")
+    examples: dict[Name, Example] | None = Field(
+        None, description="Named examples: bytes and the values that they mean."
+    )
+
+
+class Overload(Syntax):
+    """Messages of one sender that share an identity."""
+
+    messages: tuple[Name, ...] = Field(strict=False, description="The messages that share it.")
+    by: Literal["size", "undecidable"] = Field(
+        description="How a receiver tells them apart: by payload size, or not at all."
+    )
+    yields: Name | None = Field(
+        None, description="If undecidable, the message that a decoder yields."
+    )
+    decision: Name | None = Field(None, description="The decision that accepts it.")
+    doc: Text | None = Field(None, description="What a reader should know.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+class Step(Syntax):
+    """One message of an exchange."""
+
+    message: Name = Field(description="The message.")
+    example: Name | None = Field(None, description="Which of its examples is sent.")
+    doc: Text | None = Field(None, description="What happens here.")
+    source: SourceRef | None = Field(None, description="Where it is printed.")
+
+
+StepRef = Annotated[Step, BeforeValidator(short_form("message"), json_schema_input_type=str | Step)]
+"""A step; a bare text names the message."""
+
+
+class Exchange(Syntax):
+    """A named sequence of messages."""
+
+    title: Text | None = Field(None, description="Name of the exchange.")
+    steps: tuple[StepRef, ...] = Field(strict=False, description="The messages in order.")
+    doc: Text | None = Field(None, description="What the exchange does.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")

@@ -1,0 +1,185 @@
+"""Frames: parts in wire order, and the transparency that protects them."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from protogen.schema.syntax.base import (
+    ByteNumber,
+    Count,
+    Int,
+    Name,
+    RawNumber,
+    SourceRef,
+    Syntax,
+    Text,
+    pair_of,
+    short_form,
+)
+from protogen.schema.syntax.octets import Octets, OctetsForm
+
+ByteOrder = Literal["little", "big"]
+
+_RUN = re.compile(r"[a-z0-9_]+(\.\.[a-z0-9_]+)?")
+
+
+def _to_run(value: Any) -> Any:
+    """`a..b` and one name become lists; the passes expand the dots, knowing the frame."""
+    listed = tuple(value) if isinstance(value, list | tuple) else (value,)
+    if listed and all(isinstance(item, str) and _RUN.fullmatch(item) for item in listed):
+        return listed
+    raise ValueError("expected a part, FIRST..LAST, or a list of parts")
+
+
+PartRun = Annotated[
+    tuple[str, ...], BeforeValidator(_to_run, json_schema_input_type=str | list[str])
+]
+"""Some parts of the frame: one name, a run `first..last`, or a list of names."""
+
+
+class CrcParameters(Syntax):
+    """A checksum that no catalogue names: the Rocksoft parameters of a CRC."""
+
+    width: Int = Field(ge=1, le=64, description="Width of the register in bits, 1 to 64.")
+    poly: Count = Field(description="Generator polynomial without its highest bit.")
+    init: Count = Field(0, description="What the register holds before the first byte.")
+    refin: bool = Field(False, description="Whether bytes enter least significant bit first.")
+    refout: bool = Field(False, description="Whether the register is reflected at the end.")
+    xorout: Count = Field(0, description="What is XORed to the register at the end.")
+
+
+def _written_as_mapping(value: Any) -> str:
+    return "mapping" if isinstance(value, dict | Syntax) else "text"
+
+
+Algorithm = Annotated[
+    Annotated[Text, Tag("text")] | Annotated[CrcParameters, Tag("mapping")],
+    Discriminator(_written_as_mapping),
+]
+"""A checksum algorithm by name or by its parameters."""
+
+
+RawRange = Annotated[
+    tuple[RawNumber, RawNumber],
+    BeforeValidator(
+        pair_of("two values: [LEAST, GREATEST]"), json_schema_input_type=list[int | str]
+    ),
+]
+"""The least and the greatest raw value, both included."""
+
+
+class Part(Syntax):
+    """One item of a frame. Its keys give its role; the part called `payload` holds the fields."""
+
+    literal: Octets | None = Field(None, description="Fixed bytes that open, close or mark.")
+    unprotected: Name | None = Field(
+        None,
+        description="The decision that accepts that this literal can also occur inside a frame.",
+    )
+    type: Text | None = Field(None, description="Type of the part: uint8, uint16, char, byte ...")
+    id: Literal[True] | None = Field(None, description="The part tells which message this is.")
+    counts: PartRun | None = Field(
+        None, description="The part is the length in bytes of these parts, unstuffed."
+    )
+    counter: Literal[True] | None = Field(
+        None, description="The part counts frames; encoders advance it by one and wrap."
+    )
+    algorithm: Algorithm | None = Field(
+        None,
+        description="The part is a checksum: xor-8, sum-8, sum-8/negated, fletcher-16, a name of "
+        "the CRC RevEng catalogue, or Rocksoft parameters.",
+    )
+    covers: PartRun | None = Field(None, description="The parts that the checksum covers.")
+    over: Literal["content", "wire"] | None = Field(
+        None,
+        description="Checksum over unstuffed bytes (content, the default) or as on the wire.",
+    )
+    when: Literal["payload"] | None = Field(
+        None,
+        description="The part is present only in frames whose payload is not empty.",
+    )
+    range: RawRange | None = Field(None, description="Least and greatest value of the part.")
+    default: RawNumber | None = Field(
+        None, description="What an encoder writes where the caller gives no value."
+    )
+    byte_order: ByteOrder | None = Field(None, description="Byte order of this part.")
+    doc: Text | None = Field(None, description="What the part means.")
+    source: SourceRef | None = Field(None, description="Where the part is written down.")
+
+
+class XorTransform(Syntax):
+    """The escaped byte is XORed with a constant."""
+
+    xor: ByteNumber = Field(description="The constant.")
+
+
+def _to_bytes(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return tuple(value)
+    raise ValueError("expected a list of bytes")
+
+
+class EscapeSyntax(Syntax):
+    """One escape byte, and what becomes of the byte behind it."""
+
+    byte: ByteNumber = Field(description="The escape byte.")
+    of: Annotated[
+        tuple[ByteNumber, ...],
+        BeforeValidator(_to_bytes, json_schema_input_type=list[int | str]),
+    ] = Field(description="The bytes that have to be escaped; the escape byte is one of them.")
+    transform: Annotated[
+        Annotated[Literal["invert", "none"], Tag("text")] | Annotated[XorTransform, Tag("mapping")],
+        Discriminator(_written_as_mapping),
+    ] = Field(
+        description="How the byte behind the escape is changed: invert, none, or {xor: 0x20}."
+    )
+
+
+def _table(value: Any) -> Any:
+    if isinstance(value, dict):
+        return tuple(value.items())
+    if isinstance(value, tuple):
+        return value
+    raise ValueError("expected a mapping of bytes to what stands for them")
+
+
+Substitutions = Annotated[
+    tuple[tuple[ByteNumber, Octets], ...],
+    BeforeValidator(_table, json_schema_input_type=dict[str, OctetsForm | list[int] | int]),
+]
+"""Byte to the bytes that stand for it on the wire."""
+
+
+class TransparencySyntax(Syntax):
+    """What keeps delimiters out of a region of the frame."""
+
+    covers: PartRun | None = Field(
+        None,
+        description="The run of parts that is stuffed; without it all between the outer literals.",
+    )
+    substitute: Substitutions | None = Field(
+        None, description="Substitution table: byte to the bytes that stand for it."
+    )
+    escape: EscapeSyntax | None = Field(None, description="An escape byte and its transform.")
+    encoding: Literal["base16-upper", "cobs"] | None = Field(
+        None, description="The region is encoded as a whole."
+    )
+    preset: Literal["slip", "hdlc"] | None = Field(
+        None,
+        description="SLIP (RFC 1055) or asynchronous HDLC (RFC 1662) byte stuffing.",
+    )
+    lenient: bool = Field(
+        False,
+        description="Decoders also accept stuffing that an encoder would not have made.",
+    )
+    doc: Text | None = Field(None, description="What a reader should know about it.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+TransparencyRef = Annotated[
+    TransparencySyntax,
+    BeforeValidator(short_form("preset"), json_schema_input_type=str | TransparencySyntax),
+]

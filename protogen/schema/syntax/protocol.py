@@ -1,0 +1,208 @@
+"""The root of a schema."""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from protogen.schema.syntax.base import (
+    Duration,
+    Int,
+    Name,
+    RawNumber,
+    Source,
+    SourceRef,
+    Syntax,
+    Text,
+    short_form,
+)
+from protogen.schema.syntax.fields import FieldRef
+from protogen.schema.syntax.messages import Exchange, Identity, MessageSyntax, Overload
+from protogen.schema.syntax.parts import (
+    ByteOrder,
+    Part,
+    PartRun,
+    TransparencyRef,
+    TransparencySyntax,
+)
+
+
+class Link(Syntax):
+    """The line that the frames travel on."""
+
+    baud: Int | None = Field(None, gt=0, description="Bits per second on the line.")
+    data_bits: Int = Field(8, ge=5, le=9, description="Data bits of a character.")
+    parity: Literal["none", "even", "odd", "mark", "space"] = Field(
+        "none", description="Parity bit of a character."
+    )
+    stop_bits: Literal[1, 2] = Field(1, description="Stop bits of a character.")
+    idle_timeout: Duration | None = Field(
+        None,
+        description="After how long a silence a receiver should call flush: 20 ms.",
+    )
+    doc: Text | None = Field(None, description="What a reader should know.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+
+
+class Endpoint(Syntax):
+    """A named side of the link."""
+
+    title: Text = Field(description="What it is.")
+    doc: Text | None = Field(None, description="What a reader should know.")
+
+
+EndpointRef = Annotated[
+    Endpoint,
+    BeforeValidator(short_form("title"), json_schema_input_type=str | Endpoint),
+]
+
+
+class Decision(Syntax):
+    """What was chosen where the document does not say, or says two things."""
+
+    question: Text = Field(description="What the document leaves open.")
+    document: Text = Field(description="What the document says about it, in own words.")
+    choice: Text = Field(description="What the schema does.")
+    because: Text = Field(description="Why.")
+    source: SourceRef | None = Field(None, description="The places in question.")
+
+
+class ReservedIdentity(Syntax):
+    """An identity that may not come back."""
+
+    from_: Name = Field(alias="from", description="The endpoint that sent it.")
+    id: Identity = Field(description="The identity.")
+    doc: Text | None = Field(None, description="What it was.")
+
+
+class Reserved(Syntax):
+    """What once was used and may not come back with another meaning."""
+
+    identities: tuple[ReservedIdentity, ...] = Field(
+        (), strict=False, description="Identities of deleted messages."
+    )
+    fields: dict[Name, Annotated[tuple[Name, ...], Field(strict=False)]] = Field(
+        default_factory=dict,
+        description="Message to the field names it may not use again.",
+    )
+    values: dict[Text, Annotated[tuple[RawNumber, ...], Field(strict=False)]] = Field(
+        default_factory=dict,
+        description="MESSAGE.FIELD or type to raw values not to use again.",
+    )
+
+
+Frame = dict[Name, Part]
+"""Parts in wire order."""
+
+ALL_SENDERS = ""
+"""Key of what is written once for every sender."""
+
+
+def _for_all(value: Any) -> Any:
+    return {ALL_SENDERS: value} if isinstance(value, str) else value
+
+
+def _as_is(value: Any) -> Any:
+    return value
+
+
+_MARKS: dict[str, frozenset[str]] = {
+    "frame": frozenset({"payload"}),
+    "transparency": frozenset(TransparencySyntax.model_fields),
+}
+"""Keys by which a frame or a transparency shows that it is one, also beside misspelled endpoints."""
+
+
+def _by_sender(key: str, value: Any, endpoints: Any) -> Any:
+    """What is not keyed by endpoints holds for all of them."""
+    return value if _is_by_sender(value, _MARKS[key], _keys(endpoints)) else {ALL_SENDERS: value}
+
+
+def _is_by_sender(value: Any, marks: Set[str], endpoints: Set[Any]) -> bool:
+    keys = _keys(value)
+    if not keys or keys <= endpoints or keys & marks:
+        return bool(keys) and keys <= endpoints
+    named = bool(keys & endpoints)
+    return any(
+        _keys(item) & marks or (named and isinstance(item, str)) for item in value.values()
+    )
+
+
+def _keys(value: Any) -> Set[Any]:
+    return value.keys() if isinstance(value, dict) else frozenset()
+
+
+class ProtocolSyntax(Syntax):
+    """One YAML file: a serial protocol, completely."""
+
+    protocol: Name = Field(description="Name of the protocol: modules and files are called so.")
+    extends: Text | None = Field(
+        None, description="The schema that this one changes; relative to this file."
+    )
+    title: Text | None = Field(None, description="Title for people.")
+    doc: Text | None = Field(None, description="What a reader should know first.")
+    version: Text | None = Field(None, description="Version of the schema.")
+    source: Source | None = Field(None, description="The document that the schema transcribes.")
+    link: Link = Field(default_factory=Link, description="The line: baud rate and so on.")
+    endpoints: dict[Name, EndpointRef] = Field(description="The named sides of the link.")
+    byte_order: Annotated[
+        dict[str, ByteOrder],
+        BeforeValidator(_for_all, json_schema_input_type=ByteOrder | dict[str, ByteOrder]),
+    ] = Field(
+        default_factory=dict,
+        description="Order of the bytes of a number: little or big, for all or for each sender.",
+    )
+    byte_bits: Literal[7, 8] = Field(
+        8, description="Bits that a payload byte carries; with 7 its highest bit is 0."
+    )
+    frame: Annotated[
+        dict[str, Frame],
+        BeforeValidator(_as_is, json_schema_input_type=Frame | dict[str, Frame]),
+    ] = Field(
+        description="The parts of a frame in wire order; one frame for all, or one per sender."
+    )
+    transparency: Annotated[
+        dict[str, TransparencyRef],
+        BeforeValidator(
+            _as_is, json_schema_input_type=TransparencyRef | dict[str, TransparencyRef]
+        ),
+    ] = Field(
+        default_factory=dict,
+        description="What keeps delimiters out of the frame; for all or per sender.",
+    )
+    content_covers: PartRun | None = Field(
+        None,
+        description="What the `content` of examples holds where they do not say it.",
+    )
+    types: dict[Name, FieldRef] = Field(
+        default_factory=dict, description="Named types: enums, flags, structs."
+    )
+    messages: dict[Name, MessageSyntax] = Field(description="The messages.")
+    overloads: dict[Name, Overload] = Field(
+        default_factory=dict,
+        description="Messages of one sender that share an identity.",
+    )
+    exchanges: dict[Name, Exchange] = Field(
+        default_factory=dict, description="Named sequences of messages."
+    )
+    decisions: dict[Name, Decision] = Field(
+        default_factory=dict,
+        description="What was decided where the document leaves it open.",
+    )
+    reserved: Reserved = Field(
+        default_factory=Reserved,
+        description="What may not come back with another meaning.",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _split_by_sender(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        written = {key: data[key] for key in _MARKS if data.get(key) is not None}
+        split = {
+            key: _by_sender(key, value, data.get("endpoints")) for key, value in written.items()
+        }
+        return {**data, **split}
