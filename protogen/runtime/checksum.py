@@ -1,0 +1,207 @@
+"""Checksums of generated codecs: exclusive or, sum, Fletcher and every CRC of 1 to 64 bits.
+
+Each is an immutable value with one method, `compute`, from the covered bytes to an integer:
+
+    >>> hex(Crc(16, poly=0x1021, refin=True, refout=True).compute(b"123456789"))
+    '0x2189'
+"""
+
+import binascii
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, reduce
+from itertools import accumulate
+from operator import xor
+from typing import Protocol
+
+GREATEST_WIDTH = 64
+
+
+class Checksum(Protocol):
+    """A checksum algorithm."""
+
+    @property
+    def width(self) -> int:
+        """Size of the checksum in bits."""
+
+    def compute(self, data: bytes) -> int:
+        """Return the checksum of `data`, 0 .. 2**width - 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Xor8:
+    """The exclusive or of all bytes and `init`."""
+
+    init: int = 0
+
+    @property
+    def width(self) -> int:
+        """Always 8 bits."""
+        return 8
+
+    def compute(self, data: bytes) -> int:
+        """Return the checksum of `data`, 0..255."""
+        return reduce(xor, data, self.init)
+
+
+@dataclass(frozen=True, slots=True)
+class Sum8:
+    """The sum of all bytes and `init` modulo 256; `negated`: what brings that sum to 0."""
+
+    init: int = 0
+    negated: bool = False
+
+    @property
+    def width(self) -> int:
+        """Always 8 bits."""
+        return 8
+
+    def compute(self, data: bytes) -> int:
+        """Return the checksum of `data`, 0..255."""
+        total = self.init + sum(data)
+        return (-total if self.negated else total) & 0xFF
+
+
+@dataclass(frozen=True, slots=True)
+class Fletcher16:
+    """Fletcher's checksum of bytes modulo 255.
+
+    The sum of the bytes is the low byte, the sum of those running sums the high byte.
+    """
+
+    @property
+    def width(self) -> int:
+        """Always 16 bits."""
+        return 16
+
+    def compute(self, data: bytes) -> int:
+        """Return the checksum of `data`; neither of its bytes is ever 255."""
+        return ((sum(accumulate(data)) % 255) << 8) | (sum(data) % 255)
+
+
+@dataclass(frozen=True, slots=True)
+class Crc:
+    """A cyclic redundancy check by its Rocksoft parameters, as the CRC RevEng catalogue gives them.
+
+    `width` is 1..64 bits. `poly` is the polynomial without its top bit, `init` the register before
+    the first byte; both are written most significant bit first, also where `refin` is set.
+    `refin`: bytes enter least significant bit first. `refout`: the register leaves with its bits
+    in reverse order. `xorout` is applied last.
+
+    Raises ValueError when the width is out of range or a parameter has more bits than the width.
+    """
+
+    width: int
+    poly: int
+    init: int = 0
+    refin: bool = False
+    refout: bool = False
+    xorout: int = 0
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.width <= GREATEST_WIDTH:
+            raise ValueError(f"a CRC has 1..{GREATEST_WIDTH} bits, not {self.width}")
+        for name in ("poly", "init", "xorout"):
+            if not 0 <= getattr(self, name) < 1 << self.width:
+                raise ValueError(f"{name} does not fit {self.width} bits")
+
+    def compute(self, data: bytes) -> int:
+        """Return the checksum of `data`, 0 .. 2**width - 1."""
+        register = _reversed_bits(self.init, self.width) if self.refin else self.init
+        register = _engine(self.width, self.poly, self.refin)(data, register)
+        if self.refin != self.refout:
+            register = _reversed_bits(register, self.width)
+        return register ^ self.xorout
+
+
+# An engine takes data and the register before it, and gives the register behind it. The register
+# of a reflected engine (`refin`) is in reverse bit order throughout.
+_Engine = Callable[[bytes, int], int]
+
+
+@cache
+def _engine(width: int, poly: int, refin: bool) -> _Engine:
+    """Return the fastest engine there is for these parameters."""
+    if (width, poly) == (16, 0x1021):
+        return _mirrored(binascii.crc_hqx, width) if refin else binascii.crc_hqx
+    if (width, poly) == (32, 0x04C11DB7):
+        return _zlib_engine if refin else _mirrored(_zlib_engine, width)
+    return _reflected_engine(width, poly) if refin else _plain_engine(width, poly)
+
+
+def _plain_engine(width: int, poly: int) -> _Engine:
+    """Return a table engine for bytes that enter most significant bit first."""
+    # A register of less than 8 bits is kept in the upper bits of one byte, so that the table
+    # is entered in the same way for every width.
+    padding = max(0, 8 - width)
+    top = width + padding - 8
+    mask = (1 << (width + padding)) - 1
+    table = _plain_table(poly << padding, width + padding)
+
+    def advance(data: bytes, register: int) -> int:
+        register <<= padding
+        for byte in data:
+            register = table[(register >> top) ^ byte] ^ ((register << 8) & mask)
+        return register >> padding
+
+    return advance
+
+
+def _plain_table(poly: int, width: int) -> tuple[int, ...]:
+    """Return what each value of the register's top byte adds to it when it is shifted out."""
+    mask = (1 << width) - 1
+
+    def entry(byte: int) -> int:
+        register = byte << (width - 8)
+        for _ in range(8):
+            carry = register >> (width - 1)
+            register = ((register << 1) & mask) ^ (carry * poly)
+        return register
+
+    return tuple(map(entry, range(256)))
+
+
+def _reflected_engine(width: int, poly: int) -> _Engine:
+    """Return a table engine for bytes that enter least significant bit first."""
+    table = _reflected_table(_reversed_bits(poly, width))
+
+    def advance(data: bytes, register: int) -> int:
+        for byte in data:
+            register = table[(register ^ byte) & 0xFF] ^ (register >> 8)
+        return register
+
+    return advance
+
+
+def _reflected_table(reversed_poly: int) -> tuple[int, ...]:
+    """Return what each value of the register's lowest byte adds to it when it is shifted out."""
+
+    def entry(register: int) -> int:
+        for _ in range(8):
+            register = (register >> 1) ^ ((register & 1) * reversed_poly)
+        return register
+
+    return tuple(map(entry, range(256)))
+
+
+def _zlib_engine(data: bytes, register: int) -> int:
+    # zlib inverts the register on its way in and out.
+    return zlib.crc32(data, register ^ 0xFFFFFFFF) ^ 0xFFFFFFFF
+
+
+def _mirrored(engine: _Engine, width: int) -> _Engine:
+    """Return the same polynomial with bytes entering in the other bit order."""
+
+    def advance(data: bytes, register: int) -> int:
+        mirrored = engine(data.translate(_REVERSED_BYTES), _reversed_bits(register, width))
+        return _reversed_bits(mirrored, width)
+
+    return advance
+
+
+def _reversed_bits(value: int, width: int) -> int:
+    return int(f"{value:0{width}b}"[::-1], 2)
+
+
+_REVERSED_BYTES = bytes(_reversed_bits(byte, 8) for byte in range(256))

@@ -1,0 +1,139 @@
+"""What a generated module makes of its declarations: encode, decode, and an encoder that counts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Generic
+
+from protogen.runtime.assembly import encode_frame
+from protogen.runtime.errors import DecodeError, EncodeError
+from protogen.runtime.events import FrameEvent, UnknownEvent
+from protogen.runtime.frame import CounterPart
+from protogen.runtime.lines import encode_line, split_parts
+from protogen.runtime.message import Message
+from protogen.runtime.reading import read_frame
+from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+
+
+class Protocol(Generic[MessageT_co, PartsT_co]):
+    """The codec of a protocol, made of what each endpoint sends."""
+
+    def __init__(
+        self, name: str, *senders: SenderSpec[MessageT_co, PartsT_co], spec_hash: str = ""
+    ) -> None:
+        self.name = name
+        self.spec_hash = spec_hash
+        """Hash of the layout, framing and meaning; both ends can compare it."""
+        self.senders: Mapping[str, SenderSpec[MessageT_co, PartsT_co]] = {
+            item.name: item for item in senders
+        }
+
+    def sender(self, name: str) -> SenderSpec[Any, Any]:
+        """What the endpoint called `name` sends. Raises ValueError if there is none."""
+        found = self.senders.get(name)
+        if found is None:
+            names = " and ".join(self.senders)
+            raise ValueError(f"{name!r} sends nothing in {self.name}; {names} do")
+        return found
+
+    def encode(
+        self,
+        message: Message,
+        sender: str | None = None,
+        strict: bool = True,
+        **parts: int | None,
+    ) -> bytes:
+        """The frame of a message.
+
+        `sender` is needed only where several endpoints send the message in different frames;
+        `parts` gives counters and other values of the frame. Raises EncodeError where a value is
+        missing, out of range or does not fit; with `strict=False` only where it does not fit.
+        """
+        return _encode(self._sender_of(message, sender), message, parts, strict)
+
+    def encode_unknown(self, sender: str, parts: Mapping[str, int], payload: bytes) -> bytes:
+        """The frame of an unknown message; `parts` gives its identity, counters and values.
+
+        Raises EncodeError where something is missing, or the identity belongs to a message.
+        """
+        spec = self.sender(sender)
+        identity, given = split_parts(spec, parts)
+        kin = spec.kin(identity)
+        if kin is not None:
+            problem = f"{identity} is the identity of {kin.messages[0].NAME}"
+            raise EncodeError(spec.layout.identity[0].name, problem)
+        return encode_frame(spec, identity, payload, given, strict=False)
+
+    def encode_line(self, line: Mapping[str, Any]) -> bytes:
+        """The bytes that a JSON line of a decoder stands for. Raises EncodeError."""
+        name = line.get("sender")
+        spec = self.senders.get(str(name))
+        if spec is None:
+            raise EncodeError("sender", f"{name!r} sends nothing; {', '.join(self.senders)} do")
+        return encode_line(spec, line)
+
+    def read(self, frame: bytes, sender: str) -> FrameEvent[MessageT_co, PartsT_co]:
+        """The event of exactly one valid frame. Raises DecodeError."""
+        return read_frame(self.sender(sender), frame)
+
+    def decode(self, frame: bytes, sender: str) -> MessageT_co:
+        """The message of exactly one frame. Raises DecodeError."""
+        event = self.read(frame, sender)
+        if isinstance(event, UnknownEvent):
+            raise DecodeError("unknown", f"no message has the identity of {event.parts}")
+        return event.message
+
+    def _sender_of(self, message: Message, name: str | None) -> SenderSpec[MessageT_co, PartsT_co]:
+        senders = [item for item in self.senders.values() if _sends(item, message)]
+        named = [item for item in senders if name in (item.name, None)]
+        if not named:
+            by = f"{name} does not send" if senders else f"{self.name} has no message"
+            raise EncodeError("message", f"{by} {type(message).__name__}")
+        if any(item.frame != named[0].frame for item in named):
+            names = " or ".join(item.name for item in named)
+            raise EncodeError("sender", f"{type(message).__name__} needs a sender: {names}")
+        return named[0]
+
+
+def _sends(sender: SenderSpec[Any, Any], message: Message) -> bool:
+    return type(message) in sender.messages or type(message) in sender.encode_only
+
+
+def _encode(
+    sender: SenderSpec[Any, Any], message: Message, parts: Mapping[str, int | None], strict: bool
+) -> bytes:
+    payload = message.to_payload(strict)
+    return encode_frame(sender, message.IDENTITY, payload, parts, strict)
+
+
+class Encoder:
+    """Makes the frames of one endpoint, one after another, and advances their counters."""
+
+    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+        self._sender = sender
+        self._counters = {
+            part.name: part for part in sender.layout.values if isinstance(part, CounterPart)
+        }
+        self._next = {
+            name: part.least if part.default is None else part.default
+            for name, part in self._counters.items()
+        }
+
+    def encode_next(self, message: Message, strict: bool = True, **parts: int | None) -> bytes:
+        """The frame of a message, with the next value of each counter that `parts` does not give.
+
+        A given value is used once and does not change the count, nor does an EncodeError.
+        """
+        if not _sends(self._sender, message):
+            problem = f"{self._sender.name} does not send {type(message).__name__}"
+            raise EncodeError("message", problem)
+        counted = [name for name in self._counters if parts.get(name) is None]
+        given = {**parts, **{name: self._next[name] for name in counted}}
+        wire = _encode(self._sender, message, given, strict)
+        for name in counted:
+            self._next[name] = _following(self._counters[name], self._next[name])
+        return wire
+
+
+def _following(part: CounterPart, value: int) -> int:
+    return part.least if value >= part.greatest else value + 1

@@ -1,0 +1,218 @@
+"""A frame's content, read as the frame's parts while it comes in.
+
+The *content* is the bytes of all parts before any stuffing, without the end literal.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from protogen.runtime.constructs import PayloadError
+from protogen.runtime.errors import ByteError, Reason
+from protogen.runtime.frame import (
+    ChecksumPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+)
+from protogen.runtime.layout import Slice, is_optional
+from protogen.runtime.sender import Kin, SenderSpec
+
+_UNLIMITED = sys.maxsize
+
+
+class Rejected(Exception):  # noqa: N818 - it is a verdict, not an error of the program
+    """Bytes are no frame."""
+
+    def __init__(self, reason: Reason, problem: str) -> None:
+        super().__init__(reason, problem)
+        self.reason: Reason = reason
+        self.problem = problem
+
+
+class Content:
+    """Takes content byte by byte and says what is known of the frame."""
+
+    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+        self._sender = sender
+        self._layout = sender.layout
+        self.bytes = bytearray()
+        self.numbers: dict[str, int] = {}
+        """The values of the parts that were read."""
+        self.index = 0
+        """The part that is due."""
+        self.payload_size: int | None = None
+        """The payload's size, as soon as it is known."""
+        self.is_open = False
+        """Whether the payload has begun, and only what follows will tell its size."""
+        self.is_full = False
+        """Whether all parts are there."""
+        self._kin: Kin[Any] | None = None
+        self._is_measuring = False
+        self._limit = _UNLIMITED  # The content has no more bytes than this.
+        self._next = -1  # Where the part that is due ends.
+        self._literal = b""  # What its bytes have to be.
+        self._clear_bits = False  # Whether their most significant bit has to be clear.
+        if not self._layout.identity:
+            self._identify()
+        self._enter()
+
+    def accept(self, byte: int) -> bool:
+        """Take the next byte. True: a part was completed, and more may be known."""
+        index = len(self.bytes)
+        if index >= self._limit:
+            raise self.surplus()
+        self.bytes.append(byte)
+        if self._literal and byte != self._literal[index - self._next]:
+            raise Rejected("value", f"{byte:02X} is not {self._part.name}")
+        if byte > 0x7F and self._clear_bits:
+            raise Rejected("encoding", f"{byte:02X} has its most significant bit set")
+        if index + 1 != self._next:
+            return False
+        self._leave()
+        return True
+
+    def surplus(self) -> Rejected:
+        """What a byte behind the content's last one is."""
+        if self.payload_size is None:
+            return Rejected("size", "no message of this identity has so many bytes")
+        return Rejected(self._announced, f"there are more than {self._limit} bytes, or no end")
+
+    def close(self) -> None:
+        """Take the end of the content. Raises Rejected where the frame can't end here."""
+        if self.payload_size is None:
+            self._close_open()
+        elif not self.is_full:
+            problem = f"the frame ends behind {len(self.bytes)} of {self._limit} bytes"
+            raise Rejected(self._announced, problem)
+
+    # --- part by part -------------------------------------------------------------------------
+
+    @property
+    def _part(self) -> Part:
+        return self._layout.parts[self.index]
+
+    @property
+    def _announced(self) -> Reason:
+        """The reason where there are more or fewer bytes than announced."""
+        return "size" if self._layout.length is None else "length"
+
+    def _enter(self) -> None:
+        """Begin the next part that has bytes."""
+        parts = self._layout.parts
+        while self.index < len(parts) and self._is_absent(parts[self.index]):
+            self.index += 1
+        self._literal = b""
+        self._clear_bits = False
+        self._next = -1
+        if self.index == len(parts):
+            self.is_full = True
+        elif isinstance(self._part, PayloadPart):
+            self._enter_payload()
+        else:
+            self._next = len(self.bytes) + self._part.size
+            self._literal = self._part.value if isinstance(self._part, LiteralPart) else b""
+
+    def _is_absent(self, part: Part) -> bool:
+        return self.payload_size == 0 and (isinstance(part, PayloadPart) or is_optional(part))
+
+    def _leave(self) -> None:
+        """End the part that is due."""
+        if self._is_measuring:
+            self._measure()
+            return
+        part = self._part
+        if isinstance(part, NumberPart) and not isinstance(part, ChecksumPart):
+            self._read(part, bytes(self.bytes[-part.size :]))
+        self.index += 1
+        self._enter()
+
+    def _read(self, part: NumberPart, data: bytes) -> None:
+        try:
+            self.numbers[part.name] = part.number.decode(data)
+        except ByteError as error:
+            raise Rejected(error.reason, f"{part.name}: {error}") from None
+        if part is self._layout.length:
+            self._read_length(self._layout.length)
+        elif self._layout.early_identity and part is self._layout.identity[-1]:
+            self._identify()
+
+    # --- how large the payload is ---------------------------------------------------------------
+
+    def _read_length(self, part: LengthPart) -> None:
+        value = self.numbers[part.name]
+        size = self._layout.counted_payload(part, value)
+        greatest = self._sender.frame.greatest_payload
+        if not part.least <= value <= part.greatest or size is None or size > greatest:
+            raise Rejected("length", f"{part.name} is {value}")
+        self._set_payload(size)
+
+    def _identify(self) -> None:
+        """Find the messages of the identity, and what they say about the size."""
+        self._kin = self._sender.kin(self._sender.identity(self.numbers))
+        if self._kin is not None and self._layout.length is None and self._kin.fixed is not None:
+            self._set_payload(self._kin.fixed)
+
+    def _set_payload(self, size: int) -> None:
+        self.payload_size = size
+        self._limit = self._layout.head_size + size + self._layout.tail_size(size)
+
+    def _enter_payload(self) -> None:
+        if self.payload_size is not None:
+            self._next = len(self.bytes) + self.payload_size
+            self._clear_bits = self._sender.frame.seven_bit
+        elif self._layout.end or self._kin is None:
+            self._open_payload()
+        else:
+            self._is_measuring = True
+            self._clear_bits = self._sender.frame.seven_bit
+            self._measure()
+
+    def _open_payload(self) -> None:
+        self.is_open = True
+        # With parts behind the payload, its last bytes can't be told from theirs yet.
+        self._clear_bits = self._sender.frame.seven_bit and not self._layout.tail
+        if self._kin is not None:
+            tail = self._layout.tail_size(self._kin.greatest)
+            self._limit = self._layout.head_size + self._kin.greatest + tail
+
+    def _measure(self) -> None:
+        """Try to read a message that nothing delimits but itself."""
+        assert self._kin is not None
+        start = bytes(self.bytes[self._layout.head_size :])
+        try:
+            self._set_payload(self._kin.measure(start))
+        except PayloadError as error:
+            if not error.missing:
+                raise Rejected(error.reason, error.problem) from None
+            self._next = len(self.bytes) + error.missing
+            return
+        self._is_measuring = False
+        self.index += 1
+        self._enter()
+
+    # --- the end of an open payload -------------------------------------------------------------
+
+    def _close_open(self) -> None:
+        size = self._layout.payload_size(len(self.bytes)) if self.is_open else None
+        if size is None:
+            raise Rejected("truncated", "the frame ends before all of its parts are there")
+        self.payload_size = size
+        payload, *tail = list(self._layout.slices(size))[self._layout.payload_index :]
+        if self._sender.frame.seven_bit and not self._slice(payload).isascii():
+            raise Rejected("encoding", "a byte of the payload has its most significant bit set")
+        for item in tail:
+            self._read_closed(item)
+
+    def _read_closed(self, item: Slice) -> None:
+        data = self._slice(item)
+        if isinstance(item.part, LiteralPart) and data != item.part.value:
+            raise Rejected("value", f"{data.hex(' ')} is not {item.part.name}")
+        if isinstance(item.part, NumberPart) and not isinstance(item.part, ChecksumPart):
+            self._read(item.part, data)
+
+    def _slice(self, item: Slice) -> bytes:
+        return bytes(self.bytes[item.start : item.end])

@@ -1,0 +1,180 @@
+"""The decoder: bytes in any portions -> events."""
+
+from __future__ import annotations
+
+from typing import Generic
+
+from protogen.runtime.constructs import PayloadError
+from protogen.runtime.errors import Reason
+from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.frame import AfterEnd, Anywhere
+from protogen.runtime.machine import Candidate, Cut, Failure
+from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.starts import starts_of
+
+
+class Decoder(Generic[MessageT_co, PartsT_co]):
+    """Cuts what one endpoint sends into events.
+
+    The raw bytes of all events, joined, are the input; how the input is divided among calls of
+    `feed` changes nothing. At most one greatest frame is kept between calls.
+    """
+
+    def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co]) -> None:
+        self._sender = sender
+        self._starts = starts_of(sender.frame)
+        self._greatest = sender.frame.greatest
+        self._is_anywhere = isinstance(sender.frame.start, Anywhere)
+        self._events: list[Event[MessageT_co, PartsT_co]] = []
+        self._data = bytearray()  # What is not delivered, and a little context in front of it.
+        self._offset = 0  # Of the first of these bytes in the input.
+        # Places in these bytes:
+        self._done = 0  # All in front of it is delivered.
+        self._scan = 0  # No frame starts between `_done` and here.
+        self._pushed = 0  # The candidate has taken all in front of it.
+        self._candidate: Candidate | None = None
+        self._failure: Failure | None = None  # The candidate's, until the next start is known.
+        self._is_fresh = True  # Nothing came in since the start or the last flush.
+
+    @property
+    def pending(self) -> int:
+        """How many bytes were taken that no event covers yet."""
+        return len(self._data) - self._done
+
+    def feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
+        """Take the next bytes of the input; the events that are certain now."""
+        self._data += data
+        self._run(final=False)
+        return self._deliver()
+
+    def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
+        """Take the end of the input, or a silence on the line; all remaining events."""
+        self._run(final=True)
+        events = self._deliver()
+        self._offset += len(self._data)
+        self._data.clear()
+        self._done = self._scan = 0
+        self._is_fresh = True
+        return events
+
+    def _deliver(self) -> list[Event[MessageT_co, PartsT_co]]:
+        """The events so far; what they cover is forgotten."""
+        passed = self._done - self._starts.context
+        if passed > 0:
+            del self._data[:passed]
+            self._offset += passed
+            self._done -= passed
+            self._scan -= passed
+            self._pushed -= passed
+        events, self._events = self._events, []
+        return events
+
+    # --- seek, take, scan again -------------------------------------------------------------------
+
+    def _run(self, final: bool) -> None:
+        goes_on = True
+        while goes_on:
+            if self._failure is not None:
+                goes_on = self._resume(self._failure, final)
+            elif self._candidate is not None:
+                goes_on = self._take(self._candidate, final)
+            else:
+                goes_on = self._seek(final)
+
+    def _seek(self, final: bool) -> bool:
+        """Look for the next possible start; what is in front of it is noise."""
+        start = self._next_start()
+        if start >= 0:
+            self._open(start)
+            return True
+        end = len(self._data)
+        self._scan = end if final else self._starts.undecided(self._data, self._scan)
+        self._noise(self._scan, final)
+        return False
+
+    def _next_start(self) -> int:
+        if self._is_fresh and isinstance(self._sender.frame.start, AfterEnd):
+            return self._scan
+        return self._starts.find(self._data, self._scan, len(self._data) + 1)
+
+    def _open(self, start: int) -> None:
+        self._is_fresh = False
+        if not self._is_anywhere:
+            self._noise(start, complete=True)
+        self._scan = self._pushed = start
+        self._candidate = Candidate(self._sender)
+
+    def _take(self, candidate: Candidate, final: bool) -> bool:
+        """Give the candidate bytes until its verdict."""
+        data = self._data
+        for place in range(self._pushed, len(data)):
+            verdict = candidate.push(data[place])
+            if verdict is not None:
+                return self._judge(verdict)
+        self._pushed = len(data)
+        if not final:
+            return False
+        if self._scan < len(data):
+            return self._judge(candidate.flush())
+        self._candidate = None
+        self._noise(self._scan, complete=True)
+        return False
+
+    def _judge(self, verdict: Cut | Failure) -> bool:
+        self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
+        if self._failure is None:
+            self._give_up(self._done)
+        return True
+
+    def _read(self, cut: Cut) -> Failure | None:
+        """Deliver the frame, unless its payload is not that of its message."""
+        try:
+            message = self._sender.read(cut.numbers, cut.payload)
+        except PayloadError as error:
+            return Failure(cut.size, error.reason, str(error))
+        self._frame(cut, message)
+        return None
+
+    def _resume(self, failure: Failure, final: bool) -> bool:
+        """Go on behind the candidate's first byte, where the next frame may start."""
+        if self._is_anywhere:
+            self._give_up(self._scan + 1)
+            self._noise(self._scan, complete=False)
+            return True
+        low, high = self._scan + 1, self._scan + failure.size
+        start = self._starts.find(self._data, low, high)
+        if start < 0 and not final and self._starts.undecided(self._data, low) < high:
+            return False
+        self._invalid(start if start >= 0 else high, failure.reason, failure.problem)
+        self._give_up(self._done)
+        return True
+
+    def _give_up(self, scan: int) -> None:
+        self._candidate = None
+        self._failure = None
+        self._scan = scan
+
+    # --- events -----------------------------------------------------------------------------------
+
+    def _cover(self, end: int) -> tuple[int, bytes]:
+        """Deliver all up to `end`: where it starts in the input, and its bytes."""
+        offset = self._offset + self._done
+        raw = bytes(self._data[self._done : end])
+        self._done = end
+        return offset, raw
+
+    def _noise(self, end: int, complete: bool) -> None:
+        """Deliver noise up to `end` by greatest frames, and if it is complete the rest as well."""
+        while end - self._done >= self._greatest:
+            self._invalid(self._done + self._greatest, "noise", "")
+        if complete and end > self._done:
+            self._invalid(end, "noise", "")
+
+    def _invalid(self, end: int, reason: Reason, problem: str) -> None:
+        offset, raw = self._cover(end)
+        self._events.append(InvalidEvent(offset, raw, self._sender.name, reason, problem))
+
+    def _frame(self, cut: Cut, message: MessageT_co | None) -> None:
+        self._noise(self._scan, complete=True)
+        offset, raw = self._cover(self._scan + cut.size)
+        self._events.append(frame_event(self._sender, cut, message, raw, offset))

@@ -1,0 +1,138 @@
+"""What a decoder yields: each event covers some bytes of the input.
+
+The raw bytes of all events, joined, are the input.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Generic, Literal
+
+from protogen.runtime.errors import EncodeError, Reason
+from protogen.runtime.lines import encode_line
+from protogen.runtime.machine import Cut
+from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+
+
+@dataclass(frozen=True, slots=True)
+class MessageEvent(Generic[MessageT_co, PartsT_co]):
+    """A valid frame of a known message."""
+
+    kind: ClassVar[Literal["message"]] = "message"
+
+    offset: int
+    """Of the first byte, counted from the start of the input."""
+    raw: bytes
+    """The bytes on the wire."""
+    sender: str
+    """The endpoint whose bytes are decoded."""
+    parts: PartsT_co
+    """The frame's identity, counters and values."""
+    message: MessageT_co
+    payload: bytes = field(repr=False)
+    codec: SenderSpec[Any, Any] = field(repr=False, compare=False)
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return len(self.raw)
+
+    def as_json(self) -> dict[str, Any]:
+        """A line for JSON. It has `raw` where encoding it would give other bytes."""
+        line = _line(self, message=self.message.NAME)
+        line["parts"] = _parts(self.parts)
+        line["fields"] = self.message.to_dict()
+        return _exact(line, self.raw, self.codec)
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownEvent(Generic[PartsT_co]):
+    """A valid frame whose identity belongs to no message."""
+
+    kind: ClassVar[Literal["unknown"]] = "unknown"
+
+    offset: int
+    raw: bytes
+    sender: str
+    parts: PartsT_co
+    payload: bytes
+    codec: SenderSpec[Any, Any] = field(repr=False, compare=False)
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return len(self.raw)
+
+    def as_json(self) -> dict[str, Any]:
+        """A line for JSON. It has `raw` where encoding it would give other bytes."""
+        line = _line(self)
+        line["parts"] = _parts(self.parts)
+        line["payload"] = self.payload.hex()
+        return _exact(line, self.raw, self.codec)
+
+
+@dataclass(frozen=True, slots=True)
+class InvalidEvent:
+    """Bytes that are no frame."""
+
+    kind: ClassVar[Literal["invalid"]] = "invalid"
+
+    offset: int
+    raw: bytes
+    sender: str
+    reason: Reason
+    problem: str = field(default="", compare=False)
+    """The reason in more words."""
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return len(self.raw)
+
+    def as_json(self) -> dict[str, Any]:
+        """A line for JSON, with the reason and the bytes."""
+        line = _line(self)
+        line["reason"] = self.reason
+        line["raw"] = self.raw.hex()
+        return line
+
+
+FrameEvent = MessageEvent[MessageT_co, PartsT_co] | UnknownEvent[PartsT_co]
+Event = MessageEvent[MessageT_co, PartsT_co] | UnknownEvent[PartsT_co] | InvalidEvent
+
+
+def frame_event(
+    sender: SenderSpec[MessageT_co, PartsT_co],
+    cut: Cut,
+    message: MessageT_co | None,
+    raw: bytes,
+    offset: int,
+) -> FrameEvent[MessageT_co, PartsT_co]:
+    """The event of a complete frame; no message: its identity is unknown."""
+    parts = sender.shown(cut.numbers)
+    if message is None:
+        return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
+    return MessageEvent(offset, raw, sender.name, parts, message, cut.payload, sender)
+
+
+def _line(event: Any, **named: str) -> dict[str, Any]:
+    place = {"offset": event.offset, "size": event.size, "event": event.kind}
+    return {**place, **named, "sender": event.sender}
+
+
+def _parts(parts: Any) -> dict[str, int]:
+    return {item.name: getattr(parts, item.name) for item in fields(parts)}
+
+
+def _exact(line: dict[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> dict[str, Any]:
+    if not _gives_back(line, raw, codec):
+        line["raw"] = raw.hex()
+    return line
+
+
+def _gives_back(line: Mapping[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> bool:
+    try:
+        return encode_line(codec, line) == raw
+    except EncodeError:
+        return False

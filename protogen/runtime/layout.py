@@ -1,0 +1,127 @@
+"""Offsets of a frame's parts, added up once for each sender."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.runtime.frame import (
+    AfterEnd,
+    ChecksumPart,
+    FrameSpec,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    Part,
+    PayloadPart,
+    StartLiteral,
+    StartSet,
+    ValuePart,
+)
+
+
+def is_optional(part: Part) -> bool:
+    """Whether the part is absent where the payload is empty."""
+    return isinstance(part, ChecksumPart) and part.when_payload
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """Where a part lies in a frame's content: its bytes before stuffing, without the end."""
+
+    part: Part
+    start: int
+    end: int
+
+
+class Layout:
+    """A frame's parts and where they lie."""
+
+    def __init__(self, spec: FrameSpec) -> None:
+        self.spec = spec
+        self.parts = _without_end(spec)
+        """All parts but the end literals."""
+        self.payload_index = next(
+            index for index, part in enumerate(self.parts) if isinstance(part, PayloadPart)
+        )
+        self.head = self.parts[: self.payload_index]
+        self.tail = self.parts[self.payload_index + 1 :]
+        self.head_size = sum(part.size for part in self.head)
+        self.length = next((part for part in self.head if isinstance(part, LengthPart)), None)
+        self.identity = tuple(part for part in self.parts if isinstance(part, IdentityPart))
+        self.early_identity = bool(self.identity) and self.identity[-1] in self.head
+        """Whether there is an identity, and all of it in front of the payload."""
+        self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
+        self.shown = tuple(
+            part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
+        )
+        """The names of the parts that events show."""
+        self.checksums = tuple(part for part in self.parts if isinstance(part, ChecksumPart))
+        self.has_wire_checksum = any(part.over_wire for part in self.checksums)
+        self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
+        self.end = b"" if spec.end is None else spec.end.value
+        self.start_bytes = self._start_bytes()
+        """Bytes that complete a start. None where start and end are the same literal."""
+        self.empty_frame = self._empty_frame()
+        """A start and an end with nothing between them, which is never a frame."""
+        self.empty_size = len(self.empty_frame)
+        self.stuffed = tuple(
+            index for index, part in enumerate(self.parts) if part.name in spec.stuffed
+        )
+
+    def _start_bytes(self) -> frozenset[int]:
+        start = self.spec.start
+        if isinstance(start, StartSet):
+            return frozenset(range(start.least, start.greatest + 1))
+        return frozenset(self.start[-1:]) if self.start != self.end else frozenset()
+
+    def _empty_frame(self) -> bytes:
+        if isinstance(self.spec.start, AfterEnd):
+            return self.end
+        return self.start + self.end if self.start == self.end else b""
+
+    def tail_size(self, payload: int) -> int:
+        """Bytes behind a payload of that size."""
+        return sum(part.size for part in self.tail if payload or not is_optional(part))
+
+    def slices(self, payload: int) -> Iterator[Slice]:
+        """The parts that a frame with a payload of that size has."""
+        start = 0
+        for part in self.parts:
+            if is_optional(part) and not payload:
+                continue
+            end = start + (payload if isinstance(part, PayloadPart) else part.size)
+            yield Slice(part, start, end)
+            start = end
+
+    def payload_size(self, content: int) -> int | None:
+        """The payload's size where the content has that size; None if there is none."""
+        extra = content - self.head_size
+        if extra == self.tail_size(0):
+            return 0
+        size = extra - self.tail_size(1)
+        return size if size > 0 else None
+
+    def counted(self, part: LengthPart, payload: int) -> int:
+        """The value of a length part for a payload of that size."""
+        return payload + sum(
+            other.size
+            for other in self.spec.parts
+            if other.name in part.counts and (payload or not is_optional(other))
+        )
+
+    def counted_payload(self, part: LengthPart, value: int) -> int | None:
+        """The payload's size for a value of a length part; None if there is none."""
+        if value == self.counted(part, 0):
+            return 0
+        size = value - (self.counted(part, 1) - 1)
+        return size if size > 0 else None
+
+
+def _without_end(spec: FrameSpec) -> tuple[Part, ...]:
+    """The parts without the literals at the end that make up the end."""
+    left = 0 if spec.end is None else len(spec.end.value)
+    parts = list(spec.parts)
+    while left > 0 and isinstance(parts[-1], LiteralPart):
+        left -= parts.pop().size
+    return tuple(parts)

@@ -1,0 +1,69 @@
+"""Frames from the lines that events give as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from protogen.runtime.assembly import encode_frame
+from protogen.runtime.errors import EncodeError
+from protogen.runtime.sender import Identity, SenderSpec
+
+
+def encode_line(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> bytes:
+    """The bytes that one line of decoder output stands for.
+
+    `raw`, where the line has it, is taken as it is. Raises EncodeError with the path of what is
+    missing or wrong in the line.
+    """
+    if "raw" in line:
+        return _bytes(line, "raw")
+    event = line.get("event", "message")
+    if event == "message":
+        return _encode_message(sender, line)
+    if event == "unknown":
+        identity, given = split_parts(sender, _mapping(line, "parts"))
+        return encode_frame(sender, identity, _bytes(line, "payload"), given, strict=False)
+    raise EncodeError("event", f"{event!r} without raw bytes can't be sent")
+
+
+def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> bytes:
+    name = line.get("message")
+    message = sender.named(str(name))
+    if message is None:
+        raise EncodeError("message", f"{sender.name} sends no message called {name!r}")
+    try:
+        record = message.from_dict(_mapping(line, "fields"))
+        payload = record.to_payload(strict=False)
+    except EncodeError as error:
+        raise error.inside("fields") from None
+    parts = _mapping(line, "parts") if "parts" in line else {}
+    shown = {part.name for part in sender.layout.identity}
+    given = {name: value for name, value in parts.items() if name not in shown}
+    return encode_frame(sender, message.IDENTITY, payload, given, strict=False)
+
+
+def split_parts(
+    sender: SenderSpec[Any, Any], parts: Mapping[str, Any]
+) -> tuple[Identity, dict[str, Any]]:
+    """The identity among the parts of an unknown frame, and the other parts."""
+    names = [part.name for part in sender.layout.identity]
+    for name in names:
+        if not isinstance(parts.get(name), int):
+            raise EncodeError(name, "an unknown frame needs the number of each identity part")
+    others = {name: value for name, value in parts.items() if name not in names}
+    return tuple(parts[name] for name in names), others
+
+
+def _mapping(line: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    found = line.get(key)
+    if not isinstance(found, Mapping):
+        raise EncodeError(key, f"must be a mapping, not {found!r}")
+    return found
+
+
+def _bytes(line: Mapping[str, Any], key: str) -> bytes:
+    try:
+        return bytes.fromhex(line[key])
+    except (KeyError, TypeError, ValueError):
+        raise EncodeError(key, "must be hexadecimal digits") from None

@@ -1,0 +1,305 @@
+"""One possible frame, taken byte by byte until it is complete or proves to be none.
+
+A `Candidate` starts where a frame may start. It decides as early as the bytes allow, and looks at
+nothing but them, so that it does not matter how they arrive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from protogen.runtime.content import Content, Rejected
+from protogen.runtime.errors import Reason
+from protogen.runtime.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
+from protogen.runtime.layout import Slice
+from protogen.runtime.sender import SenderSpec
+from protogen.runtime.transparency import TransparencyError, Unstuffer
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A complete frame whose length and checksums are right: the values of parts, the payload."""
+
+    size: int
+    numbers: dict[str, int]
+    payload: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The first `size` bytes of a candidate, which are no frame."""
+
+    size: int
+    reason: Reason
+    problem: str
+
+
+class Candidate:
+    """A possible frame of one sender. Of no use after its verdict."""
+
+    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+        self._spec = sender.frame
+        self._layout = sender.layout
+        self._wire = bytearray()
+        self._behind = 0  # How many of these bytes, at the end, are not the candidate's own.
+        self._content = Content(sender)
+        self._cut: Cut | None = None
+        # A delimiter is looked for: bytes that may begin it are held back until that is clear.
+        self._delimiter = self._protected_end()
+        self._held = b""
+        self._end_left = 0  # Bytes still to come of an end that stands in a known place.
+        self._ends_at_start = False  # The next start ends the frame, and nothing else does.
+        self._open_from = 0  # Where on the wire the payload of such a frame begins.
+        # The stuffed region: not begun, begun (with an unstuffer), or finished.
+        self._region_begun = False
+        self._unstuffer: Unstuffer | None = None
+        self._empty_left = 0  # Wire bytes still to come of a region that holds nothing.
+        self._passed = 0  # Wire bytes that were taken as content or stuffing.
+        self._wire_ends: list[int] = []  # As many as were passed, for each byte of content.
+        self._cross()
+
+    @property
+    def content_size(self) -> int:
+        """Bytes of content so far."""
+        return len(self._content.bytes)
+
+    def push(self, byte: int) -> Cut | Failure | None:
+        """Take the next byte. None: the candidate needs more."""
+        self._wire.append(byte)
+        try:
+            self._take(byte)
+            if self._cut is None and len(self._wire) >= self._spec.greatest:
+                raise Rejected("length", f"no frame has more than {self._spec.greatest} bytes")
+        except Rejected as why:
+            return self._failure(why)
+        return self._cut
+
+    def flush(self) -> Cut | Failure:
+        """Take the end of the input."""
+        try:
+            self._close_at_flush()
+        except Rejected as why:
+            return self._failure(why)
+        assert self._cut is not None
+        return self._cut
+
+    def _failure(self, why: Rejected) -> Failure:
+        return Failure(len(self._wire) - self._behind, why.reason, why.problem)
+
+    # --- where the frame ends -------------------------------------------------------------------
+
+    def _protected_end(self) -> bytes:
+        end = self._spec.end
+        return end.value if end is not None and end.protected else b""
+
+    def _take(self, byte: int) -> None:
+        start = self._start_inside() if byte in self._layout.start_bytes else 0
+        if start:
+            self._meet_start(start)
+        elif len(self._wire) == self._layout.empty_size and self._is_empty():
+            self._reject_empty()
+        elif self._delimiter and len(self._wire) > len(self._layout.start):
+            self._search(byte)
+        else:
+            self._pass(byte)
+
+    def _start_inside(self) -> int:
+        """The size of a start that the wire ends with and that ends this candidate, or 0."""
+        start = self._spec.start
+        assert isinstance(start, StartLiteral | StartSet)
+        size = len(self._layout.start) or 1
+        before = len(self._wire) - size
+        if before <= 0 or not self._wire.endswith(self._layout.start):
+            return 0
+        ends_it = start.protected or (self._ends_at_start and before >= self._open_from)
+        return size if ends_it else 0
+
+    def _meet_start(self, size: int) -> None:
+        self._behind = size
+        if not self._ends_at_start or len(self._wire) - size < self._open_from:
+            raise Rejected("truncated", "another frame starts inside")
+        self._held = b""
+        self._close()
+
+    def _is_empty(self) -> bool:
+        return self._wire == self._layout.empty_frame
+
+    def _reject_empty(self) -> None:
+        # Where the same literal starts and ends a frame, this end may be the next frame's start.
+        if not isinstance(self._spec.start, AfterEnd):
+            self._behind = len(self._layout.end)
+        raise Rejected("noise", "there is nothing in front of the end")
+
+    def _search(self, byte: int) -> None:
+        """Look for the delimiter; let pass what can't begin it."""
+        self._held += bytes((byte,))
+        if self._held == self._delimiter:
+            self._held = b""
+            self._close()
+            return
+        while not self._delimiter.startswith(self._held):
+            first, self._held = self._held[0], self._held[1:]
+            self._pass(first)
+
+    def _match_end(self, byte: int) -> None:
+        if byte != self._layout.end[-self._end_left]:
+            raise self._content.surplus()
+        self._end_left -= 1
+        if not self._end_left:
+            self._complete()
+
+    def _close_at_flush(self) -> None:
+        if not self._ends_at_start:
+            raise Rejected("truncated", "the input ends inside the frame")
+        held, self._held = self._held, b""
+        for byte in held:
+            self._pass(byte)
+        self._close()
+
+    def _close(self) -> None:
+        """End the frame here, whatever is known of its size."""
+        self._finish_region()
+        self._content.close()
+        self._complete()
+
+    # --- wire bytes, one after another ------------------------------------------------------------
+
+    def _pass(self, byte: int) -> None:
+        """Take a byte that begins no delimiter."""
+        if self._end_left:
+            self._match_end(byte)
+            return
+        self._passed += 1
+        if self._unstuffer is not None:
+            self._unstuff(self._unstuffer, byte)
+        elif self._content.is_full:
+            raise self._content.surplus()
+        else:
+            self._accept(byte)
+
+    def _unstuff(self, unstuffer: Unstuffer, byte: int) -> None:
+        try:
+            released = unstuffer.push(byte)
+        except TransparencyError as error:
+            raise Rejected(error.reason, str(error)) from None
+        if self._empty_left:
+            self._empty_left -= 1
+            self._cross()
+        elif self._content.is_full:
+            raise self._content.surplus()
+        for value in released:
+            if self._unstuffer is None:
+                raise self._content.surplus()
+            self._accept(value)
+
+    def _accept(self, value: int) -> None:
+        if self._layout.has_wire_checksum:
+            self._wire_ends.append(self._passed)
+        if self._content.accept(value):
+            self._cross()
+
+    def _cross(self) -> None:
+        """Do what is due between two parts."""
+        if self._layout.stuffed:
+            self._cross_region()
+        if self._content.is_full and not self._empty_left:
+            self._meet_full()
+        elif self._content.is_open and not self._delimiter:
+            self._open()
+
+    def _open(self) -> None:
+        """From now on only a delimiter can tell where the frame ends."""
+        if isinstance(self._spec.start, Anywhere):
+            raise Rejected("size", "the identity is unknown, and nothing else gives a size")
+        self._delimiter = self._layout.end
+        if not self._delimiter and not self._ends_at_start:
+            self._ends_at_start = True
+            self._open_from = len(self._wire)
+            self._delimiter = self._layout.start
+
+    def _meet_full(self) -> None:
+        if self._delimiter:
+            return
+        if self._layout.end:
+            self._end_left = len(self._layout.end)
+        else:
+            self._complete()
+
+    # --- the stuffed region -----------------------------------------------------------------------
+
+    def _cross_region(self) -> None:
+        first, last = self._layout.stuffed[0], self._layout.stuffed[-1]
+        if not self._region_begun and self._content.index >= first:
+            self._begin_region()
+        if self._unstuffer is not None and self._content.index > last and not self._empty_left:
+            ends_at_delimiter = self._content.is_full and self._delimiter
+            if not ends_at_delimiter:
+                self._finish_region(surplus=True)
+
+    def _begin_region(self) -> None:
+        transparency = self._spec.transparency
+        assert transparency is not None
+        self._region_begun = True
+        self._unstuffer = transparency.decoder()
+        if self._content.index > self._layout.stuffed[-1]:
+            self._empty_left = len(transparency.encode(b""))
+
+    def _finish_region(self, surplus: bool = False) -> None:
+        """End the region. What was held back until now is content, or a `surplus` of it."""
+        unstuffer, self._unstuffer = self._unstuffer, None
+        if unstuffer is None:
+            return
+        try:
+            released = unstuffer.finish()
+        except TransparencyError as error:
+            raise Rejected(error.reason, str(error)) from None
+        if released and surplus:
+            raise self._content.surplus()
+        for value in released:
+            self._accept(value)
+
+    # --- the complete frame -----------------------------------------------------------------------
+
+    def _complete(self) -> None:
+        content = self._content
+        assert content.payload_size is not None
+        slices = {item.part.name: item for item in self._layout.slices(content.payload_size)}
+        for part in self._layout.checksums:
+            if part.name in slices:
+                self._check(part, slices)
+        start = self._layout.head_size
+        payload = bytes(content.bytes[start : start + content.payload_size])
+        self._cut = Cut(len(self._wire) - self._behind, content.numbers, payload)
+
+    def _check(self, part: ChecksumPart, slices: dict[str, Slice]) -> None:
+        data = self._wire if part.over_wire else self._content.bytes
+        covered = bytearray()
+        for name in part.covers:
+            if name in slices:
+                start, end = self._span(slices[name], part.over_wire)
+                covered += data[start:end]
+        due = part.number.encode(part.algorithm.compute(bytes(covered)))
+        found = self._content.bytes[slices[part.name].start : slices[part.name].end]
+        if found != due:
+            raise Rejected("checksum", f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}")
+
+    def _span(self, item: Slice, over_wire: bool) -> tuple[int, int]:
+        """Where a part lies in the content, or on the wire."""
+        if not over_wire or item.start == item.end:
+            return item.start, item.end
+        start = self._wire_ends[item.start - 1] if item.start else 0
+        return start, self._wire_ends[item.end - 1]
+
+
+def verdict_on(sender: SenderSpec[Any, Any], data: bytes) -> tuple[Cut | Failure, int]:
+    """The verdict on a candidate that is the whole input, and the offset of the byte that gave it.
+
+    The end of the input gives it where no byte does.
+    """
+    candidate = Candidate(sender)
+    for offset, byte in enumerate(data):
+        verdict = candidate.push(byte)
+        if verdict is not None:
+            return verdict, offset
+    return candidate.flush(), len(data)

@@ -1,0 +1,72 @@
+"""Integers of 1 to 64 bits as bytes on the wire."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from protogen.runtime.errors import ByteError
+
+ByteOrder = Literal["little", "big"]
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An integer of `bits` bits in as few whole bytes as hold it.
+
+    A byte carries 8 bits, or with `seven_bit` 7 bits below a clear most significant bit. The bits
+    above `bits` are zero, also for signed integers, which are two's complement in `bits` bits.
+    """
+
+    bits: int
+    signed: bool = False
+    order: ByteOrder = "little"
+    seven_bit: bool = False
+    size: int = field(init=False, repr=False)
+    """Bytes on the wire."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "size", -(-self.bits // (7 if self.seven_bit else 8)))
+
+    @property
+    def least(self) -> int:
+        """The least value that the bits can hold."""
+        return -(1 << (self.bits - 1)) if self.signed else 0
+
+    @property
+    def greatest(self) -> int:
+        """The greatest value that the bits can hold."""
+        return (1 << (self.bits - self.signed)) - 1
+
+    def encode(self, value: int) -> bytes:
+        """The bytes for `value`. Raises ValueError if the bits can't hold it."""
+        if not self.least <= value <= self.greatest:
+            raise ValueError(f"{value} is not in {self.least}..{self.greatest}")
+        raw = value & ((1 << self.bits) - 1)
+        if self.seven_bit:
+            groups = bytes((raw >> shift) & 0x7F for shift in range(0, 7 * self.size, 7))
+            return groups if self.order == "little" else groups[::-1]
+        return raw.to_bytes(self.size, self.order)
+
+    def decode(self, data: bytes) -> int:
+        """The value of `size` bytes. Raises ByteError where no value has these bytes."""
+        if self.seven_bit:
+            raw = _join_groups(data if self.order == "big" else reversed(data))
+        else:
+            raw = int.from_bytes(data, self.order)
+        if raw >> self.bits:
+            raise ByteError("value", f"the bits above the lowest {self.bits} have to be zero")
+        if self.signed and raw >> (self.bits - 1):
+            raw -= 1 << self.bits
+        return raw
+
+
+def _join_groups(groups: Iterable[int]) -> int:
+    """The integer of 7-bit groups, most significant first."""
+    raw = 0
+    for group in groups:
+        if group > 0x7F:
+            raise ByteError("encoding", f"{group:02X} has its most significant bit set")
+        raw = raw << 7 | group
+    return raw

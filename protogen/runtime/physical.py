@@ -1,0 +1,130 @@
+"""Properties of generated dataclasses that show a raw value in another way.
+
+Each stands in a class body beside the field that holds the raw value:
+
+    steer: int
+    steer_deg = Physical("steer")       # reads and writes `steer` in degrees
+    mode = BitRange("control", 6, 7)    # reads and writes two bits of `control`
+"""
+
+from __future__ import annotations
+
+from typing import Any, Generic, Self, TypeVar, cast, overload
+
+from protogen.runtime.records import ArrayRule
+from protogen.runtime.rules import FloatRule, IntegerRule
+
+EnumT = TypeVar("EnumT", bound=int)
+ValueT = TypeVar("ValueT")
+
+
+class _View(Generic[ValueT]):
+    """A property that reads and writes another attribute."""
+
+    def __init__(self, field: str) -> None:
+        self._field = field
+
+    @overload
+    def __get__(self, record: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, record: object, owner: type) -> ValueT: ...
+    def __get__(self, record: object | None, owner: type) -> Self | ValueT:
+        return self if record is None else self._read(record)
+
+    def __set__(self, record: object, value: ValueT) -> None:
+        setattr(record, self._field, self._raw(record, value))
+
+    def _read(self, record: object) -> ValueT:
+        raise NotImplementedError
+
+    def _raw(self, record: object, value: ValueT) -> Any:
+        raise NotImplementedError
+
+
+class _PhysicalView(_View[ValueT]):
+    """A property that follows the field's rule."""
+
+    _rule: IntegerRule | FloatRule
+
+    def __set_name__(self, owner: Any, name: str) -> None:
+        rule = dict(owner.RULES)[self._field]
+        self._rule = cast(Any, rule.element if isinstance(rule, ArrayRule) else rule)
+
+    def _show(self, raw: Any) -> float | None:
+        value = self._rule.physical(raw)
+        return None if value is None else float(value)
+
+
+class Physical(_PhysicalView[float]):
+    """The field's physical value. Writing takes the nearest raw value, ties to even."""
+
+    def _read(self, record: object) -> float:
+        raw = getattr(record, self._field)
+        return float(raw * self._rule.scale + self._rule.offset)
+
+    def _raw(self, record: object, value: float) -> Any:
+        return self._rule.nearest(value)
+
+
+class PhysicalOrNone(_PhysicalView[float | None]):
+    """The same for a field with special values: None while there is no reading."""
+
+    def _read(self, record: object) -> float | None:
+        return self._show(getattr(record, self._field))
+
+    def _raw(self, record: object, value: float | None) -> Any:
+        return self._rule.nearest(value)  # type: ignore[arg-type]
+
+
+class PhysicalList(_PhysicalView[list[float]]):
+    """The physical values of an array's elements."""
+
+    def _read(self, record: object) -> list[float]:
+        scale, offset = self._rule.scale, self._rule.offset
+        return [float(raw * scale + offset) for raw in getattr(record, self._field)]
+
+    def _raw(self, record: object, value: list[float]) -> Any:
+        return [self._rule.nearest(element) for element in value]
+
+
+class PhysicalListOrNone(_PhysicalView[list[float | None]]):
+    """The physical values of an array's elements, None for those without a reading."""
+
+    def _read(self, record: object) -> list[float | None]:
+        return [self._show(raw) for raw in getattr(record, self._field)]
+
+    def _raw(self, record: object, value: list[float | None]) -> Any:
+        return [self._rule.nearest(element) for element in value]  # type: ignore[arg-type]
+
+
+class BitRange(_View[int]):
+    """The bits `low` to `high` of an integer field, both included."""
+
+    def __init__(self, field: str, low: int, high: int) -> None:
+        super().__init__(field)
+        self._low = low
+        self._greatest = (1 << (high - low + 1)) - 1
+
+    def _read(self, record: object) -> int:
+        return (int(getattr(record, self._field)) >> self._low) & self._greatest
+
+    def _raw(self, record: object, value: int) -> int:
+        if not 0 <= value <= self._greatest:
+            raise ValueError(f"{int(value)} is not in 0..{self._greatest}")
+        others = int(getattr(record, self._field)) & ~(self._greatest << self._low)
+        return others | int(value) << self._low
+
+
+class EnumRange(BitRange, Generic[EnumT]):
+    """The bits `low` to `high` of an integer field, whose values have names."""
+
+    def __init__(self, field: str, low: int, high: int, named: type[EnumT]) -> None:
+        super().__init__(field, low, high)
+        self._named = named
+
+    @overload
+    def __get__(self, record: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, record: object, owner: type) -> EnumT: ...
+    def __get__(self, record: object | None, owner: type) -> Self | EnumT:
+        return self if record is None else self._named(self._read(record))

@@ -1,0 +1,55 @@
+"""Exactly one frame, as bytes."""
+
+from __future__ import annotations
+
+from protogen.runtime.constructs import PayloadError
+from protogen.runtime.errors import DecodeError
+from protogen.runtime.events import FrameEvent, frame_event
+from protogen.runtime.frame import StartLiteral, StartSet
+from protogen.runtime.layout import Layout
+from protogen.runtime.machine import Candidate, Cut, Failure, verdict_on
+from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+
+
+def read_frame(
+    sender: SenderSpec[MessageT_co, PartsT_co], data: bytes
+) -> FrameEvent[MessageT_co, PartsT_co]:
+    """The event of the frame that `data` is. Raises DecodeError, at the byte that proves it."""
+    if not may_start(sender.layout, data):
+        raise DecodeError("noise", "no frame starts so")
+    cut = _cut(sender, data)
+    try:
+        message = sender.read(cut.numbers, cut.payload)
+    except PayloadError as error:
+        offset = _wire_offset(sender, data, error.offset)
+        raise DecodeError(error.reason, error.problem, offset=offset, path=error.path) from None
+    return frame_event(sender, cut, message, data, 0)
+
+
+def may_start(layout: Layout, data: bytes) -> bool:
+    """Whether the first bytes of a frame can be these."""
+    start = layout.spec.start
+    if isinstance(start, StartLiteral):
+        return data.startswith(start.value)
+    return not isinstance(start, StartSet) or (data != b"" and data[0] in layout.start_bytes)
+
+
+def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes) -> Cut:
+    """The only frame in `data`."""
+    verdict, offset = verdict_on(sender, data)
+    if isinstance(verdict, Failure):
+        raise DecodeError(verdict.reason, verdict.problem, offset=offset)
+    if verdict.size < len(data):
+        problem = f"the frame has only {verdict.size} of these {len(data)} bytes"
+        raise DecodeError("size", problem, offset=verdict.size)
+    return verdict
+
+
+def _wire_offset(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, offset: int) -> int:
+    """Where a byte of the payload lies in the frame, stuffing included."""
+    candidate = Candidate(sender)
+    for place, byte in enumerate(data):
+        candidate.push(byte)
+        if candidate.content_size > sender.layout.head_size + offset:
+            return place
+    return len(data)

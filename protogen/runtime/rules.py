@@ -1,0 +1,377 @@
+"""Rules: what the values of a field mean, which of them can be sent, and how JSON shows them.
+
+A rule stands between the attribute of a message and the value that its `FORMAT` builds and parses:
+`FORMAT` knows bytes, rules know values. Strict encoding refuses what `violations` calls forbidden;
+with `strict=False` only what does not fit the wire is refused.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import ChainMap
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, Literal
+
+from protogen.runtime.enums import Flags, OpenEnum
+from protogen.runtime.errors import EncodeError, join_path
+
+Scope = ChainMap[str, Any]
+"""Raw values of the fields in front, of this struct and of those around it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A value that the schema does not foresee.
+
+    `forbidden`: strict encoding refuses it. Otherwise it has no name in the schema, but it may be
+    sent.
+    """
+
+    path: str
+    problem: str
+    forbidden: bool = True
+
+    def inside(self, outer: str) -> Violation:
+        """The same violation as seen by what holds the field."""
+        return replace(self, path=join_path(outer, self.path))
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.problem}" if self.path else self.problem
+
+
+class Rule:
+    """What all rules can do. `scope` holds the raw values of the fields in front."""
+
+    __slots__ = ()
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> Any:
+        """The value that FORMAT builds. Raises EncodeError."""
+        raise NotImplementedError
+
+    def from_wire(self, raw: Any, scope: Scope) -> Any:
+        """The attribute's value for what FORMAT parsed."""
+        return raw
+
+    def violations(self, value: Any, scope: Scope) -> list[Violation]:
+        """What the schema does not foresee in a value that fits the wire."""
+        return []
+
+    def to_json(self, value: Any, scope: Scope) -> Any:
+        """The value as JSON shows it."""
+        return value
+
+    def from_json(self, data: Any, scope: Scope) -> Any:
+        """The value of what JSON shows. Raises EncodeError where it is of another kind."""
+        return data
+
+
+def refuse(violations: list[Violation]) -> None:
+    """Raise EncodeError for the first forbidden value."""
+    for violation in violations:
+        if violation.forbidden:
+            raise EncodeError(violation.path, violation.problem)
+
+
+# --- numbers ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class IntegerRule(Rule):
+    """An integer of `bits` bits.
+
+    `named` is the enum or flags class of its values. `least` and `greatest` are the range that the
+    schema gives; a `special` value may be outside of it. The physical value is
+    raw x scale + offset, in `unit`.
+    """
+
+    bits: int
+    signed: bool = False
+    named: type[OpenEnum] | type[Flags] | None = None
+    closed: bool = False
+    least: int | None = None
+    greatest: int | None = None
+    const: int | None = None
+    special: Mapping[str, int] = field(default_factory=dict)
+    scale: Fraction = Fraction(1)
+    offset: Fraction = Fraction(0)
+    unit: str | None = None
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> int:
+        """The raw value."""
+        if not isinstance(value, int) or isinstance(value, bool):
+            raise EncodeError("", f"must be an integer, not {value!r}")
+        low = -(1 << (self.bits - 1)) if self.signed else 0
+        high = (1 << (self.bits - self.signed)) - 1
+        if not low <= value <= high:
+            raise EncodeError("", self._out_of_range(value, low, high))
+        if strict:
+            refuse(self.violations(value, scope))
+        return int(value)
+
+    def from_wire(self, raw: int, scope: Scope) -> int:
+        """The raw value, as a member of its enum where it has one."""
+        return raw if self.named is None else self.named(raw)
+
+    def violations(self, value: int, scope: Scope) -> list[Violation]:
+        """A constant or range that does not hold; a value or bits without a name."""
+        if self.const is not None and value != self.const:
+            return [Violation("", f"must be {self.const}, not {int(value)}")]
+        if value in self.special.values():
+            return []
+        if not self._in_range(value):
+            return [Violation("", self._out_of_range(value, self.least, self.greatest))]
+        return self._unnamed(value)
+
+    def to_json(self, value: int, scope: Scope) -> int:
+        """The raw value."""
+        return int(value)
+
+    def from_json(self, data: Any, scope: Scope) -> int:
+        """A raw value, the name of one, or a list of flags' names."""
+        if isinstance(data, str):
+            return self._called(data)
+        if isinstance(data, list) and self._is_flags():
+            flags = 0
+            for name in data:
+                flags |= self._called(str(name))
+            return self.from_wire(flags, scope)
+        if not isinstance(data, int) or isinstance(data, bool):
+            raise EncodeError("", f"must be an integer, not {data!r}")
+        return self.from_wire(data, scope)
+
+    def physical(self, raw: int) -> Fraction | None:
+        """The exact physical value in `unit`; None for a special value."""
+        if raw in self.special.values():
+            return None
+        return raw * self.scale + self.offset
+
+    def nearest(self, physical: float | Fraction | None) -> int:
+        """The raw value nearest to a physical value, ties to even. Raises ValueError.
+
+        None stands for the special value, where there is exactly one.
+        """
+        if physical is None:
+            return self._only_special()
+        return round((_exact(physical) - self.offset) / self.scale)
+
+    def _only_special(self) -> int:
+        if len(self.special) != 1:
+            names = ", ".join(self.special) or "none"
+            raise ValueError(f"None stands for the only special value, but there are: {names}")
+        return next(iter(self.special.values()))
+
+    def _is_flags(self) -> bool:
+        return self.named is not None and issubclass(self.named, Flags)
+
+    def _in_range(self, value: int) -> bool:
+        above = self.least is None or self.least <= value
+        return above and (self.greatest is None or value <= self.greatest)
+
+    def _out_of_range(self, value: int, least: int | None, greatest: int | None) -> str:
+        unit = f" ({self.unit})" if self.unit and self.scale == 1 and not self.offset else ""
+        return f"{int(value)} is not in {_bounds(least, greatest)}{unit}"
+
+    def _unnamed(self, value: int) -> list[Violation]:
+        if self.named is None:
+            return []
+        member = self.named(value)
+        if isinstance(member, Flags):
+            bits = member.unknown
+            return [Violation("", f"bits {bits:#x} have no name", False)] if bits else []
+        if member.is_known:
+            return []
+        allowed = ", ".join(f"{known.name} = {known.value}" for known in self.named)
+        problem = f"{int(value)} has no name; there are {allowed}"
+        return [Violation("", problem, self.closed)]
+
+    def _called(self, name: str) -> int:
+        if name in self.special:
+            return self.special[name]
+        members: Mapping[str, int] = {} if self.named is None else self.named.__members__
+        if name.upper() not in members:
+            names = ", ".join([*map(str.lower, members), *self.special])
+            raise EncodeError("", f"{name!r} is no name of a value here; there are: {names}")
+        return members[name.upper()]
+
+
+@dataclass(frozen=True, slots=True)
+class FloatRule(Rule):
+    """An IEEE 754 number of 32 or 64 bits; `least` and `greatest` as for integers.
+
+    In JSON, which has no numbers for them, not-a-number and the infinities are the texts `nan`,
+    `inf` and `-inf`.
+    """
+
+    bits: Literal[32, 64]
+    least: Fraction | None = None
+    greatest: Fraction | None = None
+    const: float | None = None
+    scale: Fraction = Fraction(1)
+    offset: Fraction = Fraction(0)
+    unit: str | None = None
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> float:
+        """The number, if it is not too large for its bits."""
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            raise EncodeError("", f"must be a number, not {value!r}")
+        if math.isfinite(value) and abs(value) > _GREATEST_FLOAT[self.bits]:
+            raise EncodeError("", f"{value} is too large for {self.bits} bits")
+        if strict:
+            refuse(self.violations(value, scope))
+        return float(value)
+
+    def violations(self, value: float, scope: Scope) -> list[Violation]:
+        """A constant or range that does not hold."""
+        if self.const is not None and value != self.const:
+            return [Violation("", f"must be {self.const}, not {value}")]
+        if self._in_range(value):
+            return []
+        return [Violation("", f"{value} is not in {_bounds(self.least, self.greatest)}")]
+
+    def to_json(self, value: float, scope: Scope) -> float | str:
+        """The number, or a text for one that JSON does not have."""
+        return float(value) if math.isfinite(value) else str(float(value))
+
+    def from_json(self, data: Any, scope: Scope) -> float:
+        """A number, or the text of one that JSON does not have."""
+        if data in ("nan", "inf", "-inf"):
+            return float(data)
+        if not isinstance(data, int | float) or isinstance(data, bool):
+            raise EncodeError("", f"must be a number, nan, inf or -inf, not {data!r}")
+        return float(data)
+
+    def physical(self, raw: float) -> float:
+        """The physical value in `unit`."""
+        return float(raw * self.scale + self.offset)
+
+    def nearest(self, physical: float | Fraction) -> float:
+        """The raw value for a physical value. Raises ValueError if it is not finite."""
+        return float((_exact(physical) - self.offset) / self.scale)
+
+    def _in_range(self, value: float) -> bool:
+        if self.least is not None and not value >= self.least:
+            return False
+        return self.greatest is None or value <= self.greatest
+
+
+_GREATEST_FLOAT = {32: (2 - 2**-23) * 2.0**127, 64: math.inf}
+
+
+def _exact(physical: float | Fraction) -> Fraction:
+    try:
+        return Fraction(physical)
+    except (OverflowError, ValueError):
+        raise ValueError(f"{physical!r} is no physical value") from None
+
+
+def _bounds(least: object, greatest: object) -> str:
+    if least is None:
+        return f"..{greatest}"
+    return f"{least}.." if greatest is None else f"{least}..{greatest}"
+
+
+@dataclass(frozen=True, slots=True)
+class BoolRule(Rule):
+    """False or true."""
+
+    const: bool | None = None
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> bool:
+        """False or true; 0 and 1 are taken as well."""
+        if value not in (0, 1):
+            raise EncodeError("", f"must be false or true, not {value!r}")
+        if strict:
+            refuse(self.violations(value, scope))
+        return bool(value)
+
+    def violations(self, value: bool, scope: Scope) -> list[Violation]:
+        """A constant that does not hold."""
+        if self.const is None or value == self.const:
+            return []
+        return [Violation("", f"must be {self.const}")]
+
+    def to_json(self, value: bool, scope: Scope) -> bool:
+        """False or true, also where the attribute is 0 or 1."""
+        return bool(value)
+
+
+# --- bytes and text -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class OctetsRule(Rule):
+    """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
+
+    size: int | str | None = None
+    greatest: int | None = None
+    const: bytes | None = None
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
+        """The bytes."""
+        if not isinstance(value, bytes | bytearray | memoryview):
+            raise EncodeError("", f"must be bytes, not {value!r}")
+        _check_count(len(value), _exactly(self.size, scope), self.greatest, "bytes")
+        if self.const is not None and value != self.const:
+            raise EncodeError("", f"must be {self.const.hex(' ')}")
+        return bytes(value)
+
+    def to_json(self, value: bytes, scope: Scope) -> str:
+        """Two hexadecimal digits a byte."""
+        return bytes(value).hex()
+
+    def from_json(self, data: Any, scope: Scope) -> bytes:
+        """Bytes of a text of hexadecimal digits; blanks are ignored."""
+        try:
+            return bytes.fromhex(data)
+        except (TypeError, ValueError):
+            raise EncodeError("", f"must be hexadecimal digits, not {data!r}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class TextRule(Rule):
+    """Text of one byte a character.
+
+    `size` is a number: the text has at most so many characters and does not end with NUL, which
+    pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
+    """
+
+    size: int | str | None = None
+    greatest: int | None = None
+    const: str | None = None
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
+        """The text."""
+        if not isinstance(value, str) or any(character > "\xff" for character in value):
+            raise EncodeError("", f"must be text of characters up to U+00FF, not {value!r}")
+        if isinstance(self.size, int):
+            self._check_padded(value, self.size)
+        else:
+            size = _exactly(self.size, scope)
+            _check_count(len(value), size, self.greatest, "characters")
+        if self.const is not None and value != self.const:
+            raise EncodeError("", f"must be {self.const!r}")
+        return value
+
+    def from_json(self, data: Any, scope: Scope) -> str:
+        """The text."""
+        if not isinstance(data, str):
+            raise EncodeError("", f"must be text, not {data!r}")
+        return data
+
+    def _check_padded(self, value: str, size: int) -> None:
+        _check_count(len(value), None, size, "characters")
+        if value.endswith("\0"):
+            raise EncodeError("", "ends with NUL, which a receiver takes for padding")
+
+
+def _exactly(size: int | str | None, scope: Scope) -> int | None:
+    return int(scope[size]) if isinstance(size, str) else size
+
+
+def _check_count(count: int, exactly: int | None, greatest: int | None, what: str) -> None:
+    if exactly is not None and count != exactly:
+        raise EncodeError("", f"needs exactly {exactly} {what}, not {count}")
+    if greatest is not None and count > greatest:
+        raise EncodeError("", f"has {count} {what}, at most {greatest} are allowed")

@@ -1,0 +1,324 @@
+"""Checksums: what they give over known data, and that every named algorithm is the catalogue's."""
+
+import importlib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protogen.model.checksums import ChecksumSpec, algorithm_names, find_algorithm
+from protogen.model.crc_catalogue import ALGORITHMS, ALIASES
+from protogen.runtime.checksum import (
+    Checksum,
+    Crc,
+    Fletcher16,
+    Sum8,
+    Xor8,
+    _mirrored,
+    _plain_engine,
+    _reflected_engine,
+    _zlib_engine,
+)
+
+# Two implementations that share nothing with ours, neither of them typed.
+anycrc: Any = importlib.import_module("anycrc")
+crccheck: Any = importlib.import_module("crccheck.crc")
+
+CHECK_DATA = b"123456789"
+
+
+def runtime_checksum(spec: ChecksumSpec) -> Checksum:
+    """What the Python target prints for a spec."""
+    match spec.kind:
+        case "xor":
+            return Xor8(spec.init)
+        case "sum":
+            return Sum8(spec.init, spec.negated)
+        case "fletcher":
+            return Fletcher16()
+        case "crc":
+            return Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)
+
+
+def named_spec(name: str) -> ChecksumSpec:
+    spec = find_algorithm(name)
+    assert spec is not None
+    return spec
+
+
+def named(name: str) -> Checksum:
+    return runtime_checksum(named_spec(name))
+
+
+# --- by hand ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "value"),
+    [
+        # 02 ^ 07 = 05, 05 ^ FF = FA, FA ^ 1B = E1.
+        ("xor-8", "02 07 FF 1B", 0xE1),
+        ("xor-8", "", 0x00),
+        # F0 + 0F + 02 = 101, and 101 modulo 100 = 01.
+        ("sum-8", "F0 0F 02", 0x01),
+        ("sum-8", "", 0x00),
+        # 02 + 00 + 53 = 55, and 100 - 55 = AB.
+        ("sum-8/negated", "02 00 53", 0xAB),
+        # 80 + 80 = 100, which is 00 modulo 100; what brings that to 0 is 00, not 100.
+        ("sum-8/negated", "80 80", 0x00),
+        # Running sums 01, 03: low byte 03, high byte 01 + 03 = 04.
+        ("fletcher-16", "01 02", 0x0403),
+        # FF is 0 modulo FF, in both sums: FF -> 00, then 01 -> 01 and 00 + 01.
+        ("fletcher-16", "FF 01", 0x0101),
+    ],
+)
+def test_a_checksum_worked_out_by_hand(name: str, data: str, value: int) -> None:
+    assert named(name).compute(bytes.fromhex(data)) == value
+
+
+def test_a_crc_divided_by_hand() -> None:
+    # CRC-3/GSM divides by x^3 + x + 1. The byte C0 with three zeros behind it:
+    #   11000000 000
+    #   1011
+    #   01110000 000
+    #    1011
+    #   00101000 000
+    #     1011
+    #   00000100 000
+    #        101 1
+    #   00000001 100
+    #          1 011
+    #   00000000 111    the remainder, which xorout 111 turns into 000
+    assert named("CRC-3/GSM").compute(b"\xc0") == 0b000
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [(b"abcde", 0xC8F0), (b"abcdef", 0x2057), (b"abcdefgh", 0x0627)]
+)
+def test_fletcher_16_gives_the_widely_published_values(text: bytes, value: int) -> None:
+    assert Fletcher16().compute(text) == value
+
+
+@pytest.mark.parametrize(
+    ("data", "value"),
+    [
+        (bytes(32), 0x8A9136AA),
+        (b"\xff" * 32, 0x62A8AB43),
+        (bytes(range(32)), 0x46DD794E),
+        (bytes(range(31, -1, -1)), 0x113FDB5C),
+    ],
+)
+def test_crc_32c_gives_the_values_of_rfc_3720_appendix_b_4(data: bytes, value: int) -> None:
+    assert named("CRC-32C").compute(data) == value
+
+
+def test_the_initial_value_is_part_of_a_sum() -> None:
+    assert Xor8(init=0x55).compute(b"\x0f") == 0x5A
+    assert Sum8(init=0xFF).compute(b"\x02") == 0x01
+    assert Sum8(init=0xFF, negated=True).compute(b"\x02") == 0xFF
+
+
+# --- names --------------------------------------------------------------------------------------
+
+
+def test_a_name_is_found_in_upper_or_lower_case_and_by_its_aliases() -> None:
+    kermit = named_spec("CRC-16/KERMIT")
+    assert kermit == ChecksumSpec(
+        "CRC-16/KERMIT", "crc", 16, poly=0x1021, init=0, refin=True, refout=True, xorout=0
+    )
+    for name in ("crc-16/kermit", "CRC-16/CCITT", "Kermit", "CRC-CCITT", "crc-16/bluetooth"):
+        assert find_algorithm(name) == kermit
+
+
+@pytest.mark.parametrize(
+    ("alias", "name"),
+    [
+        ("X-25", "CRC-16/IBM-SDLC"),
+        ("CRC-16/X-25", "CRC-16/IBM-SDLC"),
+        ("CRC-16/CCITT-FALSE", "CRC-16/IBM-3740"),
+        ("XMODEM", "CRC-16/XMODEM"),
+        ("MODBUS", "CRC-16/MODBUS"),
+        ("CRC-16", "CRC-16/ARC"),
+        ("CRC-8", "CRC-8/SMBUS"),
+        ("CRC-32", "CRC-32/ISO-HDLC"),
+        ("CRC-32/CASTAGNOLI", "CRC-32/ISCSI"),
+        ("CRC-64", "CRC-64/ECMA-182"),
+    ],
+)
+def test_an_alias_leads_to_the_algorithm_s_own_name(alias: str, name: str) -> None:
+    assert named_spec(alias).name == name
+
+
+@pytest.mark.parametrize("name", ["", "crc", "CRC-16/KERMITT", "CRC-82/DARC", "xor"])
+def test_an_unknown_name_finds_nothing(name: str) -> None:
+    assert find_algorithm(name) is None
+
+
+def test_every_listed_name_is_found_and_listed_once() -> None:
+    names = algorithm_names()
+    assert names[:5] == ("xor-8", "sum-8", "sum-8/negated", "fletcher-16", "CRC-3/GSM")
+    assert len({name.casefold() for name in names}) == len(names)
+    assert all(find_algorithm(name) for name in names)
+    own = [name for name in names if named_spec(name).name == name]
+    assert names[: len(own)] == tuple(own)
+
+
+# --- the catalogue ------------------------------------------------------------------------------
+
+
+def anycrc_name(name: str) -> str:
+    """anycrc writes CRC16-KERMIT for CRC-16/KERMIT, and keeps names without a width."""
+    head, slash, tail = name.partition("/")
+    if slash or head.removeprefix("CRC-")[:1].isdigit():
+        head = head.replace("CRC-", "CRC") if head.startswith("CRC-") else head
+    return f"{head}-{tail}" if slash else head
+
+
+def crccheck_classes() -> Iterator[tuple[str, Any]]:
+    for found in crccheck.ALLCRCCLASSES:
+        if found.width() <= 64:
+            yield found._names[0], found
+
+
+CRCCHECK = dict(crccheck_classes())
+CATALOGUE_NAMES = [row[0] for row in ALGORITHMS]
+
+
+def test_the_catalogue_holds_the_names_that_two_libraries_hold() -> None:
+    assert len(CATALOGUE_NAMES) == 112
+    assert set(CATALOGUE_NAMES) == set(CRCCHECK)
+    assert {anycrc_name(name) for name in CATALOGUE_NAMES} == set(anycrc.models)
+
+
+def test_the_catalogue_holds_the_aliases_that_two_libraries_hold() -> None:
+    ours = {anycrc_name(alias): anycrc_name(name) for alias, name in ALIASES.items()}
+    assert ours == anycrc.aliases
+    crccheck_aliases = {
+        alias: name for name, found in CRCCHECK.items() for alias in found._names[1:]
+    }
+    # The catalogue spells this one X-CRC-12.
+    assert crccheck_aliases.pop("CRC-12-X") == ALIASES["X-CRC-12"]
+    assert crccheck_aliases.items() <= ALIASES.items()
+
+
+@pytest.mark.parametrize("name", CATALOGUE_NAMES)
+def test_an_algorithm_gives_the_catalogue_s_check_value(name: str) -> None:
+    checksum = named(name)
+    value = checksum.compute(CHECK_DATA)
+    assert value == CRCCHECK[name].check_result()
+    assert value == anycrc.models[anycrc_name(name)].check
+    assert checksum.width == CRCCHECK[name].width()
+
+
+@pytest.mark.parametrize("name", CATALOGUE_NAMES)
+def test_an_algorithm_has_the_catalogue_s_parameters(name: str) -> None:
+    spec = named_spec(name)
+    ours = (spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)
+    theirs = CRCCHECK[name]
+    assert ours == (
+        theirs.width(),
+        theirs.poly(),
+        theirs.initvalue(),
+        theirs.reflect_input(),
+        theirs.reflect_output(),
+        theirs.xor_output(),
+    )
+    assert ours == anycrc.models[anycrc_name(name)][:6]
+
+
+@given(st.sampled_from(CATALOGUE_NAMES), st.binary(max_size=300))
+def test_an_algorithm_agrees_with_two_libraries_over_any_data(name: str, data: bytes) -> None:
+    value = named(name).compute(data)
+    assert value == CRCCHECK[name].calc(data)
+    assert value == anycrc.Model(anycrc_name(name)).calc(data)
+
+
+# --- any parameters -----------------------------------------------------------------------------
+
+
+@st.composite
+def crcs(draw: st.DrawFn) -> Crc:
+    width = draw(st.integers(1, 64))
+    bits = st.integers(0, (1 << width) - 1)
+    return Crc(width, draw(bits), draw(bits), draw(st.booleans()), draw(st.booleans()), draw(bits))
+
+
+def bit_by_bit(crc: Crc, data: bytes) -> int:
+    """The definition: shift one bit after the other into a register of exactly `width` bits."""
+    register = crc.init
+    for byte in data:
+        for place in range(8) if crc.refin else range(7, -1, -1):
+            carry = (register >> (crc.width - 1)) ^ (byte >> place & 1)
+            register = (register << 1) % (1 << crc.width) ^ (crc.poly if carry else 0)
+    if crc.refout:
+        register = int(format(register, f"0{crc.width}b")[::-1], 2)
+    return register ^ crc.xorout
+
+
+@given(crcs(), st.binary(max_size=40))
+def test_a_crc_of_any_parameters_agrees_with_the_definition(crc: Crc, data: bytes) -> None:
+    value = crc.compute(data)
+    assert value == bit_by_bit(crc, data)
+    assert 0 <= value < 1 << crc.width
+
+
+@given(crcs(), st.binary(max_size=40))
+def test_a_crc_of_any_parameters_agrees_with_crccheck(crc: Crc, data: bytes) -> None:
+    theirs = crccheck.Crc(crc.width, crc.poly, crc.init, crc.refin, crc.refout, crc.xorout)
+    assert crc.compute(data) == theirs.calc(data)
+
+
+@given(crcs(), st.binary(max_size=40))
+def test_a_crc_of_any_parameters_agrees_with_anycrc(crc: Crc, data: bytes) -> None:
+    theirs = anycrc.CRC(crc.width, crc.poly, crc.init, crc.refin, crc.refout, crc.xorout)
+    assert crc.compute(data) == theirs.calc(data)
+
+
+@given(st.binary(max_size=300), st.integers(0, 0xFFFF))
+def test_the_standard_library_s_crc_16_is_the_table_s(data: bytes, register: int) -> None:
+    plain, reflected = _plain_engine(16, 0x1021), _reflected_engine(16, 0x1021)
+    assert _mirrored(plain, 16)(data, register) == reflected(data, register)
+    for refin, engine in ((False, plain), (True, reflected)):
+        crc = Crc(16, 0x1021, init=register, refin=refin, refout=refin)
+        start = int(f"{register:016b}"[::-1], 2) if refin else register
+        assert crc.compute(data) == engine(data, start)
+
+
+@given(st.binary(max_size=300), st.integers(0, 0xFFFFFFFF))
+def test_the_standard_library_s_crc_32_is_the_table_s(data: bytes, register: int) -> None:
+    plain, reflected = _plain_engine(32, 0x04C11DB7), _reflected_engine(32, 0x04C11DB7)
+    assert _zlib_engine(data, register) == reflected(data, register)
+    assert _mirrored(_zlib_engine, 32)(data, register) == plain(data, register)
+
+
+@pytest.mark.parametrize(
+    ("width", "poly", "init", "xorout", "complaint"),
+    [
+        (0, 0, 0, 0, "1..64 bits, not 0"),
+        (65, 1, 0, 0, "1..64 bits, not 65"),
+        (8, 0x107, 0, 0, "poly does not fit 8 bits"),
+        (8, 0x07, -1, 0, "init does not fit 8 bits"),
+        (8, 0x07, 0, 0x100, "xorout does not fit 8 bits"),
+    ],
+)
+def test_parameters_that_make_no_crc_are_refused(
+    width: int, poly: int, init: int, xorout: int, complaint: str
+) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        Crc(width, poly, init, xorout=xorout)
+
+
+@given(st.binary(max_size=300))
+def test_simple_checksums_keep_to_their_width(data: bytes) -> None:
+    for name in ("xor-8", "sum-8", "sum-8/negated", "fletcher-16"):
+        checksum = named(name)
+        assert checksum.width == named_spec(name).width
+        assert 0 <= checksum.compute(data) < 1 << checksum.width
+
+
+@given(st.binary(max_size=300))
+def test_a_negated_sum_brings_the_sum_of_everything_to_zero(data: bytes) -> None:
+    whole = data + bytes((named("sum-8/negated").compute(data),))
+    assert named("sum-8").compute(whole) == 0
