@@ -1,0 +1,57 @@
+"""What other programs use protogen for: load a schema, generate files, get a codec."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from types import ModuleType
+
+from protogen.compiler import compile_file
+from protogen.model.protocol import Protocol
+from protogen.problems import Problem, SourceMap, render_text
+from protogen.targets import TARGETS
+from protogen.targets.output import Report, write_files
+
+
+class SchemaError(ValueError):
+    """A schema has errors. `problems` holds all that were found; the text shows them."""
+
+    def __init__(self, problems: Sequence[Problem], sources: SourceMap) -> None:
+        super().__init__("\n".join(render_text(problem, sources) for problem in problems))
+        self.problems = tuple(problems)
+
+
+def load(schema: str | os.PathLike[str], *, examples: bool = False) -> Protocol:
+    """The resolved protocol of a schema file.
+
+    With `examples`, its examples are verified as well. Raises SchemaError.
+    """
+    compilation = compile_file(schema, examples=examples)
+    if compilation.protocol is None:
+        raise SchemaError(compilation.problems, compilation.sources)
+    return compilation.protocol
+
+
+def generate(
+    schemas: Iterable[str | os.PathLike[str]],
+    output: str | os.PathLike[str] = "generated",
+    targets: Iterable[str] | None = None,
+) -> dict[str, Report]:
+    """Write the files of each target for these schema files; what was done, by target.
+
+    Raises SchemaError, before anything is written, and KeyError for a target that there is not.
+    """
+    protocols = [load(schema) for schema in schemas]
+    chosen = [TARGETS[name] for name in (TARGETS if targets is None else targets)]
+    return {
+        target.name: write_files(target.emit(protocols), Path(output) / target.folder, prune=False)
+        for target in chosen
+    }
+
+
+def module_of(protocol: Protocol) -> ModuleType:
+    """The Python codec of a protocol, imported from memory."""
+    from protogen.targets.python import live
+
+    return live.module_of(protocol)

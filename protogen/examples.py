@@ -1,0 +1,254 @@
+"""Does each example of a schema hold?
+
+An example is decoded and encoded by the Python that would be generated, so there is no second
+codec whose mistakes could hide in the first. What a document prints without delimiters is put into
+a frame first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, PayloadPart
+from protogen.model.messages import Example, Message
+from protogen.model.protocol import Protocol
+from protogen.problems import Problems
+from protogen.runtime.assembly import join_parts
+from protogen.runtime.errors import EncodeError
+from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
+from protogen.schema.syntax.octets import to_octets
+from protogen.targets.python.live import module_of
+
+
+def verify_examples(protocol: Protocol, problems: Problems) -> None:
+    """Report every example that does not hold."""
+    if not any(message.examples for message in protocol.messages):
+        return
+    module = module_of(protocol)
+    for message in protocol.messages:
+        for example in message.examples:
+            _Verification(protocol, module, message, example, problems).run()
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """What a decoder makes of the example's frame."""
+
+    fails: str
+    """The reason, `unknown`, or nothing where it is a message."""
+    message: Any = None
+    parts: Any = None
+
+
+class _Verification:
+    """One example."""
+
+    def __init__(
+        self,
+        protocol: Protocol,
+        module: ModuleType,
+        message: Message,
+        example: Example,
+        problems: Problems,
+    ) -> None:
+        self._frame = protocol.sender(example.sender).frame
+        self._sender = module.PROTOCOL.sender(example.sender)
+        self._class = module.MESSAGES[message.name]
+        self._readers = _readers(protocol, example.sender, message.name)
+        self._module = module
+        self._message = message
+        self._example = example
+        self._problems = problems
+
+    def run(self) -> None:
+        """Decode it and encode it again."""
+        wire = self._wire()
+        if wire is None:
+            return
+        reading = self._read(wire)
+        if self._example.contradicts is not None:
+            self._contradicts(reading)
+            return
+        if reading.fails:
+            self._report("PG160", f"a decoder rejects it: {reading.fails}")
+            return
+        if self._values_hold(reading, self._example.values):
+            self._parts_hold(reading)
+            self._encodes(reading, wire)
+
+    def _report(self, code: str, text: str) -> None:
+        where = f"`{self._example.name}` of `{self._message.name}`"
+        self._problems.add(code, self._example.span, f"{where}: {text}")
+
+    # -- bytes --------------------------------------------------------------------------------
+
+    def _wire(self) -> bytes | None:
+        """The example as a frame on the wire."""
+        if self._example.covers is None:
+            return self._example.bytes
+        pieces = _pieces(self._frame, self._example)
+        if pieces is None:
+            size = len(self._example.bytes)
+            self._report("PG162", f"{size} bytes are too few for {', '.join(self._covers)}")
+            return None
+        payload = pieces[_payload_name(self._frame)] if self._holds_payload else b""
+        return join_parts(self._sender, payload, self._numbers(), pieces)
+
+    @property
+    def _covers(self) -> tuple[str, ...]:
+        return self._example.covers or ()
+
+    @property
+    def _holds_payload(self) -> bool:
+        return _payload_name(self._frame) in self._covers
+
+    def _numbers(self) -> dict[str, int]:
+        """Identity, counters and values of the parts that the example does not print."""
+        numbers = dict(
+            zip((p.name for p in self._frame.identity), self._message.identity, strict=True)
+        )
+        for part in self._frame.caller_parts:
+            default = part.default if part.default is not None else part.least
+            numbers[part.name] = self._example.parts.get(part.name, default)
+        return numbers
+
+    def _read(self, wire: bytes) -> _Reading:
+        decoder = self._module.Decoder(sender=self._example.sender)
+        events = [*decoder.feed(wire), *decoder.flush()]
+        bad = next((event for event in events if isinstance(event, InvalidEvent)), None)
+        if bad is not None:
+            return _Reading((bad.problem and f"{bad.reason}: {bad.problem}") or bad.reason)
+        if len(events) != 1:
+            return _Reading(f"it is {len(events)} frames")
+        event = events[0]
+        if isinstance(event, UnknownEvent):
+            return _Reading("unknown", parts=event.parts)
+        assert isinstance(event, MessageEvent)
+        return _Reading("", event.message, event.parts)
+
+    # -- meaning ------------------------------------------------------------------------------
+
+    def _values_hold(self, reading: _Reading, values: dict[str, Any] | None) -> bool:
+        if reading.message.NAME not in self._readers:
+            self._report("PG160", f"it is a `{reading.message.NAME}`")
+            return False
+        wrong = _differences(reading.message, values or {})
+        for text in wrong:
+            self._report("PG160", text)
+        return not wrong
+
+    def _parts_hold(self, reading: _Reading) -> None:
+        for name, value in self._example.parts.items():
+            found = getattr(reading.parts, name)
+            if found != value:
+                self._report("PG160", f"`{name}` is {found}, not {value}")
+
+    def _encodes(self, reading: _Reading, wire: bytes) -> None:
+        """The values, encoded, are the example's bytes."""
+        parts = {p.name: getattr(reading.parts, p.name) for p in self._frame.caller_parts}
+        try:
+            message = self._class.from_payload(reading.message.to_payload(strict=False))
+            made = self._module.PROTOCOL.encode(
+                message, self._example.sender, strict=False, **parts
+            )
+        except EncodeError as error:
+            self._report("PG161", str(error))
+            return
+        if made != wire:
+            self._report("PG161", f"its values encode to {_hex(made)}, not to {_hex(wire)}")
+
+    def _contradicts(self, reading: _Reading) -> None:
+        """It fails, and in just the way that the schema says."""
+        stated = self._example.contradicts
+        assert stated is not None
+        found = reading.fails.partition(":")[0] or "values"
+        if found != stated.fails:
+            text = f"it does not fail by `{stated.fails}` but by `{found}`"
+            self._report("PG163", text if reading.fails else f"{text}: it decodes")
+        elif found == "values":
+            self._values_hold(reading, stated.reads)
+            if not _differences(reading.message, self._example.values or {}):
+                self._report("PG163", "its bytes mean just what the document says")
+
+
+def _readers(protocol: Protocol, sender: str, message: str) -> set[str]:
+    """The messages that a decoder may take this one for: itself, unless nothing tells it apart."""
+    for overload in protocol.sender(sender).overloads:
+        if overload.yields is not None and message in overload.messages:
+            return {overload.yields}
+    return {message}
+
+
+def _payload_name(frame: Frame) -> str:
+    return next(part.name for part in frame.parts if isinstance(part, PayloadPart))
+
+
+def _pieces(frame: Frame, example: Example) -> dict[str, bytes] | None:
+    """The printed bytes by part; None where they are too few for the parts of fixed size."""
+    covers = example.covers or ()
+    sizes = {name: _size(frame, name) for name in covers}
+    left = len(example.bytes) - sum(sizes.values())
+    if left < 0 or (left and _payload_name(frame) not in covers):
+        return None
+    sizes[_payload_name(frame)] = left
+    pieces: dict[str, bytes] = {}
+    place = 0
+    for name in covers:
+        pieces[name] = example.bytes[place : place + sizes[name]]
+        place += sizes[name]
+    return pieces
+
+
+def _size(frame: Frame, name: str) -> int:
+    match frame.part(name):
+        case LiteralPart(bytes=literal):
+            return len(literal)
+        case NumberPart(type=type_) | ChecksumPart(type=type_):
+            return type_.size
+    return 0
+
+
+def _differences(message: Any, stated: dict[str, Any]) -> list[str]:
+    """What the example says of fields, where the bytes say something else."""
+    found = message.to_dict()
+    texts = []
+    for name, value in stated.items():
+        if name not in found:
+            texts.append(f"there is no field `{name}`")
+            continue
+        rule = dict(message.RULES)[name]
+        try:
+            expected = _expected(message, name, rule, value)
+        except EncodeError as error:
+            texts.append(f"`{name}`: {error}")
+            continue
+        if expected != found[name]:
+            texts.append(f"`{name}` is {found[name]}, not {expected}")
+    return texts
+
+
+def _expected(message: Any, name: str, rule: Any, value: Any) -> Any:
+    """A stated value in the form of `to_dict`: names become raw values, bytes hex digits."""
+    written = _hex_digits(value)
+    whole = {**message.to_dict(), name: written}
+    return type(message).from_dict(whole).to_dict()[name]
+
+
+def _hex_digits(value: Any) -> Any:
+    """`{hex: ...}` and `{text: ...}` as hex digits, wherever they stand."""
+    if isinstance(value, dict) and set(value) in ({"hex"}, {"text"}):
+        try:
+            return to_octets(value).hex()
+        except ValueError as error:
+            raise EncodeError("", str(error)) from None
+    if isinstance(value, dict):
+        return {key: _hex_digits(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_hex_digits(item) for item in value]
+    return value
+
+
+def _hex(data: bytes) -> str:
+    return data.hex(" ").upper()

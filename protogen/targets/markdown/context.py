@@ -1,0 +1,51 @@
+"""What the sections of a page need to know of the whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from protogen.model.framing import MessageFraming
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.types import Integer
+from protogen.targets.markdown.walk import type_users
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """A protocol, with what is looked up in it again and again."""
+
+    protocol: Protocol
+    users: Mapping[str, list[Integer]]
+    """The integers that use an enum or flags, by its name."""
+    shared: frozenset[str]
+    """The enums and flags that several fields use: they are explained once."""
+    framings: Mapping[tuple[str, str], MessageFraming]
+
+    @classmethod
+    def of(cls, protocol: Protocol) -> Context:
+        """Look everything up once."""
+        users = type_users(protocol.messages)
+        shared = frozenset(name for name, integers in users.items() if len(integers) > 1)
+        framings = {
+            (sender.name, framing.message): framing
+            for sender in protocol.senders
+            for framing in sender.framing.messages
+        }
+        return cls(protocol, users, shared, framings)
+
+    def framing(self, sender: str, message: str) -> MessageFraming:
+        """Return the sizes and the rate of a message of this sender."""
+        return self.framings[sender, message]
+
+
+def by_frame(senders: Iterable[Sender]) -> list[list[Sender]]:
+    """Return the senders, those together whose frames are alike."""
+    groups: list[list[Sender]] = []
+    for sender in senders:
+        alike = next((group for group in groups if group[0].frame == sender.frame), None)
+        if alike is None:
+            groups.append([sender])
+        else:
+            alike.append(sender)
+    return groups

@@ -1,0 +1,69 @@
+"""Prints the pages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cache
+from pathlib import PurePosixPath
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from protogen.model.protocol import Protocol
+from protogen.targets.banner import MARKDOWN, banner
+from protogen.targets.markdown.anchors import decision_link
+from protogen.targets.markdown.fidelity import fidelity_view
+from protogen.targets.markdown.index import index_view
+from protogen.targets.markdown.page import page_view
+from protogen.targets.output import File
+
+_BLANK_LINES = re.compile(r"\n{3,}")
+_ONE_BLANK_LINE = "\n\n"
+
+
+def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
+    """Return a page for each protocol, an index and the page of counts, in order of name."""
+    if not protocols:
+        return ()
+    ordered = sorted(protocols, key=lambda protocol: protocol.name)
+    pages = [_page(protocol) for protocol in ordered]
+    index = _file("index", ordered, view=index_view(ordered))
+    fidelity = _file("fidelity", ordered, view=fidelity_view(ordered))
+    return (*pages, index, fidelity)
+
+
+def _page(protocol: Protocol) -> File:
+    text = _linked(_render("protocol", view=page_view(protocol)), protocol)
+    return File(PurePosixPath(f"{protocol.name}.md"), text, banner(MARKDOWN, [protocol]))
+
+
+def _linked(text: str, protocol: Protocol) -> str:
+    """Turn "decision NAME", as the texts of a schema refer to one, into a link."""
+    names = "|".join(decision.name for decision in protocol.decisions)
+    return re.sub(rf"\bdecision `?({names})\b`?", _decision_link, text) if names else text
+
+
+def _decision_link(match: re.Match[str]) -> str:
+    return f"decision {decision_link(match[1])}"
+
+
+def _file(name: str, protocols: Sequence[Protocol], view: object) -> File:
+    return File(PurePosixPath(f"{name}.md"), _render(name, view), banner(MARKDOWN, protocols))
+
+
+def _render(template: str, view: object) -> str:
+    text = _environment().get_template(f"{template}.md.j2").render(view=view)
+    return f"\n{_BLANK_LINES.sub(_ONE_BLANK_LINE, text).strip()}\n"
+
+
+@cache
+def _environment() -> Environment:
+    # The views hold Markdown that is escaped already; HTML's rules would spoil it.
+    return Environment(
+        loader=PackageLoader("protogen.targets.markdown"),
+        autoescape=False,  # noqa: S701
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )

@@ -1,0 +1,110 @@
+"""A sender's frames: what they are made of, and how a receiver cuts them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from protogen.model.framing import Framing
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.sizes import SizeSet
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.context import by_frame
+from protogen.targets.markdown.packet import frame_diagram
+from protogen.targets.markdown.parts import frame_table, transparency_table, transparency_text
+from protogen.targets.markdown.table import Table
+from protogen.targets.markdown.words import capital, code, listed, plural, sentence
+
+Property = tuple[str, str]
+"""A label and a text."""
+
+Sentences = tuple[str, ...]
+
+_AMBIGUITY = {
+    True: "A receiver would cut frames with some values elsewhere; encoders refuse these values.",
+    False: "None: a receiver cuts every frame where it ends.",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameView:
+    """What a page shows of the frames of one or several senders."""
+
+    title: str
+    table: Table
+    diagram: str
+    transparency: tuple[str, ...]
+    replacements: Table | None
+    properties: tuple[Property, ...]
+
+
+def frame_views(protocol: Protocol) -> tuple[FrameView, ...]:
+    """Return a view for each different frame, in the order of the senders."""
+    return tuple(_view(senders, protocol) for senders in by_frame(protocol.senders))
+
+
+def _view(senders: Sequence[Sender], protocol: Protocol) -> FrameView:
+    frame = senders[0].frame
+    payload = senders[0].framing.payload
+    for sender in senders[1:]:
+        payload |= sender.framing.payload
+    transparency = frame.transparency
+    return FrameView(
+        title=f"Frames from {_titles(senders, protocol)}",
+        table=frame_table(frame, payload),
+        diagram=frame_diagram(frame, payload),
+        transparency=transparency_text(transparency) if transparency else (),
+        replacements=transparency_table(transparency) if transparency else None,
+        properties=_shared_properties(senders),
+    )
+
+
+def _titles(senders: Sequence[Sender], protocol: Protocol) -> str:
+    if len(senders) == 1:
+        return sender_title(senders[0], protocol)
+    return listed([code(sender.name) for sender in senders])
+
+
+def sender_title(sender: Sender, protocol: Protocol) -> str:
+    """Return a sender's name and what it is."""
+    titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
+    return f"{code(sender.name)}, {markdown(titles[sender.name])}"
+
+
+def _shared_properties(senders: Sequence[Sender]) -> tuple[Property, ...]:
+    """Return the properties of several senders; what differs names the sender."""
+    columns = [dict(_properties(sender.framing)) for sender in senders]
+    return tuple(
+        (label, _merged(senders, [column[label] for column in columns])) for label in columns[0]
+    )
+
+
+def _merged(senders: Sequence[Sender], texts: Sequence[Sentences]) -> str:
+    """Join what is said of all senders, then what is said of some only."""
+    common = [text for text in texts[0] if all(text in others for others in texts)]
+    for sender, own in zip(senders, texts, strict=True):
+        rest = [text for text in own if text not in common]
+        if rest:
+            common.append(f"From {code(sender.name)}: {' '.join(rest)}")
+    return " ".join(common)
+
+
+def _properties(framing: Framing) -> Iterator[tuple[str, Sentences]]:
+    sizes = plural(SizeSet.between(framing.least, framing.greatest), "byte")
+    overhead = plural(framing.overhead, "byte")
+    sync = "Yes." if framing.self_synchronising else "No."
+    yield "Start", (_said(framing.finds_start),)
+    yield "End", (_said(framing.finds_end),)
+    yield "Self-synchronising", (f"{sync} {_said(framing.why_synchronising)}".strip(),)
+    yield "Frame size", (f"{sizes} on the wire.",)
+    yield "Overhead", (f"{overhead} besides the payload, before any stuffing or encoding.",)
+    yield "Single-byte errors that go unnoticed", _undetected(framing)
+    yield "Ambiguity", (_AMBIGUITY[framing.cut_ambiguous],)
+
+
+def _undetected(framing: Framing) -> Sentences:
+    return tuple(_said(text) for text in framing.undetected) or ("None.",)
+
+
+def _said(text: str) -> str:
+    return capital(sentence(markdown(text)))

@@ -1,0 +1,169 @@
+"""Where things lie: parts in a frame, and payload bytes in the frame around them.
+
+Positions are bytes as a logic analyser counts them, from 0, wherever the wire allows it: with
+Base16 each byte of the payload takes two. Where stuffing can insert bytes, positions are those of
+the unstuffed frame.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import accumulate
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Frame,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+)
+from protogen.model.sizes import SizeSet
+from protogen.targets.markdown.words import code, span
+
+INDICES = "ijkl"
+"""Names of the indices of nested arrays, outermost first."""
+
+_NOTHING = SizeSet.exactly(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """An offset in a payload. Where `base` is a text, what it counts from varies in place."""
+
+    offset: int = 0
+    base: str = ""
+    strides: tuple[int, ...] = ()
+    """Bytes from one element to the next, for each array around it."""
+
+    def plus(self, size: int) -> Place:
+        """Return the place so many bytes further on."""
+        return replace(self, offset=self.offset + size)
+
+    def text(self, size: int | None, start: int = 0, scale: int = 1) -> str:
+        """Print which bytes these are, with the payload from `start` on, scaled."""
+        if size == 0:
+            return ""
+        if size is None:
+            return f"from {self._bytes(1, start, scale)}"
+        return self._bytes(size * scale, start, scale)
+
+    def _bytes(self, size: int, start: int, scale: int) -> str:
+        strides = self._strides(scale)
+        if not self.base:
+            return span(start + self.offset * scale, size) + strides
+        return self.base + (f" + {span(self.offset, size)}" if self.offset else "") + strides
+
+    def _strides(self, scale: int) -> str:
+        pairs = zip(self.strides, INDICES, strict=False)
+        scaled = ((step * scale, index) for step, index in pairs)
+        return "".join(f" + {'' if step == 1 else step}{index}" for step, index in scaled)
+
+
+def behind(name: str) -> Place:
+    """Return the place behind a field of varying size."""
+    return Place(base=f"end of {code(name)}")
+
+
+def element(place: Place, stride: int | None, name: str) -> Place:
+    """Return where element `i` of an array at `place` starts; `stride` is None if sizes vary."""
+    if stride is None or len(place.strides) == len(INDICES):
+        return Place(base=f"start of {code(name)}")
+    return replace(place, strides=(*place.strides, stride))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slot:
+    """Where a part lies in frames whose payload has certain sizes."""
+
+    part: Part
+    sizes: SizeSet
+    """Unstuffed bytes."""
+    scale: int
+    """Bytes on the wire for each of them."""
+    start: int | None
+    """Bytes in front of it; None where that varies."""
+    rest: int | None
+    """Bytes from its start to the frame's end; None where that varies."""
+
+    @property
+    def place(self) -> str:
+        """Which bytes of the frame these are."""
+        if self.start is not None:
+            return self._from_start(self.start)
+        return "" if self.rest is None else self._from_end(self.rest)
+
+    def _from_start(self, start: int) -> str:
+        fixed = self.sizes.fixed
+        return f"from {start}" if fixed is None else span(start, fixed * self.scale)
+
+    def _from_end(self, rest: int) -> str:
+        size = (self.sizes.fixed or rest) * self.scale
+        first, last = _from_last(rest - 1), _from_last(rest - size)
+        return first if first == last else f"{first} to {last}"
+
+
+def _from_last(distance: int) -> str:
+    return "last" if distance == 0 else f"last - {distance}"
+
+
+def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
+    """Return where each part lies in frames with such a payload; absent parts are left out."""
+    sized = [(part, part_sizes(part, payload)) for part in frame.parts]
+    present = [(part, sizes) for part, sizes in sized if _is_present(part, sizes)]
+    shown = [sizes.times(SizeSet.exactly(wire_scale(frame, part))) for part, sizes in present]
+    starts = accumulate(shown, initial=_NOTHING)
+    rests = reversed([*accumulate(reversed(shown))])
+    return tuple(
+        Slot(
+            part=part,
+            sizes=sizes,
+            scale=wire_scale(frame, part),
+            start=start.fixed,
+            rest=rest.fixed,
+        )
+        for (part, sizes), start, rest in zip(present, starts, rests, strict=False)
+    )
+
+
+def _is_present(part: Part, sizes: SizeSet) -> bool:
+    return sizes.greatest > 0 or isinstance(part, PayloadPart)
+
+
+def part_sizes(part: Part, payload: SizeSet) -> SizeSet:
+    """Return the unstuffed bytes of a part in frames whose payload has such sizes."""
+    if isinstance(part, LiteralPart):
+        return SizeSet.exactly(len(part.bytes))
+    if isinstance(part, ChecksumPart):
+        return _checksum_sizes(part, payload)
+    return SizeSet.exactly(part.type.size) if isinstance(part, NumberPart) else payload
+
+
+def _checksum_sizes(part: ChecksumPart, payload: SizeSet) -> SizeSet:
+    sizes = SizeSet.exactly(part.type.size)
+    if not part.when_payload or payload.least > 0:
+        return sizes
+    return _NOTHING if payload.greatest == 0 else sizes | _NOTHING
+
+
+def length_value(frame: Frame, part: LengthPart, payload: SizeSet) -> int | None:
+    """Return what the length part holds in front of such a payload; None where that varies."""
+    counted = (part_sizes(frame.part(name), payload) for name in part.counts)
+    return sum(counted, start=_NOTHING).fixed
+
+
+def wire_scale(frame: Frame, part: Part) -> int:
+    """Return how many bytes on the wire stand for each byte of a part, stuffing aside."""
+    transparency = frame.transparency
+    if transparency is None or not isinstance(transparency.encoding, Base16):
+        return 1
+    names = [item.name for item in frame.parts]
+    region = range(names.index(transparency.first), names.index(transparency.last) + 1)
+    return 2 if names.index(part.name) in region else 1
+
+
+def is_stuffed(frame: Frame) -> bool:
+    """Say whether bytes on the wire can lie further on than positions say."""
+    return frame.transparency is not None and not isinstance(frame.transparency.encoding, Base16)

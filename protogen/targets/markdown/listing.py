@@ -1,0 +1,88 @@
+"""The messages of a protocol, listed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.model.frame import Frame
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.sizes import SizeSet
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.anchors import message_link
+from protogen.targets.markdown.context import Context
+from protogen.targets.markdown.framing import sender_title
+from protogen.targets.markdown.layout import is_stuffed, wire_scale
+from protogen.targets.markdown.message import identity_text, overload_text
+from protogen.targets.markdown.table import Table, table
+from protogen.targets.markdown.words import code, rate, size_text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListingView:
+    """The messages of one sender, by identity."""
+
+    title: str
+    table: Table
+
+
+def ordered(protocol: Protocol) -> Iterator[Message]:
+    """Yield each message once: by its first sender, then by identity, as the indexes list them."""
+    for sender in protocol.senders:
+        for message in _by_identity(sender):
+            if message.senders[0] == sender.name:
+                yield message
+
+
+def _by_identity(sender: Sender) -> list[Message]:
+    return sorted(sender.messages, key=lambda message: message.identity)
+
+
+def listing(sender: Sender, context: Context) -> ListingView:
+    """Return the table of a sender's messages."""
+    parts = " ".join(code(part.name) for part in sender.frame.identity)
+    header = (parts, "Message", "On the wire", "Payload", "Per second", "Summary")
+    rows = (_row(message, sender, context) for message in _by_identity(sender))
+    return ListingView(
+        title=f"Messages from {sender_title(sender, context.protocol)}",
+        table=table(header, rows),
+    )
+
+
+def _row(message: Message, sender: Sender, context: Context) -> tuple[str, ...]:
+    framing = context.framing(sender.name, message.name)
+    return (
+        identity_text(sender.frame, message),
+        message_link(message.name),
+        size_text(SizeSet.between(framing.least, framing.greatest)),
+        size_text(message.sizes),
+        "" if framing.per_second is None else rate(framing.per_second),
+        markdown(message.summary),
+    )
+
+
+def counting(protocol: Protocol) -> tuple[str, ...]:
+    """Say what the byte numbers of the messages count."""
+    texts = {_counting(sender.frame): sender.name for sender in protocol.senders}
+    if len(texts) == 1:
+        return tuple(texts)
+    return tuple(f"From {code(name)}: {text}" for text, name in texts.items())
+
+
+def _counting(frame: Frame) -> str:
+    if is_stuffed(frame):
+        return (
+            "Frame bytes count from 0 in the unstuffed frame; on the wire, every stuffed byte in "
+            "front moves a byte further on."
+        )
+    if any(wire_scale(frame, part) > 1 for part in frame.parts):
+        return "Frame bytes count from 0 on the wire, where an encoded byte takes two."
+    return "Frame bytes count from 0 on the wire, payload bytes from 0 in the payload."
+
+
+def overloads(protocol: Protocol) -> Iterator[str]:
+    """Yield a line for each identity that several messages share."""
+    for sender in protocol.senders:
+        for overload in sender.overloads:
+            yield f"From {code(sender.name)}: {overload_text(overload)}"

@@ -1,0 +1,152 @@
+"""One message as a page shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from protogen.model.fields import Field
+from protogen.model.frame import Frame
+from protogen.model.framing import MessageFraming
+from protogen.model.messages import Message, Overload
+from protogen.model.protocol import Sender
+from protogen.model.sizes import SizeSet
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.anchors import decision_link, message_anchor, message_link
+from protogen.targets.markdown.context import Context, by_frame
+from protogen.targets.markdown.example import ExampleView, example_view
+from protogen.targets.markdown.legends import Legend, legends
+from protogen.targets.markdown.message_table import message_table
+from protogen.targets.markdown.origin import about_line, place, prose
+from protogen.targets.markdown.packet import message_diagram
+from protogen.targets.markdown.parts import identity_value
+from protogen.targets.markdown.table import Table
+from protogen.targets.markdown.values import Anchors
+from protogen.targets.markdown.walk import named_fields
+from protogen.targets.markdown.words import (
+    code,
+    listed,
+    plural,
+    rate,
+    sentence,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LayoutView:
+    """A message in the frame of one or several senders."""
+
+    caption: str
+    table: Table
+    diagram: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageView:
+    """A message's section."""
+
+    anchor: str
+    title: str
+    summary: str
+    facts: tuple[str, ...]
+    notes: tuple[str, ...]
+    layouts: tuple[LayoutView, ...]
+    legends: tuple[Legend, ...]
+    examples: tuple[ExampleView, ...]
+
+
+def identity_text(frame: Frame, message: Message) -> str:
+    """Print an identity as it is on the wire: the value of each part."""
+    pairs = zip(frame.identity, message.identity, strict=True)
+    return " ".join(identity_value(part, value) for part, value in pairs)
+
+
+def message_view(context: Context, message: Message) -> MessageView:
+    """Return the section of a message."""
+    senders = [context.protocol.sender(name) for name in message.senders]
+    anchors = Anchors(message_anchor(message.name), context.shared)
+    identity = identity_text(senders[0].frame, message)
+    examples = (example_view(context.protocol, message, item) for item in message.examples)
+    return MessageView(
+        anchor=message_anchor(message.name),
+        title=f"{identity} {message.name}".strip(),
+        summary=_summary(message),
+        facts=tuple(_facts(context, message)),
+        notes=(*_notes(senders, message), *prose(message.about.doc)),
+        layouts=tuple(_layouts(senders, message, anchors)),
+        legends=tuple(_legends(message.fields, anchors)),
+        examples=tuple(examples),
+    )
+
+
+def _summary(message: Message) -> str:
+    """Return the document's title, where it is another name, and the summary."""
+    title = "" if message.title == message.name else f"**{markdown(message.title)}**"
+    summary = sentence(markdown(message.summary))
+    return ": ".join(text for text in (title, summary) if text)
+
+
+# --- facts --------------------------------------------------------------------------------------
+
+
+def _facts(context: Context, message: Message) -> Iterator[str]:
+    groups: dict[MessageFraming, list[str]] = {}
+    for name in message.senders:
+        groups.setdefault(context.framing(name, message.name), []).append(code(name))
+    for framing, names in groups.items():
+        yield f"From {listed(names)}"
+        sizes = SizeSet.between(framing.least, framing.greatest)
+        yield f"{plural(sizes, 'byte')} on the wire"
+        if framing.per_second is not None:
+            yield f"{rate(framing.per_second)} a second"
+    yield f"payload {plural(message.sizes, 'byte')}"
+    source = place(message.about.source)
+    if source:
+        yield source
+
+
+def _notes(senders: Iterable[Sender], message: Message) -> Iterator[str]:
+    if message.unspecified:
+        yield "The document does not say what the payload holds."
+    for sender in senders:
+        for overload in sender.overloads:
+            if message.name in overload.messages:
+                yield overload_text(overload, message.name)
+
+
+def overload_text(overload: Overload, name: str = "") -> str:
+    """Say how messages of one identity are told apart, as seen from the message `name`."""
+    others = [message_link(other) for other in overload.messages if other != name]
+    opening = "Shares its identity with " if name else "One identity for "
+    return about_line(overload.about, f"{opening}{listed(others)}. {_told_apart(overload)}")
+
+
+def _told_apart(overload: Overload) -> str:
+    if overload.yields is None:
+        return "The payload's size tells them apart."
+    decision = f", see {decision_link(overload.decision)}" if overload.decision else ""
+    return (
+        "Nothing on the wire tells them apart; "
+        f"a receiver yields {message_link(overload.yields)}{decision}."
+    )
+
+
+# --- layout -------------------------------------------------------------------------------------
+
+
+def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> Iterator[LayoutView]:
+    """Yield a layout for each different frame of the senders."""
+    groups = by_frame(senders)
+    for group in groups:
+        frame = group[0].frame
+        names = [code(sender.name) for sender in group]
+        yield LayoutView(
+            caption=f"From {listed(names)}:" if len(groups) > 1 else "",
+            table=message_table(frame, message, anchors),
+            diagram=message_diagram(frame, message),
+        )
+
+
+def _legends(fields: Iterable[Field], anchors: Anchors) -> Iterator[Legend]:
+    for path, field in named_fields(fields):
+        yield from legends(field, path, anchors)

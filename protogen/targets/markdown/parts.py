@@ -1,0 +1,237 @@
+"""The parts of a frame, checksums and transparency in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    CounterPart,
+    Encoding,
+    Escape,
+    Frame,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    Substitution,
+    Transparency,
+    ValuePart,
+)
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Integer
+from protogen.targets.markdown.anchors import decision_link
+from protogen.targets.markdown.layout import Slot, length_value, slots
+from protogen.targets.markdown.origin import about_line
+from protogen.targets.markdown.table import Table, table
+from protogen.targets.markdown.types import type_text
+from protogen.targets.markdown.values import character, raw_text
+from protogen.targets.markdown.words import code, hex_bytes, hex_number, listed, size_text
+
+_HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
+
+
+def frame_table(frame: Frame, payload: SizeSet) -> Table:
+    """Return the table of a frame's parts."""
+    return table(_HEADER, (_frame_row(frame, slot) for slot in slots(frame, payload)))
+
+
+def _frame_row(frame: Frame, slot: Slot) -> tuple[str, ...]:
+    part = slot.part
+    size = size_text(slot.sizes)
+    return (slot.place, size, part_type(part), code(part.name), part_value(part), meaning(part))
+
+
+def part_type(part: Part) -> str:
+    """Return a part's type; empty for bytes."""
+    return type_text(part.type) if isinstance(part, NumberPart | ChecksumPart) else ""
+
+
+def part_value(part: Part) -> str:
+    """Return what a part holds in any frame."""
+    match part:
+        case LiteralPart():
+            return literal_text(part.bytes)
+        case NumberPart():
+            return "..".join(_part_number(bound, part) for bound in (part.least, part.greatest))
+        case _:
+            return ""
+
+
+def value_in(frame: Frame, part: Part, identity: Sequence[int], payload: SizeSet) -> str:
+    """Return what a part holds in the frames of one message."""
+    if isinstance(part, IdentityPart):
+        return identity_value(part, identity[frame.identity.index(part)])
+    if isinstance(part, LengthPart):
+        length = length_value(frame, part, payload)
+        return part_value(part) if length is None else code(hex_number(length, part.type.bits))
+    return part_value(part)
+
+
+def identity_value(part: IdentityPart, value: int) -> str:
+    """Print the value of an identity part: in hex, a character also as one."""
+    shown = character(value) if part.type.role == "char" else ""
+    return f"{shown} {code(hex_number(value, part.type.bits))}".strip()
+
+
+def literal_text(data: bytes) -> str:
+    """Print fixed bytes, with their characters where all can be seen."""
+    shown = "".join(character(byte)[1:-1] for byte in data)
+    visible = all(character(byte) for byte in data)
+    return f"{code(hex_bytes(data))} '{shown}'" if visible else code(hex_bytes(data))
+
+
+def _part_number(value: int, part: NumberPart) -> str:
+    """Print an identity in hex, other numbers in decimal."""
+    return code(hex_number(value, part.type.bits)) if isinstance(part, IdentityPart) else str(value)
+
+
+def meaning(part: Part) -> str:
+    """Say what a part is for, and where that is written down."""
+    return about_line(part.about, *_roles(part))
+
+
+def role(part: Part) -> str:
+    """Say in a word what a part is."""
+    return next(word for kind, word in _ROLE_WORDS if isinstance(part, kind))
+
+
+_ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
+    (LiteralPart, "Fixed."),
+    (IdentityPart, "Identity."),
+    (LengthPart, "Length."),
+    (CounterPart, "Counter."),
+    (ValuePart, "Given by the sender."),
+    (ChecksumPart, "Checksum."),
+    (PayloadPart, "Payload."),
+)
+
+
+def _roles(part: Part) -> tuple[str, ...]:
+    match part:
+        case LiteralPart(unprotected=str(decision)):
+            return (f"Can also occur inside a frame: {decision_link(decision)}.",)
+        case LiteralPart():
+            return ("Fixed.",)
+        case NumberPart():
+            return _number_roles(part)
+        case ChecksumPart():
+            return _checksum_roles(part)
+        case _:
+            return ("The fields of the message.",)
+
+
+def _number_roles(part: NumberPart) -> tuple[str, ...]:
+    match part:
+        case LengthPart():
+            return (f"Number of bytes of {part_names(part.counts)}.",)
+        case CounterPart():
+            return ("Counts frames and wraps.", _default(part.default, part.type))
+        case ValuePart():
+            return ("The sender gives it.", _default(part.default, part.type))
+        case _:
+            return ("Tells which message it is.",)
+
+
+def _default(value: int | None, integer: Integer) -> str:
+    return "" if value is None else f"{raw_text(value, integer)} by default."
+
+
+def _checksum_roles(part: ChecksumPart) -> tuple[str, ...]:
+    over = ", as they are on the wire" if part.over_wire else ""
+    return (
+        f"Checksum over {part_names(part.covers)}{over}: {algorithm_text(part.algorithm)}.",
+        "Absent where the payload is empty." if part.when_payload else "",
+    )
+
+
+def part_names(names: Sequence[str]) -> str:
+    """List some parts."""
+    return listed([code(name) for name in names])
+
+
+def algorithm_text(spec: ChecksumSpec) -> str:
+    """Say how a checksum is computed."""
+    start = f", starting from {hex_number(spec.init, spec.width)}" if spec.init else ""
+    match spec.kind:
+        case "xor":
+            return f"the XOR of all bytes{start}"
+        case "sum" if spec.negated:
+            return f"what brings the sum of all bytes to 0 modulo 256{start}"
+        case "sum":
+            return f"the sum of all bytes modulo 256{start}"
+        case "fletcher":
+            return "Fletcher-16"
+        case "crc":
+            return f"{spec.name} ({_rocksoft(spec)})"
+
+
+def _rocksoft(spec: ChecksumSpec) -> str:
+    numbers = (("poly", spec.poly), ("init", spec.init), ("xorout", spec.xorout))
+    switches = (("refin", spec.refin), ("refout", spec.refout))
+    texts = [f"{name} {hex_number(value, spec.width)}" for name, value in numbers]
+    texts += [f"{name} {str(value).lower()}" for name, value in switches]
+    return f"width {spec.width}, {', '.join(texts)}"
+
+
+# --- transparency -------------------------------------------------------------------------------
+
+
+def transparency_text(transparency: Transparency) -> tuple[str, ...]:
+    """Say in paragraphs what keeps delimiters out of the frame."""
+    first, last = code(transparency.first), code(transparency.last)
+    region = first if first == last else f"{first} to {last}"
+    stuffs = isinstance(transparency.encoding, Substitution | Escape)
+    preset = f" ({transparency.preset.upper()})" if transparency.preset and stuffs else ""
+    strict = (
+        "Receivers also accept what a sender would have written otherwise."
+        if transparency.lenient
+        else ""
+    )
+    text = f"{_rule(transparency.encoding, region)}{preset}. {strict}".rstrip()
+    return tuple(filter(None, (text, about_line(transparency.about))))
+
+
+def _rule(encoding: Encoding, region: str) -> str:
+    match encoding:
+        case Substitution():
+            return f"In {region}, these bytes are replaced on the wire"
+        case Escape():
+            return f"In {region}, {_escape_rule(encoding)}"
+        case Base16():
+            return f"Each byte of {region} travels as two upper-case hex digits, the high one first"
+        case Cobs():
+            return f"{region} is COBS-encoded as a whole, so that it holds no zero byte"
+
+
+def _escape_rule(escape: Escape) -> str:
+    byte = code(hex_bytes(bytes([escape.byte])))
+    changed = {0xFF: " with all its bits inverted", 0: " as it is"}
+    how = changed.get(escape.xor, f" XOR {code(hex_number(escape.xor, 8))}")
+    return f"these bytes are sent as {byte} followed by the byte{how}"
+
+
+def transparency_table(transparency: Transparency) -> Table | None:
+    """Return the table of the bytes that are replaced, where single bytes are."""
+    rows = _replacements(transparency.encoding)
+    if not rows:
+        return None
+    cells = ((code(hex_bytes(bytes([byte]))), code(hex_bytes(wire))) for byte, wire in rows)
+    return table(("Data", "On the wire"), cells)
+
+
+def _replacements(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:
+    match encoding:
+        case Substitution():
+            return encoding.table
+        case Escape():
+            return tuple(
+                (byte, bytes([encoding.byte, byte ^ encoding.xor])) for byte in encoding.of
+            )
+        case _:
+            return ()

@@ -1,0 +1,96 @@
+"""What a page records of the document: exchanges, decisions, and what it does not say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from protogen.model.messages import Exchange, Message, Step
+from protogen.model.protocol import Decision, Protocol
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.anchors import example_anchor, message_link
+from protogen.targets.markdown.origin import about_line, place
+from protogen.targets.markdown.table import Table, table
+from protogen.targets.markdown.walk import named_fields
+from protogen.targets.markdown.words import code, hex_bytes, plural, sentence, sentences
+
+_MOST_BYTES = 24
+"""Bytes of an exchange's step that are printed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExchangeView:
+    """A sequence of messages."""
+
+    title: str
+    about: str
+    table: Table
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DecisionView:
+    """A question that the document leaves open, and what was chosen."""
+
+    name: str
+    question: str
+    document: str
+    choice: str
+    because: str
+    source: str
+
+
+def exchange_view(exchange: Exchange, protocol: Protocol) -> ExchangeView:
+    """Return a sequence of messages with the bytes of their examples."""
+    rows = [_step(index, step, protocol) for index, step in enumerate(exchange.steps, 1)]
+    return ExchangeView(
+        title=markdown(exchange.title or exchange.name),
+        about=about_line(exchange.about),
+        table=table(("Step", "From", "Message", "Example", "Bytes", "What happens"), rows),
+    )
+
+
+def _step(index: int, step: Step, protocol: Protocol) -> tuple[str, ...]:
+    message = protocol.message(step.message)
+    examples = {example.name: example for example in message.examples}
+    example = examples.get(step.example) if step.example else None
+    sender = example.sender if example else message.senders[0]
+    shown = data = ""
+    if example:
+        shown = f"[{example.name}](#{example_anchor(message.name, example.name)})"
+        data = code(_cut(hex_bytes(example.bytes)))
+    about = about_line(step.about)
+    return (str(index), code(sender), message_link(message.name), shown, data, about)
+
+
+def _cut(text: str) -> str:
+    room = 3 * _MOST_BYTES
+    return text if len(text) <= room else f"{text[:room]}..."
+
+
+def decision_view(decision: Decision) -> DecisionView:
+    """Return a decision as sentences."""
+    return DecisionView(
+        name=decision.name,
+        question=sentence(markdown(decision.question)),
+        document=sentence(markdown(decision.document)),
+        choice=sentence(markdown(decision.choice)),
+        because=sentence(markdown(decision.because)),
+        source=place(decision.source),
+    )
+
+
+def unknowns(messages: Iterable[Message]) -> Table | None:
+    """Return what the document does not say; None if it says everything."""
+    rows = [row for message in messages for row in _unknown_rows(message)]
+    return table(("Message", "Field", "What is known", "Where"), rows) if rows else None
+
+
+def _unknown_rows(message: Message) -> Iterator[tuple[str, ...]]:
+    if message.unspecified:
+        known = f"{plural(message.sizes, 'byte')} of payload"
+        yield message_link(message.name), "all", known, place(message.about.source)
+        return
+    for path, field in named_fields(message.fields):
+        if field.unknown:
+            known = sentences(plural(field.type.sizes, "byte"), markdown(field.about.doc))
+            yield message_link(message.name), code(path.shown), known, place(field.about.source)

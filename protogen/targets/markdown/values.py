@@ -1,0 +1,218 @@
+"""Raw values and what they mean, in a few words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from protogen.model.fields import Constant, Field
+from protogen.model.origin import About
+from protogen.model.types import Enum, Flags, Integer, NamedBit, NamedValue
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.path import Path
+from protogen.targets.markdown.types import integer_of
+from protogen.targets.markdown.words import (
+    bounds,
+    code,
+    hex_bytes,
+    number,
+    plural,
+    short_number,
+)
+
+_FEW = 4
+"""So many names, without anything to add, are listed where they are used."""
+
+
+@dataclass(frozen=True, slots=True)
+class Anchors:
+    """Where the tables of values stand: with their message, or once for all that share them."""
+
+    prefix: str
+    shared: frozenset[str] = frozenset()
+
+    def of_type(self, path: Path, integer: Integer) -> str:
+        """Return the anchor for the values of the field at `path`."""
+        named = integer.enum or integer.flags
+        if named is not None and named.name in self.shared:
+            return type_anchor(named)
+        return f"{self.prefix}{path.anchor}"
+
+    def of_special(self, path: Path) -> str:
+        """Return the anchor for the special values of the field at `path`."""
+        return f"{self.prefix}{path.anchor}--special"
+
+
+def type_anchor(named: Enum | Flags) -> str:
+    """Return the anchor of a named type's table."""
+    return f"type-{named.name}"
+
+
+def range_text(field: Field, path: Path, anchors: Anchors) -> str:
+    """Say which raw values the field at `path` takes, with links to the tables of its values."""
+    texts = (
+        _constant_text(field),
+        "" if field.const is not None else _named_text(field, path, anchors),
+        _bounds_text(field),
+        _default_text(field),
+        _special_text(field, anchors.of_special(path)),
+    )
+    return "; ".join(text for text in texts if text)
+
+
+def constant(value: Constant, integer: Integer | None) -> str:
+    """Print a raw value as a schema may give it for a constant or a default."""
+    if isinstance(value, tuple):
+        return ", ".join(constant(item, integer) for item in value)
+    if isinstance(value, bytes):
+        return code(hex_bytes(value)) if value else "no bytes"
+    if isinstance(value, str):
+        return markdown(f"'{value}'")
+    if integer is None or isinstance(value, bool | float):
+        return code(value)
+    return raw_text(int(value), integer)
+
+
+def raw_text(value: int, integer: Integer) -> str:
+    """Print a raw value: a character as one, its name behind it where it has one."""
+    shown = character(value) if integer.role == "char" else ""
+    name = name_of(value, integer.enum)
+    return " ".join(filter(None, (shown, code(short_number(value)), name)))
+
+
+def character(value: int) -> str:
+    """Print a character code as the character, if it can be seen."""
+    return markdown(f"'{chr(value)}'") if 0x20 < value < 0x7F else ""
+
+
+def name_of(value: int, enum: Enum | None) -> str:
+    """Return the enum's name of a raw value; empty if it has none."""
+    values = enum.values if enum else ()
+    return next((item.name for item in values if item.value == value), "")
+
+
+def _constant_text(field: Field) -> str:
+    if field.const is None:
+        return ""
+    return f"always {constant(field.const, integer_of(field.type))}"
+
+
+def _default_text(field: Field) -> str:
+    if field.default is None:
+        return ""
+    return f"default {constant(field.default, integer_of(field.type))}"
+
+
+def _named_text(field: Field, path: Path, anchors: Anchors) -> str:
+    integer = integer_of(field.type)
+    if integer is None:
+        return ""
+    anchor = anchors.of_type(path, integer)
+    if integer.enum:
+        return values_text(integer.enum.values, anchor)
+    if integer.flags:
+        return _bits_text(integer.flags.bits, anchor)
+    return f"[bit ranges](#{anchor})" if integer.bit_fields else ""
+
+
+def values_text(values: Sequence[NamedValue], anchor: str) -> str:
+    """List named values if they are few; link to their table where that tells more."""
+    names = [f"{code(short_number(item.value))} {item.name}" for item in values]
+    return _linked(names, "value", anchor if tells_more(values) else "")
+
+
+def _bits_text(bits: Sequence[NamedBit], anchor: str) -> str:
+    names = [f"bit {item.bit} {item.name}" for item in bits]
+    return _linked(names, "flag", anchor if tells_more(bits) else "")
+
+
+def _special_text(field: Field, anchor: str) -> str:
+    names = [f"{code(short_number(item.value))} {item.name}" for item in field.special]
+    return _linked(names, "special value", anchor if tells_more(field.special) else "")
+
+
+def _linked(names: Sequence[str], noun: str, anchor: str) -> str:
+    text = ", ".join(names) if len(names) <= _FEW else plural(len(names), noun)
+    return f"[{text}](#{anchor})" if anchor else text
+
+
+def _bounds_text(field: Field) -> str:
+    """Print the range, unless names or a constant say more than the type's own bounds."""
+    integer = integer_of(field.type)
+    named = integer and (integer.enum or integer.flags or integer.bit_fields)
+    if field.least is None and field.greatest is None:
+        return ""
+    if not field.ranged and (named or field.const is not None or _is_plain_char(integer)):
+        return ""
+    raw = bounds(field.least, field.greatest)
+    return f"{raw} ({_physical_bounds(field)})" if field.scaled else raw
+
+
+def _is_plain_char(integer: Integer | None) -> bool:
+    return integer is not None and integer.role in ("char", "bool")
+
+
+def _physical_bounds(field: Field) -> str:
+    ends = [None if end is None else physical(end, field) for end in (field.least, field.greatest)]
+    low, high = ends if field.scale > 0 else reversed(ends)
+    unit = f" {markdown(field.unit)}" if field.unit else ""
+    return f"{bounds(low, high)}{unit}"
+
+
+def physical(raw: Fraction, field: Field) -> Fraction:
+    """Return the physical value of a raw value."""
+    return raw * field.scale + field.offset
+
+
+def unit_text(field: Field) -> str:
+    """Say how the physical value follows from the raw value, and its unit."""
+    unit = markdown(field.unit or "")
+    if not field.scaled:
+        return unit
+    return f"{unit}, {_formula(field)}" if unit else _formula(field)
+
+
+def _formula(field: Field) -> str:
+    text = "raw"
+    if field.scale.numerator == 1 and field.scale.denominator > 1:
+        text = f"raw / {field.scale.denominator}"
+    elif field.scale != 1:
+        text = f"raw x {number(field.scale)}"
+    sign = "-" if field.offset < 0 else "+"
+    return f"{text} {sign} {number(abs(field.offset))}" if field.offset else text
+
+
+def tells_more(items: Sequence[NamedValue] | Sequence[NamedBit]) -> bool:
+    """Say whether a table has more to show than a list in a cell."""
+    return len(items) > _FEW or any(item.about != About() for item in items)
+
+
+def value_meaning(value: int, field: Field, kind: Integer) -> str:
+    """Say what a raw value means: its names, else its physical value, else what the field is."""
+    named = _special_name(value, field) or _names(value, kind)
+    if named:
+        return named
+    if field.unit or field.scaled:
+        unit = markdown(field.unit or "")
+        return f"{number(physical(Fraction(value), field))} {unit}".strip()
+    return markdown(field.about.doc)
+
+
+def _special_name(value: int, field: Field) -> str:
+    return next((code(item.name) for item in field.special if item.value == value), "")
+
+
+def _names(value: int, kind: Integer) -> str:
+    if kind.enum:
+        name = name_of(value, kind.enum)
+        return code(name) if name else "no name"
+    if kind.flags:
+        names = [code(item.name) for item in kind.flags.bits if value >> item.bit & 1]
+        return ", ".join(names) or "no flag"
+    runs = ((bits, (value & bits.mask) >> bits.low) for bits in kind.bit_fields)
+    return ", ".join(f"{code(bits.name)} {_run_text(run, bits.enum)}" for bits, run in runs)
+
+
+def _run_text(value: int, enum: Enum | None) -> str:
+    return f"{value} {name_of(value, enum)}".strip()

@@ -1,0 +1,283 @@
+"""Enums, structs and messages as the template prints them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protogen.model.fields import Field
+from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
+from protogen.model.types import (
+    Array,
+    BitField,
+    Enum,
+    Flags,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+from protogen.targets.escape import paragraphs, python_comment
+from protogen.targets.python import describing
+from protogen.targets.python.formats import constant, field_format, is_empty
+from protogen.targets.python.literals import call, octets, text, tuple_of
+from protogen.targets.python.rules import field_rule
+from protogen.targets.python.spelling import class_name, member_name, unit_suffix
+from protogen.targets.python.wrapping import docstring, remark, union, wrapped
+
+_INDENT = 4
+_BUILTINS = frozenset({"str", "bytes", "list", "int", "float", "bool"})
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A named value."""
+
+    name: str
+    value: str
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class EnumClass:
+    """An enum or a set of flags."""
+
+    name: str
+    base: str
+    doc: str
+    members: tuple[Member, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """A field of a dataclass, or a property that shows one."""
+
+    text: str
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class RecordClass:
+    """A struct or a message."""
+
+    name: str
+    base: str
+    doc: str
+    attributes: tuple[Attribute, ...]
+    constants: tuple[str, ...]
+    """What only messages have: name, senders, identity and sizes."""
+    format: tuple[str, ...]
+    rules: str
+    views: tuple[Attribute, ...]
+
+
+def enum_class(item: Enum) -> EnumClass:
+    """An enum."""
+    members = tuple(
+        Member(member_name(entry.name), str(entry.value), _comment(entry.about.doc))
+        for entry in item.values
+    )
+    doc = docstring(describing.named(item.name, item.about), _INDENT)
+    return EnumClass(class_name(item.name), "_rt.OpenEnum", doc, members)
+
+
+def flags_class(item: Flags) -> EnumClass:
+    """A set of flags."""
+    members = tuple(
+        Member(member_name(entry.name), f"0x{1 << entry.bit:02X}", _comment(entry.about.doc))
+        for entry in item.bits
+    )
+    doc = docstring(describing.named(item.name, item.about), _INDENT)
+    return EnumClass(class_name(item.name), "_rt.Flags", doc, members)
+
+
+def _comment(doc: str) -> str:
+    first = next(iter(paragraphs(doc)), "")
+    return python_comment(first) if len(first) <= 60 else ""
+
+
+def struct_class(item: Struct) -> RecordClass:
+    """A struct."""
+    doc = docstring(describing.named(item.name, item.about), _INDENT)
+    return _record(class_name(item.name), "_rt.Record", doc, item.fields, ())
+
+
+def message_class(item: Message, identity: str) -> RecordClass:
+    """A message; `identity` says in words what its identity is."""
+    values = tuple_of(f"0x{value:02X}" for value in item.identity)
+    constants = (
+        f"NAME = {text(item.name)}",
+        f"SENDERS = {tuple_of(map(text, item.senders))}",
+        f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
+        f"SIZES = {_sizes(item.sizes)}",
+    )
+    doc = docstring(describing.message(item), _INDENT)
+    return _record(class_name(item.name), "_rt.Message", doc, item.fields, constants)
+
+
+def _sizes(sizes: SizeSet) -> str:
+    step = str(sizes.step) if sizes.step > 1 else None
+    return call("_rt.Sizes", str(sizes.least), str(sizes.greatest), step=step)
+
+
+def _record(
+    name: str, base: str, doc: str, fields: tuple[Field, ...], constants: tuple[str, ...]
+) -> RecordClass:
+    taken = frozenset(field.name for field in fields)
+    return RecordClass(
+        name=name,
+        base=base,
+        doc=doc,
+        attributes=tuple(_attribute(field, taken) for field in fields),
+        constants=constants,
+        format=tuple(_format_line(field) for field in fields),
+        rules=_rules(fields),
+        views=tuple(view for field in fields for view in _views(field, taken)),
+    )
+
+
+def _format_line(field: Field) -> str:
+    """One line of FORMAT; a long one is broken before the slash, as formatters do."""
+    name, indent = text(field.name), 2 * _INDENT
+    expression = field_format(field)
+    if indent + len(name) + 3 + len(expression) + 1 <= 100 or "(" not in expression:
+        return f"{name} / {expression},"
+    broken = wrapped(expression, indent + 2, indent)
+    return f"{name}\n{' ' * indent}/ {broken},"
+
+
+def _rules(fields: tuple[Field, ...]) -> str:
+    """The rules of all fields; several stand below each other."""
+    if len(fields) < 2:
+        only = [f"({text(field.name)}, {field_rule(field)})" for field in fields]
+        return wrapped(tuple_of(only), _INDENT + len("RULES = "), _INDENT, after=0)
+    lines = [" " * 2 * _INDENT + _rule_line(field) for field in fields]
+    return "\n".join(["(", *lines, " " * _INDENT + ")"])
+
+
+def _rule_line(field: Field) -> str:
+    expression = f"({text(field.name)}, {field_rule(field)})"
+    return wrapped(expression, 2 * _INDENT, 2 * _INDENT) + ","
+
+
+def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
+    prefix = "_builtins." if taken & _BUILTINS else ""
+    line = union(f"{field.name}: ", annotation(field.type, prefix), _INDENT)
+    default = _default(field)
+    if default is not None:
+        column = _INDENT + len(line.rpartition("\n")[2]) + 3
+        line = f"{line} = {wrapped(default, column, _INDENT, after=0)}"
+    return Attribute(line, remark(describing.field(field), _INDENT))
+
+
+def annotation(type_: Type, builtin: str = "") -> str:
+    """The type of a field's attribute. Named values may also be given as numbers."""
+    match type_:
+        case Integer():
+            return _integer_annotation(type_, builtin)
+        case Float():
+            return f"{builtin}float"
+        case Text():
+            return f"{builtin}str"
+        case Octets():
+            return f"{builtin}bytes"
+        case Struct():
+            return "None" if is_empty(type_) else class_name(type_.name)
+        case Array():
+            return f"{builtin}list[{annotation(type_.element, builtin)}]"
+        case Switch():
+            return _switch_annotation(type_, builtin)
+
+
+def _integer_annotation(type_: Integer, builtin: str) -> str:
+    if type_.role == "bool":
+        return f"{builtin}bool"
+    named = type_.enum or type_.flags
+    return f"{class_name(named.name)} | {builtin}int" if named else f"{builtin}int"
+
+
+def _switch_annotation(type_: Switch, builtin: str) -> str:
+    choices = [annotation(case.type, builtin) for case in type_.cases]
+    if type_.rest is not None:
+        choices.append(f"{builtin}bytes")
+    distinct = dict.fromkeys(choices)
+    ordered = [choice for choice in distinct if choice != "None"]
+    return " | ".join([*ordered, *(["None"] if "None" in distinct else [])])
+
+
+def _default(field: Field) -> str | None:
+    """The default of an attribute: a constant needs not be given."""
+    value = field.const if field.const is not None else field.default
+    match value:
+        case None:
+            return None
+        case tuple():
+            return f"_field(default_factory=lambda: {list(value)})"
+        case bytes():
+            return octets(value)
+        case str():
+            return text(value)
+        case int() if isinstance(field.type, Integer):
+            return _named_default(field, field.type, value)
+    return constant(field) if field.const is not None else repr(value)
+
+
+def _named_default(field: Field, type_: Integer, value: int) -> str:
+    if type_.role == "bool":
+        return str(bool(value))
+    if type_.enum:
+        names = {entry.value: entry.name for entry in type_.enum.values}
+        if value in names:
+            return f"{class_name(type_.enum.name)}.{member_name(names[value])}"
+    return str(value)
+
+
+# --- properties -----------------------------------------------------------------------------------
+
+
+def _views(field: Field, taken: frozenset[str]) -> list[Attribute]:
+    views = [_physical(field, taken)] if field.scaled else []
+    if isinstance(field.type, Integer):
+        views += [_bits(field, item, taken) for item in field.type.bit_fields]
+    return [view for view in views if view is not None]
+
+
+def _free(name: str, taken: frozenset[str]) -> str:
+    """A name that no field has."""
+    while name in taken:
+        name += "_value"
+    return name
+
+
+def _physical(field: Field, taken: frozenset[str]) -> Attribute:
+    name = _free(f"{field.name}_{unit_suffix(field.unit)}", taken)
+    kind = "PhysicalList" if isinstance(field.type, Array) else "Physical"
+    kind += "OrNone" if field.special else ""
+    unit = f" in {field.unit}" if field.unit else ", scaled"
+    what = next(iter(paragraphs(field.about.doc)), field.name.replace("_", " ").capitalize())
+    none = "; None: no reading" if field.special else ""
+    texts = describing.escaped([f"{what.rstrip('.')}{unit}{_physical_range(field)}{none}."])
+    return Attribute(f"{name} = _rt.{kind}({text(field.name)})", remark(texts, _INDENT))
+
+
+def _physical_range(field: Field) -> str:
+    if field.least is None or field.greatest is None:
+        return ""
+    ends = sorted(float(end * field.scale + field.offset) for end in (field.least, field.greatest))
+    return f", {ends[0]:.10g}..{ends[1]:.10g}"
+
+
+def _bits(field: Field, item: BitField, taken: frozenset[str]) -> Attribute:
+    name = _free(f"{field.name}_{item.name}", taken)
+    bounds = (text(field.name), str(item.low), str(item.high))
+    if item.enum:
+        view = call("_rt.EnumRange", *bounds, class_name(item.enum.name))
+    else:
+        view = call("_rt.BitRange", *bounds)
+    what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())
+    run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
+    texts = describing.escaped([f"{what.rstrip('.')}; {run} of {field.name}."])
+    return Attribute(f"{name} = {view}", remark(texts, _INDENT))

@@ -1,0 +1,128 @@
+"""Types of the model as construct declarations."""
+
+from __future__ import annotations
+
+from protogen.model.fields import Field
+from protogen.model.types import (
+    Array,
+    Case,
+    Counted,
+    Extent,
+    Fill,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+from protogen.targets.python.literals import call, mapping, octets, text
+from protogen.targets.python.spelling import class_name
+
+
+def field_format(field: Field) -> str:
+    """The declaration of a field, its constant included."""
+    return _checked(field, type_format(field.type))
+
+
+def _checked(field: Field, declared: str) -> str:
+    """Values that a receiver has to refuse: other than the constant, outside of a closed enum."""
+    if field.const is not None:
+        return call("_c.Fixed", declared, constant(field))
+    if isinstance(field.type, Integer) and field.type.enum and field.type.enum.closed:
+        return call("_c.Closed", declared, class_name(field.type.enum.name))
+    return declared
+
+
+def constant(field: Field) -> str:
+    """The raw value of a field's constant, as `FORMAT` has it."""
+    match field.const:
+        case bytes():
+            return octets(field.const)
+        case str():
+            return text(field.const)
+        case tuple():
+            return str(list(field.const))
+        case int() if isinstance(field.type, Integer) and field.type.role == "bool":
+            return str(bool(field.const))
+    return repr(field.const)
+
+
+def type_format(type_: Type) -> str:
+    """The declaration of a type."""
+    match type_:
+        case Integer():
+            return _integer(type_)
+        case Float():
+            kind = "_c.SevenBitFloat" if type_.byte_bits == 7 else "_c.Float"
+            return call(kind, str(type_.bits), order=_order(type_))
+        case Text() | Octets():
+            return _string(type_)
+        case Struct():
+            return f"{class_name(type_.name)}.FORMAT"
+        case Array():
+            return _array(type_)
+        case Switch():
+            return _switch(type_)
+
+
+def _integer(type_: Integer) -> str:
+    if type_.role == "bool":
+        return "_c.Flag01"
+    kind = "_c.SevenBit" if type_.byte_bits == 7 else "_c.Int"
+    signed = "signed=True" if type_.signed else None
+    arguments = [str(type_.bits), *([signed] if signed else [])]
+    return call(kind, *arguments, order=_order(type_))
+
+
+def _order(type_: Integer | Float) -> str | None:
+    return text(type_.byte_order) if type_.size > 1 else None
+
+
+def _string(type_: Text | Octets) -> str:
+    kind = "_c.Latin1" if isinstance(type_, Text) else "_c.Octets"
+    seven = "True" if type_.byte_bits == 7 else None
+    if isinstance(type_.extent, Fill):
+        return call(f"{kind}Fill", str(type_.extent.greatest), seven_bit=seven)
+    return call(kind, extent(type_.extent), seven_bit=seven)
+
+
+def extent(of: Extent) -> str:
+    """A number, or the name of the field that counts."""
+    match of:
+        case Fixed():
+            return str(of.count)
+        case Counted():
+            return text(of.field)
+        case Fill():
+            return str(of.greatest)
+
+
+def _array(type_: Array) -> str:
+    element = _checked_element(type_.element)
+    if isinstance(type_.extent, Fill):
+        return call("_c.Fill", element, str(type_.extent.greatest))
+    return call("_c.Counted", extent(type_.extent), element)
+
+
+def _checked_element(type_: Type) -> str:
+    if isinstance(type_, Integer) and type_.enum and type_.enum.closed:
+        return call("_c.Closed", type_format(type_), class_name(type_.enum.name))
+    return type_format(type_)
+
+
+def _switch(type_: Switch) -> str:
+    cases = mapping({str(case.value): _case(case) for case in type_.cases})
+    rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest))
+    return call("_c.Cases", text(type_.selector), cases, rest=rest)
+
+
+def _case(case: Case) -> str:
+    return "_c.Pass" if is_empty(case.type) else type_format(case.type)
+
+
+def is_empty(type_: Type) -> bool:
+    """Whether the type is a struct without fields, which Python shows as None."""
+    return isinstance(type_, Struct) and not type_.fields

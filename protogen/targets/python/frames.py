@@ -1,0 +1,160 @@
+"""Frames as the runtime's tables of parts."""
+
+from __future__ import annotations
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    CounterPart,
+    Encoding,
+    Escape,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    Substitution,
+    Transparency,
+    ValuePart,
+)
+from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
+from protogen.model.protocol import Sender
+from protogen.model.types import Integer
+from protogen.targets.python.literals import call, mapping, octets, text, tuple_of
+
+
+def part(item: Part) -> str:
+    """One part of the table."""
+    name = text(item.name)
+    match item:
+        case LiteralPart():
+            return call("_rt.LiteralPart", name, octets(item.bytes))
+        case IdentityPart():
+            return call("_rt.IdentityPart", name, _number(item.type))
+        case LengthPart():
+            counts = f"counts={tuple_of(map(text, item.counts))}"
+            return call("_rt.LengthPart", name, _number(item.type), counts, **_bounds(item))
+        case CounterPart() | ValuePart():
+            kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
+            default = None if item.default is None else str(item.default)
+            return call(kind, name, _number(item.type), **_bounds(item), default=default)
+        case ChecksumPart():
+            return _checksum_part(item)
+        case PayloadPart():
+            return call("_rt.PayloadPart", name)
+    raise TypeError(f"{type(item).__name__} is no part that a frame has")
+
+
+def _number(type_: Integer) -> str:
+    order = text(type_.byte_order) if type_.size > 1 else None
+    seven = "True" if type_.byte_bits == 7 else None
+    return call("_rt.Number", str(type_.bits), order=order, seven_bit=seven)
+
+
+def _bounds(item: NumberPart) -> dict[str, str]:
+    return {"least": str(item.least), "greatest": str(item.greatest)}
+
+
+def _checksum_part(item: ChecksumPart) -> str:
+    return call(
+        "_rt.ChecksumPart",
+        text(item.name),
+        _number(item.type),
+        f"algorithm={algorithm(item.algorithm)}",
+        f"covers={tuple_of(map(text, item.covers))}",
+        over_wire="True" if item.over_wire else None,
+        when_payload="True" if item.when_payload else None,
+    )
+
+
+def algorithm(spec: ChecksumSpec) -> str:
+    """A checksum algorithm with its parameters."""
+    init = str(spec.init) if spec.init else None
+    match spec.kind:
+        case "xor":
+            return call("_checksum.Xor8", init=init)
+        case "sum":
+            return call("_checksum.Sum8", init=init, negated="True" if spec.negated else None)
+        case "fletcher":
+            return "_checksum.Fletcher16()"
+    return _crc(spec)
+
+
+def _crc(spec: ChecksumSpec) -> str:
+    digits = -(-spec.width // 4)
+    return call(
+        "_checksum.Crc",
+        str(spec.width),
+        f"0x{spec.poly:0{digits}X}",
+        init=f"0x{spec.init:0{digits}X}",
+        refin=str(spec.refin),
+        refout=str(spec.refout),
+        xorout=f"0x{spec.xorout:0{digits}X}",
+    )
+
+
+def transparency(item: Transparency | None) -> str:
+    """What stuffs and unstuffs the covered parts."""
+    if item is None:
+        return "None"
+    lenient = "True" if item.lenient else None
+    return _encoding(item.encoding, lenient)
+
+
+def _encoding(encoding: Encoding, lenient: str | None) -> str:
+    match encoding:
+        case Substitution():
+            table = mapping({f"0x{key:02X}": octets(value) for key, value in encoding.table})
+            return call("_transparency.Substitution", table, lenient=lenient)
+        case Escape():
+            of = ", ".join(f"0x{byte:02X}" for byte in encoding.of)
+            given = f"frozenset({{{of}}})"
+            return call(
+                "_transparency.Escape",
+                f"0x{encoding.byte:02X}",
+                given,
+                _transform(encoding),
+                lenient=lenient,
+            )
+        case Base16():
+            return call("_transparency.Base16Upper", lenient=lenient)
+        case Cobs():
+            return call("_transparency.Cobs", lenient=lenient)
+
+
+def _transform(encoding: Escape) -> str:
+    return {0xFF: '"invert"', 0: '"none"'}.get(encoding.xor, f"0x{encoding.xor:02X}")
+
+
+def start(item: Start) -> str:
+    """How a frame starts."""
+    match item:
+        case StartLiteral():
+            return call("_rt.StartLiteral", octets(item.bytes), protected=str(item.protected))
+        case StartSet():
+            bounds = (f"0x{item.least:02X}", f"0x{item.greatest:02X}")
+            return call("_rt.StartSet", *bounds, protected=str(item.protected))
+        case AfterEnd():
+            return "_rt.AfterEnd()"
+        case Anywhere():
+            return "_rt.Anywhere()"
+
+
+def end(item: End | None) -> str:
+    """How a frame ends."""
+    if item is None:
+        return "None"
+    return call("_rt.End", octets(item.bytes), protected=str(item.protected))
+
+
+def stuffed(sender: Sender) -> str:
+    """The names of the parts under transparency."""
+    frame = sender.frame
+    if frame.transparency is None:
+        return "()"
+    names = [item.name for item in frame.parts]
+    first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
+    return tuple_of(text(name) for name in names[first : last + 1])

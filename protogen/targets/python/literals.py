@@ -1,0 +1,47 @@
+"""Values as Python expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+
+def number(value: Fraction | int) -> str:
+    """An exact number, as short as Python has it."""
+    exact = Fraction(value)
+    if exact.denominator == 1:
+        return str(exact.numerator)
+    return f"_Fraction({exact.numerator}, {exact.denominator})"
+
+
+def octets(value: bytes) -> str:
+    """Bytes, as hex digits where they are no printable text."""
+    if value.isascii() and value.decode("ascii").isprintable():
+        return "b" + _quoted(value.decode("ascii"))
+    return f'bytes.fromhex("{value.hex(" ").upper()}")' if value else 'b""'
+
+
+def text(value: str) -> str:
+    """A string in double quotes."""
+    return _quoted(value)
+
+
+def _quoted(value: str) -> str:
+    return '"' + repr("'" + value)[2:-1].replace("\\'", "'").replace('"', '\\"') + '"'
+
+
+def tuple_of(items: Iterable[str]) -> str:
+    """A tuple of expressions."""
+    listed = list(items)
+    return f"({', '.join(listed)}{',' if len(listed) == 1 else ''})"
+
+
+def mapping(items: Mapping[str, str]) -> str:
+    """A dictionary of expressions."""
+    return "{" + ", ".join(f"{key}: {value}" for key, value in items.items()) + "}"
+
+
+def call(function: str, *arguments: str, **named: str | None) -> str:
+    """A call; named arguments that are None are left out."""
+    given = [f"{name}={value}" for name, value in named.items() if value is not None]
+    return f"{function}({', '.join([*arguments, *given])})"

@@ -1,0 +1,295 @@
+"""A generated module as the template prints it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protogen.model.frame import CounterPart, IdentityPart, ValuePart
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.targets.escape import paragraphs
+from protogen.targets.python import classes, describing, frames
+from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
+from protogen.targets.python.formats import is_empty
+from protogen.targets.python.literals import call, text, tuple_of
+from protogen.targets.python.spelling import class_name
+from protogen.targets.python.wrapping import docstring, method, remark, union, wrapped
+
+_INDENT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class PartsClass:
+    """The dataclass of the parts that events show."""
+
+    name: str
+    attributes: tuple[Attribute, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SenderView:
+    """What one endpoint sends."""
+
+    name: str
+    title: str
+    upper: str
+    union: str
+    """Name of the type of its messages."""
+    union_text: str
+    parts: str
+    frame: str
+    """Name of the constant."""
+    frame_text: str
+    """Its value; empty where another sender has the same frame."""
+    spec_text: str
+    messages: tuple[RecordClass, ...]
+    """Messages that no sender before it sends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """Everything that the template prints."""
+
+    name: str
+    doc: str
+    spec_hash: str
+    version: str | None
+    uses: frozenset[str]
+    """Which optional imports are needed."""
+    enums: tuple[EnumClass, ...]
+    structs: tuple[RecordClass, ...]
+    parts: tuple[PartsClass, ...]
+    senders: tuple[SenderView, ...]
+    any_message: str
+    any_parts: str
+    literal: str
+    protocol_text: str
+    arguments: tuple[str, ...]
+    """Counters and values that `encode` takes."""
+    arguments_doc: str
+    counts: bool
+    registry: str
+    decoder_heads: tuple[str, ...]
+
+
+def view(protocol: Protocol) -> Module:
+    """The module of a protocol."""
+    parts = _parts_classes(protocol)
+    senders = _senders(protocol, parts)
+    any_message = " | ".join(dict.fromkeys(sender.union for sender in senders))
+    any_parts = " | ".join(dict.fromkeys(sender.parts for sender in senders))
+    arguments = _arguments(protocol)
+    structs = tuple(classes.struct_class(item) for item in protocol.structs if not is_empty(item))
+    return Module(
+        name=protocol.name,
+        doc=docstring(describing.module(protocol), 0),
+        spec_hash=protocol.spec_hash,
+        version=None if protocol.version is None else text(protocol.version),
+        uses=_uses(structs, senders),
+        enums=(
+            *(classes.enum_class(item) for item in protocol.enums),
+            *(classes.flags_class(item) for item in protocol.flags),
+        ),
+        structs=structs,
+        parts=tuple(dict.fromkeys(parts.values())),
+        senders=senders,
+        any_message=any_message,
+        any_parts=any_parts,
+        literal=f"_typing.Literal[{', '.join(text(sender.name) for sender in senders)}]",
+        protocol_text=_protocol_text(protocol, senders, any_message, any_parts),
+        arguments=arguments,
+        arguments_doc=_arguments_doc(protocol),
+        counts=any(_counters(sender) for sender in protocol.senders),
+        registry=_registry(protocol),
+        decoder_heads=_decoder_heads(senders, any_message, any_parts),
+    )
+
+
+def _uses(structs: tuple[RecordClass, ...], senders: tuple[SenderView, ...]) -> frozenset[str]:
+    """What the optional imports are needed for, read off the printed text."""
+    records = [*structs, *(record for sender in senders for record in sender.messages)]
+    texts = [record.rules for record in records]
+    texts += [item.text for record in records for item in record.attributes]
+    texts += [sender.frame_text for sender in senders]
+    joined = "\n".join(texts)
+    names = ("_Fraction(", "_field(", "_builtins.", "_checksum.", "_transparency.")
+    return frozenset(name.strip("(.") for name in names if name in joined)
+
+
+# --- parts ------------------------------------------------------------------------------------
+
+
+def _shown(sender: Sender) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
+    kinds = (IdentityPart, CounterPart, ValuePart)
+    return tuple(part for part in sender.frame.parts if isinstance(part, kinds))
+
+
+def _parts_classes(protocol: Protocol) -> dict[str, PartsClass]:
+    """The class of each sender's parts; one for all where they are alike."""
+    attributes = {sender.name: _part_attributes(sender) for sender in protocol.senders}
+    alike = len(set(attributes.values())) == 1
+    return {
+        name: PartsClass("Parts" if alike else f"{class_name(name)}Parts", items)
+        for name, items in attributes.items()
+    }
+
+
+def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:
+    attributes = []
+    for part in _shown(sender):
+        first = next(iter(paragraphs(part.about.doc)), _role(part))
+        texts = describing.escaped([describing.sentence(first)])
+        attributes.append(Attribute(f"{part.name}: int", remark(texts, _INDENT)))
+    return tuple(attributes)
+
+
+def _role(part: IdentityPart | CounterPart | ValuePart) -> str:
+    match part:
+        case IdentityPart():
+            return "Tells which message this is"
+        case CounterPart():
+            return "Counts what the sender sends"
+        case ValuePart():
+            return "A number that the sender chooses"
+
+
+def _counters(sender: Sender) -> list[CounterPart]:
+    return [part for part in sender.frame.parts if isinstance(part, CounterPart)]
+
+
+def _arguments(protocol: Protocol) -> tuple[str, ...]:
+    names = [part.name for sender in protocol.senders for part in sender.frame.caller_parts]
+    return tuple(dict.fromkeys(names))
+
+
+def _arguments_doc(protocol: Protocol) -> str:
+    sentences: dict[str, str] = {}
+    for sender in protocol.senders:
+        for part in sender.frame.caller_parts:
+            bounds = f"`{part.name}` ({part.least}..{part.greatest})"
+            default = f"is {part.default} if not given" if part.default is not None else None
+            counted = isinstance(part, CounterPart)
+            missing = "has to be given" + ("; an `Encoder` counts by itself" if counted else "")
+            sentences.setdefault(part.name, f"{bounds} {default or missing}.")
+    return " ".join(sentences.values())
+
+
+# --- senders ----------------------------------------------------------------------------------
+
+
+def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderView, ...]:
+    views: list[SenderView] = []
+    frame_names: dict[str, str] = {}
+    titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
+    printed: set[str] = set()
+    for sender in protocol.senders:
+        frame_text = _frame(sender)
+        known = frame_text in frame_names
+        frame = frame_names.setdefault(frame_text, f"{sender.name.upper()}_FRAME")
+        new = [message for message in sender.messages if message.name not in printed]
+        printed.update(message.name for message in new)
+        union_name = f"{class_name(sender.name)}Message"
+        union_text = " | ".join(class_name(message.name) for message in sender.messages)
+        views.append(
+            SenderView(
+                name=sender.name,
+                title=titles[sender.name],
+                upper=sender.name.upper(),
+                union=union_name,
+                union_text=union(f"{union_name} = ", union_text, 0),
+                parts=parts[sender.name].name,
+                frame=frame,
+                frame_text="" if known else frame_text,
+                spec_text=_sender_spec(sender, frame, parts[sender.name].name, union_name),
+                messages=tuple(
+                    classes.message_class(message, _identity_words(sender, message))
+                    for message in new
+                ),
+            )
+        )
+    return tuple(views)
+
+
+def _decoder_heads(senders: tuple[SenderView, ...], message: str, parts: str) -> tuple[str, ...]:
+    """The heads of `Decoder.__init__`: overloads for each endpoint and for any, or the only one."""
+    if len(senders) == 1:
+        return (_decoder_head(message, parts, "Sender", ") -> None:"),)
+    heads = [(s.union, s.parts, f'_typing.Literal["{s.name}"]') for s in senders]
+    return tuple(
+        _decoder_head(*head, ") -> None: ...") for head in [*heads, (message, parts, "Sender")]
+    )
+
+
+def _decoder_head(messages: str, parts: str, name: str, end: str) -> str:
+    return method(
+        "def __init__(", f"self: Decoder[{messages}, {parts}], sender: {name}", end, _INDENT
+    )
+
+
+def _identity_words(sender: Sender, message: Message) -> str:
+    """The identity as characters, where it is made of such."""
+    words = [
+        f"{part.name} {text(chr(value))}"
+        for part, value in zip(sender.frame.identity, message.identity, strict=True)
+        if part.type.role == "char" and chr(value).isprintable()
+    ]
+    return ", ".join(words)
+
+
+def _frame(sender: Sender) -> str:
+    framing = sender.framing
+    expression = call(
+        "_rt.FrameSpec",
+        parts=tuple_of(frames.part(part) for part in sender.frame.parts),
+        start=frames.start(framing.start),
+        end=frames.end(framing.end),
+        least=str(framing.least),
+        greatest=str(framing.greatest),
+        greatest_payload=str(framing.payload.greatest),
+        transparency=_unless(frames.transparency(sender.frame.transparency), "None"),
+        stuffed=_unless(frames.stuffed(sender), "()"),
+        seven_bit="True" if framing.seven_bit else None,
+        ambiguous_cut="True" if framing.cut_ambiguous else None,
+    )
+    return wrapped(expression, len(sender.name) + 9, 0, after=0)
+
+
+def _unless(expression: str, default: str) -> str | None:
+    return None if expression == default else expression
+
+
+def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
+    name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{union}, {parts}] = "
+    hidden = {
+        message
+        for overload in sender.overloads
+        if overload.yields is not None
+        for message in overload.messages
+        if message != overload.yields
+    }
+    shown = [class_name(m.name) for m in sender.messages if m.name not in hidden]
+    encode_only = [class_name(m.name) for m in sender.messages if m.name in hidden]
+    expression = call(
+        "_rt.SenderSpec",
+        text(sender.name),
+        frame,
+        parts,
+        messages=tuple_of(shown),
+        encode_only=tuple_of(encode_only) if encode_only else None,
+    )
+    return name + wrapped(expression, len(name), 0, after=0)
+
+
+def _protocol_text(
+    protocol: Protocol, senders: tuple[SenderView, ...], message: str, parts: str
+) -> str:
+    name = f"PROTOCOL: _rt.Protocol[{message}, {parts}] = "
+    specs = [f"{sender.upper}_SENDER" for sender in senders]
+    expression = call("_rt.Protocol", text(protocol.name), *specs, spec_hash="SPEC_HASH")
+    return name + wrapped(expression, len(name), 0, after=0)
+
+
+def _registry(protocol: Protocol) -> str:
+    """Message classes by name."""
+    lines = [f"    {text(m.name)}: {class_name(m.name)}," for m in protocol.messages]
+    return "\n".join(["{", *lines, "}"])

@@ -1,0 +1,134 @@
+"""What the values of a field mean, as the runtime's rules and as type annotations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from protogen.model.fields import Field
+from protogen.model.types import (
+    Array,
+    Case,
+    Counted,
+    Extent,
+    Fill,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+from protogen.targets.python.formats import constant, is_empty
+from protogen.targets.python.literals import call, mapping, number, text
+from protogen.targets.python.spelling import class_name
+
+
+def field_rule(field: Field) -> str:
+    """The rule of a field."""
+    return _rule(field.type, field)
+
+
+def _rule(type_: Type, field: Field | None) -> str:
+    """The rule of a type, with what the field says of its values where it is the field's own."""
+    match type_:
+        case Integer():
+            return _integer(type_, field)
+        case Float():
+            return _float(type_, field)
+        case Text():
+            return call("_rt.TextRule", **_extent("size", type_.extent), const=_const(field))
+        case Octets():
+            return call("_rt.OctetsRule", **_extent("size", type_.extent), const=_const(field))
+        case Struct():
+            return call("_rt.StructRule", class_name(type_.name))
+        case Array():
+            return _array(type_, field)
+        case Switch():
+            return _switch(type_)
+
+
+def _integer(type_: Integer, field: Field | None) -> str:
+    if type_.role == "bool":
+        return call("_rt.BoolRule", const=_const(field))
+    named = type_.enum or type_.flags
+    signed = ["signed=True"] if type_.signed else []
+    return call(
+        "_rt.IntegerRule",
+        str(type_.bits),
+        *signed,
+        named=class_name(named.name) if named else None,
+        closed="True" if type_.enum and type_.enum.closed else None,
+        **(_range(field) if field else {}),
+        const=_const(field),
+        special=_special(field),
+        **(_physical(field) if field else {}),
+    )
+
+
+def _float(type_: Float, field: Field | None) -> str:
+    return call(
+        "_rt.FloatRule",
+        str(type_.bits),
+        **(_range(field) if field else {}),
+        const=_const(field),
+        **(_physical(field) if field else {}),
+    )
+
+
+def _range(field: Field) -> dict[str, str | None]:
+    if not field.ranged or field.least is None or field.greatest is None:
+        return {}
+    return {"least": number(field.least), "greatest": number(field.greatest)}
+
+
+def _const(field: Field | None) -> str | None:
+    return None if field is None or field.const is None else constant(field)
+
+
+def _special(field: Field | None) -> str | None:
+    if field is None or not field.special:
+        return None
+    return mapping({text(item.name): str(item.value) for item in field.special})
+
+
+def _physical(field: Field) -> dict[str, str | None]:
+    return {
+        "scale": _fraction(field.scale) if field.scale != 1 else None,
+        "offset": _fraction(field.offset) if field.offset != 0 else None,
+        "unit": text(field.unit) if field.unit else None,
+    }
+
+
+def _fraction(value: Fraction) -> str:
+    return f"_Fraction({value.numerator}, {value.denominator})"
+
+
+def _extent(key: str, extent: Extent) -> dict[str, str | None]:
+    match extent:
+        case Fixed():
+            return {key: str(extent.count)}
+        case Counted():
+            return {key: text(extent.field)}
+        case Fill():
+            return {"greatest": str(extent.greatest)}
+
+
+def _array(type_: Array, field: Field | None) -> str:
+    """What a field says of range, scale and special values holds for each element."""
+    inner = None if field is None else replace(field, const=None)
+    element = _rule(type_.element, inner)
+    const = _const(field) if field else None
+    return call("_rt.ArrayRule", element, **_extent("count", type_.extent), const=const)
+
+
+def _switch(type_: Switch) -> str:
+    cases = mapping({str(case.value): _case(case) for case in type_.cases})
+    rest = None if type_.rest is None else call("_rt.OctetsRule", greatest=str(type_.rest))
+    return call("_rt.SwitchRule", text(type_.selector), cases, rest=rest)
+
+
+def _case(case: Case) -> str:
+    return "None" if is_empty(case.type) else _rule(case.type, None)

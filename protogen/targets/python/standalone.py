@@ -1,0 +1,50 @@
+"""Modules that carry their runtime along, so that only construct has to be installed.
+
+Each protocol becomes a package: its module, and beside it a copy of the runtime.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import PurePosixPath
+
+from protogen.model.protocol import Protocol
+from protogen.targets.banner import PYTHON, banner
+from protogen.targets.output import File
+from protogen.targets.python.emit import RUNTIME, source
+
+_COPY = "_runtime"
+_IMPORT = re.compile(rf"^(\s*from ){re.escape(RUNTIME)}(\.| )", re.MULTILINE)
+
+
+def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
+    """A package for each protocol."""
+    return tuple(file for protocol in protocols for file in _package(protocol))
+
+
+def _package(protocol: Protocol) -> tuple[File, ...]:
+    first_line = banner(PYTHON, [protocol])
+    folder = PurePosixPath(protocol.name)
+    text = source(protocol, runtime=f".{_COPY}")
+    copies = [
+        File(folder / _COPY / name, "# SPDX-License-Identifier: 0BSD\n" + copied, first_line)
+        for name, copied in _runtime()
+    ]
+    return (File(folder / "__init__.py", text, first_line), *copies)
+
+
+def _runtime() -> list[tuple[str, str]]:
+    """The modules of the runtime, importing each other as neighbours."""
+    modules = sorted(files(RUNTIME).iterdir(), key=lambda item: item.name)
+    return [
+        (item.name, _relative(item.read_text("utf-8")))
+        for item in modules
+        if item.name.endswith(".py")
+    ]
+
+
+def _relative(text: str) -> str:
+    """`from protogen.runtime.frame import ...` -> `from .frame import ...`."""
+    return _IMPORT.sub(lambda found: f"{found[1]}." + (" " if found[2] == " " else ""), text)

@@ -1,0 +1,128 @@
+"""Long expressions over several lines, as formatters lay them out."""
+
+from __future__ import annotations
+
+import textwrap
+
+WIDTH = 100
+_INDENT = 4
+_OPENING = "([{"
+_CLOSING = ")]}"
+
+
+def wrapped(expression: str, column: int, indent: int, after: int = 1) -> str:
+    """The expression, broken at commas where it does not fit.
+
+    It starts at `column` of a line that is indented by `indent`; `after` characters follow it.
+    """
+    if column + len(expression) + after <= WIDTH:
+        return expression
+    opening = _last_opening(expression)
+    if opening is None:
+        return expression
+    head, items = expression[: opening + 1], _items(expression[opening + 1 : -1])
+    if not items:
+        return expression
+    inner = indent + _INDENT
+    lines = [f"{' ' * inner}{wrapped(item, inner, inner)}," for item in items]
+    return "\n".join([head, *lines, " " * indent + expression[-1]])
+
+
+def _last_opening(expression: str) -> int | None:
+    """Where the bracket opens that closes at the end of the expression."""
+    if expression[-1] not in _CLOSING:
+        return None
+    opened: list[int] = []
+    for place, sign in _signs(expression):
+        if sign in _OPENING:
+            opened.append(place)
+        elif sign in _CLOSING:
+            start = opened.pop()
+            if place == len(expression) - 1:
+                return start
+    return None
+
+
+def _items(inside: str) -> list[str]:
+    """The parts between the commas that are in no further brackets."""
+    items: list[str] = []
+    depth = start = 0
+    for place, sign in _signs(inside):
+        depth += (sign in _OPENING) - (sign in _CLOSING)
+        if sign == "," and depth == 0:
+            items.append(inside[start:place].strip())
+            start = place + 1
+    items.append(inside[start:].strip())
+    return [item for item in items if item]
+
+
+def _signs(expression: str) -> list[tuple[int, str]]:
+    """The brackets and commas outside of strings, with their places."""
+    found: list[tuple[int, str]] = []
+    inside_string = escaped = False
+    for place, sign in enumerate(expression):
+        if inside_string:
+            inside_string = escaped or sign != '"'
+            escaped = sign == "\\" and not escaped
+        elif sign == '"':
+            inside_string = True
+        elif sign in _OPENING + _CLOSING + ",":
+            found.append((place, sign))
+    return found
+
+
+def union(start: str, members: str, indent: int) -> str:
+    """`start` and a union of types, in brackets where it does not fit one line."""
+    if indent + len(start) + len(members) <= WIDTH:
+        return start + members
+    margin, inner = " " * indent, " " * (indent + _INDENT)
+    if len(inner) + len(members) <= WIDTH:
+        return f"{start}(\n{inner}{members}\n{margin})"
+    first, *others = members.split(" | ")
+    lines = [f"{inner}{first}", *(f"{inner}| {other}" for other in others)]
+    return "\n".join([f"{start}(", *lines, f"{margin})"])
+
+
+def method(start: str, parameters: str, end: str, indent: int) -> str:
+    """The head of a function; its parameters have a line of their own where they do not fit."""
+    if indent + len(start) + len(parameters) + len(end) <= WIDTH:
+        return f"{start}{parameters}{end}"
+    margin = " " * indent
+    return f"{start}\n{margin}{' ' * _INDENT}{parameters}\n{margin}{end}"
+
+
+def docstring(paragraphs: list[str], indent: int) -> str:
+    """A docstring of paragraphs that are already escaped, without the indent of its first line."""
+    margin = " " * indent
+    first, *rest = _with_short_summary(paragraphs, WIDTH - indent - 6)
+    if not rest and indent + len(first) + 6 <= WIDTH:
+        return f'"""{first}"""'
+    lines = [first]
+    for paragraph in rest:
+        lines += ["", *textwrap.wrap(paragraph, WIDTH - indent, break_long_words=False)]
+    body = "\n".join(margin + line if line else "" for line in lines)
+    return '"""' + body[indent:] + f'\n{margin}"""'
+
+
+def _with_short_summary(paragraphs: list[str], width: int) -> list[str]:
+    """The paragraphs, the first of them one line: a sentence, or as many words as fit."""
+    first, *rest = paragraphs
+    if len(first) <= width:
+        return paragraphs
+    sentence, stop, others = first.partition(". ")
+    if stop and len(sentence) + 1 <= width:
+        return [f"{sentence}.", others, *rest]
+    short = textwrap.shorten(first, width, placeholder=" ...")
+    return [short, first, *rest]
+
+
+def remark(paragraphs: list[str], indent: int) -> str:
+    """What stands below an attribute: a docstring that needs no summary."""
+    margin = " " * indent
+    first, *rest = paragraphs
+    lines = textwrap.wrap(first, WIDTH - indent - 3, break_long_words=False) or [""]
+    for paragraph in rest:
+        lines += ["", *textwrap.wrap(paragraph, WIDTH - indent, break_long_words=False)]
+    fits = indent + len(lines[-1]) + (6 if len(lines) == 1 else 3) <= WIDTH
+    closing = '"""' if fits else f'\n{margin}"""'
+    return '"""' + "\n".join(margin + line if line else "" for line in lines)[indent:] + closing
