@@ -1,0 +1,57 @@
+"""The command line. This module only registers the commands; each has a module of its own.
+
+Nothing heavy is imported here or at the top of a command's module: a command imports what it needs
+when it runs, so that `--help` and completion are quick.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from protogen.cli import check, decode, encode, explain, fuzz, generate, schema_json
+from protogen.cli.exits import guarded
+
+app = typer.Typer(
+    name="protogen",
+    help="A compiler for serial protocols: one YAML file in, codecs and documents out.",
+    epilog="Example: protogen check schemas && protogen generate schemas -o generated",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+app.command("check", epilog=check.EXAMPLE)(guarded(check.check))
+app.command("generate", epilog=generate.EXAMPLE)(guarded(generate.generate))
+app.command("decode", epilog=decode.EXAMPLE)(guarded(decode.decode))
+app.command("encode", epilog=encode.EXAMPLE)(guarded(encode.encode))
+app.command("explain", epilog=explain.EXAMPLE)(guarded(explain.explain))
+app.command("fuzz", epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
+app.command("schema-json", epilog=schema_json.EXAMPLE)(guarded(schema_json.schema_json))
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from protogen.version import VERSION
+
+        typer.echo(f"protogen {VERSION}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

@@ -1,0 +1,122 @@
+"""`protogen check`: problems, examples and the framing analysis of schemas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.schemas import schema_files
+
+if TYPE_CHECKING:
+    from protogen.compiler import Compilation
+
+EXAMPLE = "Example: protogen check schemas"
+
+
+class ProblemFormat(StrEnum):
+    """How problems are printed."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+def check(
+    schemas: Annotated[
+        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
+    ],
+    format: Annotated[
+        ProblemFormat, typer.Option(help="How to print: for people, programs, or GitHub Actions.")
+    ] = ProblemFormat.TEXT,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print problems only, no analysis.")
+    ] = False,
+) -> int:
+    """Report problems, verify examples, analyse framing.
+
+    Every problem of every schema is reported. Exits with 0 if there is nothing to mend, 1 if there
+    is.
+    """
+    compilations = _compile(schema_files(schemas))
+    match format:
+        case ProblemFormat.TEXT:
+            _print_text(compilations, quiet=quiet)
+        case ProblemFormat.JSON:
+            _print_json(compilations, quiet=quiet)
+        case ProblemFormat.GITHUB:
+            _print_github(compilations)
+    return FINDINGS if any(map(_has_findings, compilations)) else CLEAN
+
+
+def _compile(files: Sequence[Path]) -> list[Compilation]:
+    from protogen.cli.progress import progress
+    from protogen.compiler import compile_file
+
+    compilations = []
+    with progress("checking", len(files)) as advance:
+        for file in files:
+            compilations.append(compile_file(file, examples=True))
+            advance(1)
+    return compilations
+
+
+def _has_findings(compilation: Compilation) -> bool:
+    from protogen.problems import Severity
+
+    return any(problem.severity is not Severity.NOTE for problem in compilation.problems)
+
+
+def _print_text(compilations: Sequence[Compilation], *, quiet: bool) -> None:
+    from protogen.cli.analysis import print_analysis
+    from protogen.cli.console import console
+    from protogen.problems import render_rich
+
+    out = console()
+    shown = set()
+    for compilation in compilations:
+        for problem in compilation.problems:
+            if problem not in shown:
+                out.print(render_rich(problem, compilation.sources))
+            shown.add(problem)
+        if compilation.protocol is not None and not quiet:
+            print_analysis(out, compilation.path, compilation.protocol)
+    if shown or not quiet:
+        out.print(_summary(len(compilations), len(shown)), style="bold")
+
+
+def _summary(files: int, problems: int) -> str:
+    return f"{_counted(files, 'schema')}, {_counted(problems, 'problem')}"
+
+
+def _counted(number: int, thing: str) -> str:
+    return f"{number or 'no'} {thing}{'' if number == 1 else 's'}"
+
+
+def _print_json(compilations: Sequence[Compilation], *, quiet: bool) -> None:
+    import json
+
+    from protogen.cli.analysis import analysis
+    from protogen.cli.schemas import distinct
+    from protogen.problems import to_json
+
+    report: dict[str, object] = {"problems": to_json(distinct(compilations))}
+    if not quiet:
+        report["protocols"] = [
+            analysis(compilation.path, compilation.protocol)
+            for compilation in compilations
+            if compilation.protocol is not None
+        ]
+    typer.echo(json.dumps(report, indent=2, ensure_ascii=False))
+
+
+def _print_github(compilations: Sequence[Compilation]) -> None:
+    from protogen.cli.schemas import distinct
+    from protogen.problems import to_github
+
+    for problem in distinct(compilations):
+        typer.echo(to_github(problem))

@@ -1,0 +1,175 @@
+"""`protogen decode`: bytes -> events."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from protogen.cli.capture import (
+    STANDARD_INPUT,
+    InputFormat,
+    Piece,
+    hex_pieces,
+    opened,
+    raw_pieces,
+    tagged_pieces,
+)
+from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+
+if TYPE_CHECKING:
+    from protogen.cli.codec import Codec
+    from protogen.runtime.decoder import Decoder
+
+EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 55020141BC"
+
+Show = Callable[[Any], None]
+"""Print an event."""
+
+
+class EventFormat(StrEnum):
+    """How events are printed."""
+
+    TEXT = "text"
+    JSONL = "jsonl"
+
+
+def decode(  # noqa: PLR0913 - each option is one argument
+    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE|-", help="The capture; - is standard input.")
+    ] = STANDARD_INPUT,
+    sender: Annotated[
+        str | None, typer.Option(metavar="NAME", help="The endpoint that sent the bytes.")
+    ] = None,
+    hex: Annotated[
+        str | None, typer.Option("--hex", metavar="TEXT", help="Bytes in hex, instead of a file.")
+    ] = None,
+    input: Annotated[
+        InputFormat, typer.Option("--input", help="What the file is written in.")
+    ] = InputFormat.RAW,
+    tagged: Annotated[
+        bool,
+        typer.Option(
+            "--tagged", help="The same as --input tagged: lines such as `linux: 1B 02`, both ways."
+        ),
+    ] = False,
+    format: Annotated[
+        EventFormat, typer.Option(help="One readable line for each event, or one of JSON.")
+    ] = EventFormat.TEXT,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with 1 if any byte belongs to no valid frame.")
+    ] = False,
+) -> int:
+    """Cut bytes into messages, unknown frames and what is no frame.
+
+    The bytes of all these events, joined, are the capture. Lines of JSON go back through
+    `protogen encode`.
+    """
+    from protogen.cli.codec import open_codec
+
+    codec = open_codec(schema)
+    kind = InputFormat.TAGGED if tagged else input
+    faults = Faults()
+    show = _printer(codec, format, tagged=kind is InputFormat.TAGGED)
+    with _pieces_of(file, hex, kind, codec, sender, faults) as pieces:
+        for events in _batches(codec, sender, pieces):
+            for event in events:
+                faults.see(event)
+                show(event)
+            sys.stdout.flush()
+    faults.report()
+    return FINDINGS if strict and faults.any else CLEAN
+
+
+class Faults:
+    """What was wrong with a capture."""
+
+    _MOST_LINES = 20
+    """So many lines of a log are complained of one by one."""
+
+    def __init__(self) -> None:
+        self._lines = 0
+        self.any = False
+
+    def see(self, event: Any) -> None:
+        """Take note of an event."""
+        if event.kind == "invalid":
+            self.any = True
+
+    def complain(self, problem: str) -> None:
+        """Take note of a line that can't be used."""
+        self.any = True
+        self._lines += 1
+        if self._lines <= self._MOST_LINES:
+            typer.echo(f"warning: {problem}", err=True)
+
+    def report(self) -> None:
+        """Say how many lines were left out without a word."""
+        silent = self._lines - self._MOST_LINES
+        if silent > 0:
+            typer.echo(f"warning: {silent} more lines can't be used", err=True)
+
+
+# --- in -------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _pieces_of(
+    file: Path,
+    text: str | None,
+    kind: InputFormat,
+    codec: Codec,
+    sender: str | None,
+    faults: Faults,
+) -> Iterator[Iterable[Piece]]:
+    senders = tuple(item.name for item in codec.protocol.senders)
+    if kind is not InputFormat.TAGGED and sender is None:
+        names = " or ".join(senders)
+        raise UsageError("nothing says who sent the bytes", f"give --sender {names}")
+    if text is not None:
+        yield hex_pieces(iter([text.encode()]), str(sender))
+        return
+    with opened(file) as pieces:
+        match kind:
+            case InputFormat.RAW:
+                yield raw_pieces(pieces, str(sender))
+            case InputFormat.HEX:
+                yield hex_pieces(pieces, str(sender))
+            case InputFormat.TAGGED:
+                yield tagged_pieces(pieces, senders, faults.complain)
+
+
+def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Iterator[list[Any]]:
+    """Yield the events of each piece. With a sender given, only what it sent is looked at."""
+    decoders: dict[str, Decoder[Any, Any]] = {}
+    if sender is not None:
+        decoders[sender] = codec.decoder(sender)
+    for piece in pieces:
+        if piece.sender not in decoders and sender is None:
+            decoders[piece.sender] = codec.decoder(piece.sender)
+        if piece.sender in decoders:
+            yield decoders[piece.sender].feed(piece.data)
+    for decoder in decoders.values():
+        yield decoder.flush()
+
+
+# --- out ------------------------------------------------------------------------------------------
+
+
+def _printer(codec: Codec, format: EventFormat, *, tagged: bool) -> Show:
+    from protogen.cli.console import console
+    from protogen.cli.event_lines import EventLines, json_line
+
+    if format is EventFormat.JSONL:
+        return lambda event: typer.echo(json_line(event))
+    out = console()
+    lines = EventLines(codec.protocol, show_sender=tagged)
+    if out.is_terminal:
+        return lambda event: out.print(lines.line(event))
+    return lambda event: typer.echo(lines.line(event).plain)

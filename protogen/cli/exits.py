@@ -1,0 +1,103 @@
+"""Exit codes, and what becomes of an error that a command does not handle itself."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from functools import wraps
+from typing import NoReturn, ParamSpec
+
+import typer
+
+CLEAN = 0
+"""Everything is as it should be."""
+FINDINGS = 1
+"""The command worked and found something wrong."""
+USAGE = 2
+"""The call is wrong, or a file can't be read or written."""
+BUG = 70
+"""protogen itself is wrong."""
+INTERRUPTED = 130
+"""Ctrl-C: 128 and the number of SIGINT."""
+BROKEN_PIPE = 141
+"""Nobody reads the output any more: 128 and the number of SIGPIPE."""
+
+DEBUG_VARIABLE = "PROTOGEN_DEBUG"
+"""Environment variable that asks for the traceback of a bug."""
+
+Arguments = ParamSpec("Arguments")
+
+
+class UsageError(Exception):
+    """A mistake in the call; the message is for the user, `hint` says how to mend it."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+def guarded(command: Callable[Arguments, int]) -> Callable[Arguments, None]:
+    """Make ``command``, which returns an exit code, end the process in one of the known ways."""
+
+    @wraps(command)
+    def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
+        try:
+            code = command(*args, **kwargs)
+            sys.stdout.flush()
+        except UsageError as error:
+            code = _complain(str(error), error.hint)
+        except BrokenPipeError:
+            code = _lose_output()
+        except OSError as error:
+            code = _complain(_file_trouble(error))
+        except KeyboardInterrupt:
+            code = INTERRUPTED
+        except typer.Exit:
+            raise
+        except Exception as error:
+            code = report_bug(error)
+        raise typer.Exit(code)
+
+    return run
+
+
+def report_bug(error: Exception) -> int:
+    """Say that protogen is at fault, not the user; return the exit code."""
+    sys.stderr.write(
+        f"protogen: this is a bug in protogen: {type(error).__name__}: {error}\n"
+        "It is not your mistake. Please report it where you have protogen from, with the command,\n"
+        f"the schema, and what it prints with {DEBUG_VARIABLE}=1.\n"
+    )
+    if os.environ.get(DEBUG_VARIABLE) == "1":
+        traceback.print_exception(error, file=sys.stderr)
+    return BUG
+
+
+def leave(code: int) -> NoReturn:
+    """End the process with ``code``."""
+    raise SystemExit(code)
+
+
+def _complain(message: str, hint: str | None = None) -> int:
+    from protogen.cli.console import error_console
+
+    console = error_console()
+    console.print("error:", style="bold red", end=" ")
+    console.print(message, markup=False)
+    if hint is not None:
+        console.print(f"  hint: {hint}", markup=False, style="green")
+    return USAGE
+
+
+def _file_trouble(error: OSError) -> str:
+    reason = error.strerror or str(error)
+    return f"{error.filename}: {reason}" if error.filename else reason
+
+
+def _lose_output() -> int:
+    """Point standard output at nothing, so that the interpreter's last flush is quiet, too."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, sys.stdout.fileno())
+    return BROKEN_PIPE

@@ -1,0 +1,111 @@
+"""`protogen fuzz`: round trips of every message."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS
+
+if TYPE_CHECKING:
+    from protogen.cli.codec import Codec
+    from protogen.fuzzing.engine import Engine
+    from protogen.fuzzing.trips import Outcome
+
+EXAMPLE = "Example: protogen fuzz schemas/rn1.yaml --examples 1000"
+
+_GREATEST_SEED = 1 << 32
+
+
+def fuzz(
+    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
+    examples: Annotated[
+        int,
+        typer.Option(min=1, metavar="N", help="Samples of each message; boundaries come first."),
+    ] = 100,
+    message: Annotated[str | None, typer.Option(metavar="NAME", help="Only this message.")] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="The seed of an earlier run. Default: another each time.")
+    ] = None,
+) -> int:
+    """Take samples of every message there and back.
+
+    Values to a payload and back, values to a frame, through a decoder and back; by every engine
+    that there is. The samples hold the boundaries of every field. Exits with 1 if anything comes
+    back in another way.
+    """
+    from random import SystemRandom
+
+    from protogen.cli.codec import open_codec
+    from protogen.cli.schemas import find_message
+
+    codec = open_codec(schema)
+    if message is not None:
+        find_message(codec.protocol, message)
+    run = Run(examples, SystemRandom().randrange(_GREATEST_SEED) if seed is None else seed, message)
+    failed = [engine for engine in _engines(codec) if _fuzz(codec, engine, run)]
+    return FINDINGS if failed else CLEAN
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Which samples are taken."""
+
+    examples: int
+    seed: int
+    message: str | None
+
+
+def _engines(codec: Codec) -> Iterator[Engine]:
+    """Yield every engine that there is for the schema."""
+    from protogen.fuzzing.python_engine import PythonEngine
+
+    yield PythonEngine(codec.runtime)
+
+
+def _fuzz(codec: Codec, engine: Engine, run: Run) -> bool:
+    """Try an engine, and print what became of it; return whether anything failed."""
+    from protogen.cli.progress import progress
+    from protogen.fuzzing.trips import case_count, cases, smallest, try_case
+
+    protocol = codec.protocol
+    total = case_count(protocol, run.examples, run.message)
+    failures: dict[str, Outcome] = {}
+    tried = refused = 0
+    with progress(f"{protocol.name} through {engine.name}", total) as advance:
+        for case in cases(protocol, run.examples, run.seed, run.message):
+            outcome = try_case(engine, protocol, case)
+            if outcome.problem and case.message not in failures:
+                failures[case.message] = smallest(engine, protocol, outcome)
+            tried += 1
+            refused += bool(outcome.refused)
+            advance(1)
+    for failure in failures.values():
+        _print_failure(failure, engine, run.seed)
+    _print_summary(engine, tried, refused, len(failures), run.seed)
+    return bool(failures)
+
+
+def _print_failure(failure: Outcome, engine: Engine, seed: int) -> None:
+    from protogen.cli.console import console
+
+    out = console()
+    case = failure.case
+    out.print(f"{case.message}, sent by {case.sender}, through {engine.name}:", style="bold red")
+    out.print(f"  {failure.problem}")
+    out.print(f"  fields: {json.dumps(case.values)}")
+    out.print(f"  parts:  {json.dumps(case.parts)}")
+    if failure.frame:
+        out.print(f"  frame:  {failure.frame.hex(' ').upper()}")
+    out.print(f"  again:  --seed {seed} --message {case.message}")
+
+
+def _print_summary(engine: Engine, tried: int, refused: int, failed: int, seed: int) -> None:
+    wrong = f"{failed} messages fail" if failed else "all came back"
+    kept = f", {refused} were refused because a decoder would cut them elsewhere" if refused else ""
+    typer.echo(f"{engine.name}: {tried} samples, {wrong}{kept} (seed {seed})")

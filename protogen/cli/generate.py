@@ -1,0 +1,154 @@
+"""`protogen generate`: writes codecs and references."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
+from protogen.cli.schemas import print_problems, schema_files
+
+if TYPE_CHECKING:
+    from protogen.compiler import Compilation
+    from protogen.model.protocol import Protocol
+    from protogen.targets import Target
+    from protogen.targets.output import File, Report
+
+EXAMPLE = "Example: protogen generate schemas -o generated --target python"
+SCHEMAS = Path("schemas")
+OUTPUT = Path("generated")
+_PYTHON = "python"
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """The files of one target, and the folder that they go to."""
+
+    files: tuple[File, ...]
+    folder: Path
+    prune: bool
+    """Whether other files of ours in the folder are stale: not if only some schemas were named."""
+
+
+def generate(
+    schemas: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="SCHEMA", help="Schema files, or folders of them. Default: schemas."
+        ),
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="DIR", help="The folder for all targets.")
+    ] = OUTPUT,
+    target: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Only this target; may be repeated. Default: all."),
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; exit with 1 if a file is not current.")
+    ] = False,
+    diff: Annotated[
+        bool, typer.Option("--diff", help="Write nothing; print what would change.")
+    ] = False,
+    standalone: Annotated[
+        bool,
+        typer.Option("--standalone", help="Python that carries its runtime along."),
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+) -> int:
+    """Write a codec and a reference for each schema.
+
+    Files that are current are not touched. Files that were generated once and no longer are get
+    removed, if whole folders of schemas were given.
+    """
+    paths = schemas or [SCHEMAS]
+    targets = _targets(target, standalone=standalone)
+    protocols = _compile(schema_files(paths))
+    if protocols is None:
+        return FINDINGS
+    prune = any(path.is_dir() for path in paths)
+    jobs = [Job(item.emit(protocols), output / item.folder, prune) for item in targets]
+    if diff:
+        return _print_diff(jobs)
+    return _check(jobs, quiet=quiet) if check else _write(jobs, quiet=quiet)
+
+
+def _targets(names: Sequence[str] | None, *, standalone: bool) -> list[Target]:
+    from protogen.problems import hint_for
+    from protogen.targets import TARGETS, LazyTarget
+
+    for name in names or ():
+        if name not in TARGETS:
+            message = f"there is no target `{name}`; there are {', '.join(TARGETS)}"
+            raise UsageError(message, hint_for(name, TARGETS))
+    targets = {name: TARGETS[name] for name in names or TARGETS}
+    if standalone and _PYTHON not in targets:
+        raise UsageError(f"--standalone is for the target {_PYTHON}")
+    if standalone:
+        folder = targets[_PYTHON].folder
+        targets[_PYTHON] = LazyTarget(_PYTHON, folder, "protogen.targets.python.standalone")
+    return list(targets.values())
+
+
+def _compile(files: Sequence[Path]) -> list[Protocol] | None:
+    """Return the protocols; None, with the problems printed, if any of them has an error."""
+    from protogen.cli.progress import progress
+    from protogen.compiler import compile_file
+
+    compilations: list[Compilation] = []
+    with progress("compiling", len(files)) as advance:
+        for file in files:
+            compilations.append(compile_file(file))
+            advance(1)
+    print_problems(compilations)
+    protocols = [item.protocol for item in compilations if item.protocol is not None]
+    return protocols if len(protocols) == len(compilations) else None
+
+
+def _print_diff(jobs: Sequence[Job]) -> int:
+    from protogen.targets.output import diff_files
+
+    changes = [diff_files(job.files, job.folder, prune=job.prune) for job in jobs]
+    typer.echo("".join(changes), nl=False)
+    return FINDINGS if any(changes) else CLEAN
+
+
+def _check(jobs: Sequence[Job], *, quiet: bool) -> int:
+    from protogen.targets.output import check_files
+
+    differences = [
+        f"{job.folder / item.path}: {item.state}{f', {item.reason}' if item.reason else ''}"
+        for job in jobs
+        for item in check_files(job.files, job.folder, prune=job.prune)
+    ]
+    for line in differences:
+        typer.echo(line)
+    if not differences and not quiet:
+        typer.echo(f"{sum(len(job.files) for job in jobs)} files are current")
+    return FINDINGS if differences else CLEAN
+
+
+def _write(jobs: Sequence[Job], *, quiet: bool) -> int:
+    from protogen.targets.output import write_files
+
+    refused = False
+    for job in jobs:
+        report = write_files(job.files, job.folder, prune=job.prune)
+        for item in report.refused:
+            typer.echo(f"{job.folder / item.path}: not written, {item.reason}", err=True)
+        if not quiet:
+            for line in _report(job.folder, report):
+                typer.echo(line)
+        refused = refused or bool(report.refused)
+    return USAGE if refused else CLEAN
+
+
+def _report(folder: Path, report: Report) -> Iterator[str]:
+    yield from (f"wrote {folder / path}" for path in report.written)
+    yield from (f"removed {folder / path}" for path in report.removed)
+    if report.unchanged:
+        yield f"unchanged in {folder}: {report.unchanged}"

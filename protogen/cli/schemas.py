@@ -1,0 +1,100 @@
+"""Finds and compiles the schemas that a command was given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from protogen.cli.exits import FINDINGS, UsageError
+
+if TYPE_CHECKING:
+    from protogen.compiler import Compilation
+    from protogen.model.messages import Message
+    from protogen.model.protocol import Protocol, Sender
+    from protogen.problems import Problem
+
+SUFFIX = ".yaml"
+
+
+def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the files among ``paths``, and the schemas in the folders among them.
+
+    Raises UsageError if a path is not there, or a folder holds no schema.
+    """
+    found: dict[Path, None] = {}
+    for path in paths:
+        found |= dict.fromkeys(_files_at(path))
+    return tuple(found)
+
+
+def _files_at(path: Path) -> Sequence[Path]:
+    if not path.exists():
+        raise UsageError(f"there is no file or folder `{path}`")
+    if not path.is_dir():
+        return (path,)
+    files = sorted(file for file in path.rglob(f"*{SUFFIX}") if not _is_hidden(file, path))
+    if not files:
+        raise UsageError(f"the folder `{path}` holds no {SUFFIX} file")
+    return files
+
+
+def _is_hidden(file: Path, folder: Path) -> bool:
+    return any(name.startswith(".") for name in file.relative_to(folder).parts)
+
+
+def open_protocol(path: Path) -> Protocol:
+    """Return the protocol of a schema.
+
+    With an error in the schema, prints its problems and ends the command.
+    """
+    from protogen.compiler import compile_file
+
+    if not path.is_file():
+        raise UsageError(f"there is no schema `{path}`")
+    compilation = compile_file(path)
+    if compilation.protocol is None:
+        print_problems([compilation])
+        raise typer.Exit(FINDINGS)
+    return compilation.protocol
+
+
+def print_problems(compilations: Iterable[Compilation]) -> None:
+    """Print every problem to standard error, with its source line."""
+    from protogen.cli.console import error_console
+    from protogen.problems import render_rich
+
+    console = error_console()
+    for compilation in compilations:
+        for problem in compilation.problems:
+            console.print(render_rich(problem, compilation.sources))
+
+
+def distinct(compilations: Iterable[Compilation]) -> tuple[Problem, ...]:
+    """Return every problem once: a base's problems are found again by each dialect."""
+    problems = (problem for compilation in compilations for problem in compilation.problems)
+    return tuple(dict.fromkeys(problems))
+
+
+def find_sender(protocol: Protocol, name: str) -> Sender:
+    """Return the sender called ``name``. Raises UsageError that lists those that there are."""
+    from protogen.problems import hint_for
+
+    names = [sender.name for sender in protocol.senders]
+    if name in names:
+        return protocol.sender(name)
+    message = f"`{protocol.name}` has no sender `{name}`; it has {', '.join(names)}"
+    raise UsageError(message, hint_for(name, names))
+
+
+def find_message(protocol: Protocol, name: str) -> Message:
+    """Return the message called ``name``. Raises UsageError with what was probably meant."""
+    from protogen.problems import hint_for
+
+    names = [message.name for message in protocol.messages]
+    if name in names:
+        return protocol.message(name)
+    hint = hint_for(name, names) or f"it has {', '.join(names)}"
+    raise UsageError(f"`{protocol.name}` has no message `{name}`", hint)

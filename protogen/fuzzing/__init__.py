@@ -1,0 +1,1 @@
+"""Random and boundary round trips of every message through every engine."""

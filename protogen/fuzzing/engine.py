@@ -1,0 +1,45 @@
+"""What the fuzzer asks of a codec under test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from protogen.fuzzing.samples import Values
+
+
+class Refused(Exception):  # noqa: N818 - an answer, not an error of the program
+    """The engine will not send these values, and says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a decoder made of a frame; `kind` is the event's, the rest is a message's."""
+
+    kind: str
+    size: int
+    message: str = ""
+    payload: bytes = b""
+    values: Values | None = None
+    parts: Values | None = None
+
+
+class Engine(Protocol):
+    """A codec under test. Values are those of JSON lines."""
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+
+    def payload(self, message: str, values: Values) -> bytes:
+        """Encode the fields alone. Raises Refused."""
+
+    def values(self, message: str, payload: bytes) -> Values:
+        """Decode the fields alone."""
+
+    def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
+        """Encode a whole frame. Raises Refused."""
+
+    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
+        """Feed the pieces to a new decoder and flush it."""

@@ -1,0 +1,62 @@
+"""The Python target's own output as an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from protogen.fuzzing.engine import Refused, Seen
+from protogen.fuzzing.samples import Values
+from protogen.runtime.codec import Protocol
+from protogen.runtime.decoder import Decoder
+from protogen.runtime.errors import EncodeError
+
+
+class PythonEngine:
+    """A generated module's codec."""
+
+    name = "python"
+
+    def __init__(self, codec: Protocol[Any, Any]) -> None:
+        self._codec = codec
+        self._messages = {
+            message.NAME: message
+            for sender in codec.senders.values()
+            for message in (*sender.messages, *sender.encode_only)
+        }
+
+    def payload(self, message: str, values: Values) -> bytes:
+        """Encode the fields alone. Raises Refused."""
+        try:
+            payload: bytes = self._messages[message].from_dict(values).to_payload()
+        except EncodeError as error:
+            raise Refused(str(error)) from None
+        return payload
+
+    def values(self, message: str, payload: bytes) -> Values:
+        """Decode the fields alone."""
+        values: Values = self._messages[message].from_payload(payload).to_dict()
+        return values
+
+    def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
+        """Encode a whole frame. Raises Refused."""
+        try:
+            record = self._messages[message].from_dict(values)
+            return self._codec.encode(record, sender, **parts)
+        except EncodeError as error:
+            raise Refused(str(error)) from None
+
+    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
+        """Feed the pieces to a new decoder and flush it."""
+        decoder = Decoder(self._codec.sender(sender))
+        events = [event for piece in pieces for event in decoder.feed(piece)]
+        return [_seen(event) for event in (*events, *decoder.flush())]
+
+
+def _seen(event: Any) -> Seen:
+    if event.kind != "message":
+        return Seen(event.kind, event.size)
+    message = event.message
+    parts = asdict(event.parts)
+    return Seen(event.kind, event.size, message.NAME, event.payload, message.to_dict(), parts)

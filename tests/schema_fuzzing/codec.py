@@ -1,0 +1,132 @@
+"""What has to hold of the generated codec of any schema; each function checks one promise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from types import ModuleType
+from typing import Any
+
+from schema_fuzzing.reference import frame_bytes, payload_bytes
+from schema_fuzzing.values import all_parts
+
+from protogen.model.framing import StartLiteral, StartSet
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+
+
+def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) -> Any:
+    """values -> payload -> values; the payload is the reference's. Returns the message."""
+    made = module.MESSAGES[message.name].from_dict(values)
+    assert made.to_dict() == values
+    payload = made.to_payload()
+    assert payload == payload_bytes(message.fields, values, {})
+    assert len(payload) in message.sizes
+    read = type(made).from_payload(payload)
+    assert read == made
+    assert read.to_dict() == values
+    assert not [violation for violation in made.violations() if violation.forbidden]
+    return made
+
+
+def encode(
+    module: ModuleType, sender: Sender, message: Message, made: Any, parts: dict[str, int]
+) -> bytes | None:
+    """The frame, which is the reference's; None where the schema allows that there is none.
+
+    An end that nothing protects may stand in the payload: then a decoder would cut the frame there.
+    """
+    try:
+        frame: bytes = module.PROTOCOL.encode(made, sender.name, **parts)
+    except ValueError as error:
+        assert sender.framing.cut_ambiguous, error
+        assert "decoder" in str(error), error
+        return None
+    shown = all_parts(sender.frame, message, parts)
+    assert frame == frame_bytes(sender.frame, message, made.to_payload(), shown)
+    return frame
+
+
+def check_frame(sender: Sender, message: Message, frame: bytes) -> None:
+    """The sizes of the model hold, and protected delimiters stand only in their places."""
+    framing = sender.framing
+    bounds = next(item for item in framing.messages if item.message == message.name)
+    assert framing.least <= bounds.least <= len(frame) <= bounds.greatest <= framing.greatest
+    start, end = framing.start, framing.end
+    ends = {len(frame) - len(end.bytes)} if end is not None else set()
+    if end is not None:
+        assert frame.endswith(end.bytes)
+    if end is not None and end.protected:
+        assert _places(frame, end.bytes) <= ends | {0}
+    if isinstance(start, StartLiteral):
+        assert frame.startswith(start.bytes)
+        if start.protected:
+            assert _places(frame, start.bytes) <= ends | {0}
+    if isinstance(start, StartSet):
+        marks = [start.least <= byte <= start.greatest for byte in frame]
+        assert marks[0]
+        assert not (start.protected and any(marks[1:]))
+
+
+def _places(data: bytes, literal: bytes) -> set[int]:
+    return {place for place in range(len(data)) if data.startswith(literal, place)}
+
+
+def check_decoded(
+    module: ModuleType,
+    sender: Sender,
+    message: Message,
+    frame: bytes,
+    made: Any,
+    shown: dict[str, int],
+) -> None:
+    """frame -> message, as one event and by `decode`."""
+    (event,) = events_of(module, sender, [frame])
+    assert event.kind == "message", event
+    assert (event.offset, event.raw, event.message) == (0, frame, made)
+    assert {name: getattr(event.parts, name) for name in shown} == shown
+    assert module.PROTOCOL.decode(frame, sender.name) == made
+    assert event.payload == made.to_payload()
+
+
+def events_of(module: ModuleType, sender: Sender, data: Iterable[bytes]) -> list[Any]:
+    """The events of portions of a stream, with its end."""
+    decoder = module.Decoder(sender.name)
+    events: list[Any] = []
+    for portion in data:
+        events += decoder.feed(portion)
+        assert decoder.pending <= sender.framing.greatest
+    return events + decoder.flush()
+
+
+def check_lossless(
+    module: ModuleType, sender: Sender, data: bytes, events: Sequence[Any]
+) -> None:
+    """The raw bytes of the events are the input, and each can be made again from its line."""
+    assert b"".join(event.raw for event in events) == data
+    offset = 0
+    for event in events:
+        assert event.offset == offset
+        offset += event.size
+        line = event.as_json()
+        assert module.PROTOCOL.encode_line(line) == event.raw
+        assert event.kind == "invalid" or "raw" not in line or _may_differ(sender, line)
+
+
+def _may_differ(sender: Sender, line: dict[str, Any]) -> bool:
+    """Whether encoding may give other bytes: stuffing that was accepted, the payload of a NaN."""
+    transparency = sender.frame.transparency
+    return (transparency is not None and transparency.lenient) or "nan" in str(line)
+
+
+def senders_of(protocol: Protocol, message: Message) -> list[Sender]:
+    """The senders of a message that decode to it: not those that take it for another one."""
+    return [
+        sender
+        for sender in protocol.senders
+        if sender.name in message.senders
+        and not any(
+            overload.yields not in (None, message.name)
+            for overload in sender.overloads
+            if message.name in overload.messages
+        )
+    ]

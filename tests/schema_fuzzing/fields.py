@@ -1,0 +1,306 @@
+"""Fields of payloads: numbers, texts, bytes, structs, arrays, switches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms
+from schema_fuzzing.names import FIELDS, fresh
+from schema_fuzzing.numbers import ORDERS, counter, integer, number
+from schema_fuzzing.setting import NOTHING, Built, Declared, Selector, Setting, Size
+
+GREATEST_DEPTH = 2
+_USUAL_BYTES = 12
+"""Most fixed sizes and counts stay below this, so that payloads stay small."""
+
+Fields = dict[str, Any]
+Item = Callable[[st.DrawFn, Setting, Fields], Built]
+
+
+@st.composite
+def structs(draw: st.DrawFn, setting: Setting, *, greatest: int = 4) -> Built:
+    """The fields of a struct or message; `data` is the mapping of names to fields."""
+    scope = _Scope(draw, setting)
+    count = draw(st.integers(0, greatest))
+    for index in range(count):
+        if not scope.add(last=index == count - 1):
+            break
+    return scope.built()
+
+
+class _Scope:
+    """Fields one after another."""
+
+    def __init__(self, draw: st.DrawFn, setting: Setting) -> None:
+        self._draw = draw
+        self._setting = setting
+        self._fields: Fields = {}
+        self._size = NOTHING
+        self._fills = False
+
+    def built(self) -> Built:
+        return Built(self._fields, self._size, fills=self._fills)
+
+    def add(self, *, last: bool) -> bool:
+        """Add a field, with those that count or choose it; False where there is no room."""
+        here = replace(self._setting, last=self._setting.last and last)
+        if here.budget < 2:
+            return False
+        kind = self._draw(st.sampled_from(_kinds(here)))
+        if kind == "counted":
+            self._add_counted(here)
+        elif kind == "switch":
+            self._add_switch(here)
+        else:
+            self._put(self._draw(_ITEMS[kind](here)))
+        return not self._fills
+
+    def _put(self, built: Built) -> str:
+        """Add a field that was drawn, and note what it can count or choose."""
+        name = self._draw(fresh(FIELDS, self._fields))
+        self._fields[name] = built.data
+        self._size += built.size
+        self._fills = built.fills
+        behind = self._setting.behind(built.size)
+        if built.counts is not None:
+            behind = replace(behind, counters={**behind.counters, name: built.counts})
+        if built.keys:
+            chooser = Selector(name, built.keys)
+            behind = replace(behind, selectors=(*behind.selectors, chooser))
+        self._setting = behind
+        return name
+
+    # -- arrays and texts that an earlier field counts ---------------------------------------
+
+    def _add_counted(self, here: Setting) -> None:
+        widest = self._draw(st.sampled_from([1, 1, 2, 4])) if here.budget > 8 else 1
+        left = here.budget - widest
+        element = self._draw(_elements(replace(here, last=False, budget=left)))
+        most = min(_USUAL_BYTES, left // max(1, element.size.greatest))
+        if most < 1:
+            self._put(self._draw(number(here)))
+            return
+        fitting = [n for n, bounds in here.counters.items() if bounds.greatest <= most]
+        if fitting and self._draw(st.booleans()):
+            name = self._draw(st.sampled_from(sorted(fitting)))
+        elif here.last and here.exact and here.room is not None and element.size.fixed:
+            self._add_counted_by_room(element)
+            return
+        else:
+            name = self._put(self._draw(counter(replace(here, budget=widest), most)))
+        self._put(self._draw(_extended(element, name, self._setting.counters[name])))
+
+    def _add_counted_by_room(self, element: Built) -> None:
+        """A count that may say more than there is room for; what is there bounds the array."""
+        bits = self._setting.byte_bits
+        name = self._put(Built(f"uint{bits}", Size(1, 1)))
+        room = self._setting.room or 0
+        most = min((1 << bits) - 1, room // max(1, element.size.least))
+        self._put(self._draw(_extended(element, name, Size(0, most))))
+
+    # -- switches ----------------------------------------------------------------------------
+
+    def _add_switch(self, here: Setting) -> None:
+        if not here.selectors or self._draw(st.booleans()):
+            self._put(self._draw(_selector(replace(here, budget=min(2, here.budget - 1)))))
+        chosen = self._draw(st.sampled_from(self._setting.selectors))
+        here = replace(self._setting, last=here.last)
+        if here.budget < 1:
+            return
+        # What no case takes could be more than is left where something in front varies.
+        closed = here.may_fill and here.room is not None and not here.exact
+        if closed:
+            here = replace(here, last=False, budget=here.budget - 1)
+        self._put(self._draw(_switch(here, chosen)))
+        if closed:
+            self._put(Built("uint1", Size(1, 1)))
+
+
+def _kinds(setting: Setting) -> list[str]:
+    """What may be drawn here."""
+    kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "switch"]
+    if setting.depth < GREATEST_DEPTH:
+        kinds += ["struct", "struct"]
+    if setting.may_fill:
+        kinds += ["fill"] * 8
+    if any(_fits(declared, setting) for declared in setting.types):
+        kinds += ["declared"] * 3
+    return kinds
+
+
+def _fits(declared: Declared, setting: Setting) -> bool:
+    """Whether there is room; a type that holds a switch means another thing where it may fill."""
+    if declared.chooses and setting.may_fill:
+        return False
+    return declared.built.size.greatest <= setting.budget
+
+
+# --- elements -----------------------------------------------------------------------------------
+
+
+@st.composite
+def _elements(draw: st.DrawFn, setting: Setting) -> Built:
+    """Something that there can be several of, as a mapping that `count` can be added to."""
+    if setting.depth < GREATEST_DEPTH and draw(forms.one_in(4)):
+        inner = replace(setting.inside(last=False), budget=min(setting.budget, _USUAL_BYTES))
+        built = draw(structs(inner, greatest=3))
+        return replace(built, data={"fields": built.data}, counts=None, keys=())
+    fitting = [declared for declared in setting.types if _fits(declared, setting)]
+    if fitting and draw(forms.one_in(4)):
+        return draw(_use(setting, draw(st.sampled_from(fitting))))
+    if draw(forms.one_in(6)):
+        return Built({"type": draw(st.sampled_from(["bytes", "ascii"]))}, Size(1, 1))
+    built = draw(number(setting))
+    return replace(built, data=_without_constants(built.data), counts=None, keys=())
+
+
+def _without_constants(data: Any) -> dict[str, Any]:
+    """A number as the element of an array, whose constants would be lists."""
+    full = {"type": data} if isinstance(data, str) else dict(data)
+    full.pop("const", None)
+    full.pop("default", None)
+    return full
+
+
+@st.composite
+def _use(draw: st.DrawFn, setting: Setting, declared: Declared) -> Built:
+    """A use of a declared type."""
+    data: dict[str, Any] = {"type": declared.name}
+    if not declared.is_struct:
+        data.update(draw(forms.about()))
+    return replace(declared.built, data=data)
+
+
+def _extended(element: Built, count: Any, bounds: Size) -> st.SearchStrategy[Built]:
+    """So many of an element, or a text or bytes of this size."""
+    is_string = element.data.get("type") in ("ascii", "bytes")
+    data = {**element.data, "size" if is_string else "count": count}
+    return st.just(Built(data, element.size * bounds))
+
+
+# --- items --------------------------------------------------------------------------------------
+
+
+@st.composite
+def _string(draw: st.DrawFn, setting: Setting) -> Built:
+    """A text or bytes of a fixed size, sometimes with a constant."""
+    size = draw(st.integers(0, min(_USUAL_BYTES, setting.budget)))
+    kind = draw(st.sampled_from(["ascii", "bytes"]))
+    data: dict[str, Any] = {"type": kind, "size": size, **draw(forms.about())}
+    key = draw(st.sampled_from(["", "", "", "const", "default"]))
+    if key and kind == "ascii":
+        data[key] = draw(st.text("aZ09 _-\"'\\{}", max_size=size))
+    elif key:
+        highest = (1 << setting.byte_bits) - 1
+        content = st.lists(st.integers(0, highest), min_size=size, max_size=size)
+        data[key] = {"hex": bytes(draw(content)).hex()}
+    return Built(data, Size(size, size))
+
+
+@st.composite
+def _fixed_array(draw: st.DrawFn, setting: Setting) -> Built:
+    inner = replace(setting, last=False)
+    element = draw(_elements(inner))
+    most = setting.budget // max(1, element.size.greatest)
+    count = draw(st.integers(0, min(_USUAL_BYTES, most)))
+    built = draw(_extended(element, count, Size(count, count)))
+    plain = element.data.get("type", "")[:4] in ("uint", "sint") and "values" not in element.data
+    if plain and "range" not in element.data and draw(forms.one_in(4)):
+        key = draw(st.sampled_from(["const", "default"]))
+        built = replace(built, data={**built.data, key: [0] * count})
+    return built
+
+
+@st.composite
+def _struct(draw: st.DrawFn, setting: Setting) -> Built:
+    order = {"byte_order": draw(ORDERS)} if draw(forms.one_in(4)) else {}
+    inner = setting.inside(last=True)
+    built = draw(structs(replace(inner, ordered=inner.ordered or bool(order))))
+    data: dict[str, Any] = {"fields": built.data, **order, **draw(forms.about())}
+    return replace(built, data=data, counts=None, keys=())
+
+
+@st.composite
+def _declared(draw: st.DrawFn, setting: Setting) -> Built:
+    fitting = [declared for declared in setting.types if _fits(declared, setting)]
+    return draw(_use(setting, draw(st.sampled_from(fitting))))
+
+
+@st.composite
+def _fill(draw: st.DrawFn, setting: Setting) -> Built:
+    """Something that takes what the payload has left."""
+    element = draw(_elements(replace(setting, last=False)))
+    if element.size.least == 0:
+        element = Built({"type": "bytes"}, Size(1, 1))
+    each = element.size.greatest
+    if setting.room is None or not setting.exact or element.size.least != each or draw(forms.one_in(4)):
+        most = draw(st.integers(0, min(_USUAL_BYTES, setting.budget // each)))
+        extent: Any = {"fill": True, "max": most}
+    else:
+        most = setting.room // each
+        extent = draw(st.sampled_from(["fill", {"fill": True}]))
+    built = draw(_extended(element, extent, Size(0, most)))
+    return replace(built, fills=True)
+
+
+
+
+# --- switches -----------------------------------------------------------------------------------
+
+
+@st.composite
+def _selector(draw: st.DrawFn, setting: Setting) -> Built:
+    """An integer that can choose: one without a constant."""
+    built = draw(integer(setting))
+    if built.keys:
+        return built
+    return Built({"type": "uint4", "values": {"one": 1, "two": 2}}, Size(1, 1), None, ("one", 2))
+
+
+@st.composite
+def _switch(draw: st.DrawFn, setting: Setting, selector: Selector) -> Built:
+    cases: dict[Any, Any] = {}
+    size: Size | None = None
+    fills = setting.may_fill
+    for key in selector.keys:
+        inner = replace(setting, depth=setting.depth + 1)
+        built = draw(_case(inner))
+        cases[key] = built.data
+        size = built.size if size is None else size | built.size
+        fills = fills or built.fills
+    assert size is not None
+    if setting.may_fill:
+        rest = size.greatest if setting.room is None else setting.room
+        size |= Size(0, rest)
+    data = {"switch": selector.name, "cases": cases, **draw(forms.about())}
+    return Built(data, size, fills=fills)
+
+
+@st.composite
+def _case(draw: st.DrawFn, setting: Setting) -> Built:
+    """What the switch is for one value: fields, none at all, or one plain field."""
+    shape = draw(st.sampled_from(["fields", "none", "plain", "declared"]))
+    fitting = [item for item in setting.types if _fits(item, setting)]
+    if shape == "declared" and fitting:
+        return draw(_use(setting, draw(st.sampled_from(fitting))))
+    if shape == "plain" and setting.budget >= 1:
+        built = draw(number(setting))
+        return Built(built.data, built.size)
+    if shape == "fields" and setting.depth <= GREATEST_DEPTH:
+        built = draw(structs(setting, greatest=3))
+        return replace(built, data={"fields": built.data})
+    return Built({"fields": {}}, NOTHING)
+
+
+_ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
+    "number": number,
+    "string": _string,
+    "array": _fixed_array,
+    "struct": _struct,
+    "declared": _declared,
+    "fill": _fill,
+}

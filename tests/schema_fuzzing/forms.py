@@ -1,0 +1,71 @@
+"""Ways to write the same thing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from hypothesis import strategies as st
+
+TEXTS = (
+    "Plain words.",
+    'Quotes """ and \'\'\' and a backslash \\',
+    "*/ // ?? <!-- --> |pipe| `code` </script>",
+    "{{ braces }} {% percent %} ${dollar} %s {0}",
+    "Zeile mit Umlaut: ä, Grad: °, 漢字, 🙂",
+    "first line\nsecond line\n\n    indented",
+    "ends with a backslash \\",
+    "# no comment: a text, - really",
+    "\\N{DASH} \\x41 \\u0041 \\",
+    "true",
+    "0x10",
+)
+UNITS = ("mm", "mm/s", "deg", "V", "degC", "ms", "m/s^2", "%", "1/min", "µs")
+
+
+def one_in(many: int) -> st.SearchStrategy[bool]:
+    """True once in so many draws; the simplest is False."""
+    return st.sampled_from((False,) * (many - 1) + (True,))
+
+
+@st.composite
+def about(draw: st.DrawFn) -> dict[str, Any]:
+    """What people read, mostly nothing."""
+    if not draw(one_in(6)):
+        return {}
+    found: dict[str, Any] = {"doc": draw(st.sampled_from(TEXTS))}
+    if draw(st.booleans()):
+        found["source"] = draw(st.sampled_from(["61-65", 63, {"lines": "7", "note": "a note"}]))
+    return found
+
+
+def octets(data: bytes) -> st.SearchStrategy[Any]:
+    """The written forms of a byte string."""
+    forms: list[Any] = [{"hex": data.hex(" ").upper()}, {"hex": data.hex()}, list(data)]
+    if len(data) == 1:
+        forms.append(data[0])
+    forms.append({"text": data.decode("latin-1")})
+    return st.sampled_from(forms)
+
+
+def raw_number(value: int, *, character: bool = False) -> st.SearchStrategy[Any]:
+    """A raw value as a number, or as the character that has this code."""
+    if not (character or 0x30 <= value <= 0x7A) or not 0 <= value < 256:
+        return st.just(value)
+    return st.sampled_from([value, chr(value)])
+
+
+def run(names: Sequence[str], every: Sequence[str]) -> st.SearchStrategy[Any]:
+    """A set of parts, in wire order, as a list or, where nothing is left out, as `first..last`."""
+    forms: list[Any] = [list(names)]
+    if len(names) == 1:
+        forms.append(names[0])
+    first, last = every.index(names[0]), every.index(names[-1])
+    if list(every[first : last + 1]) == list(names):
+        forms.append(f"{names[0]}..{names[-1]}")
+    return st.sampled_from(forms)
+
+
+def short(full: dict[str, Any], key: str) -> Any:
+    """The short form, where there is nothing but `key`."""
+    return full[key] if set(full) == {key} else full

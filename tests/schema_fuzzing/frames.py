@@ -1,0 +1,355 @@
+"""Frames of every shape, with what has to hold so that a receiver can cut them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms
+from schema_fuzzing.codes import BYTE, Code, codes, plain
+from schema_fuzzing.delimiters import Delimited, Stretch
+from schema_fuzzing.parts import Maker, PartPlan
+
+STARTS = ("literal", "literal", "two literals", "set", "none")
+ENDS = ("literal", "two literals", "none", "none")
+_EVERY_COBS_BYTE = frozenset(bytes((byte,)) for byte in range(1, 256))
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """The parts under transparency, by index; `written` as in the schema."""
+
+    first: int
+    last: int
+    written: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FramePlan:
+    """A frame that was drawn, but for what depends on the messages."""
+
+    parts: tuple[PartPlan, ...]
+    code: Code | None
+    region: Region | None
+    lenient: bool = False
+    room: int | None = None
+    """The greatest payload that the length part can state."""
+
+    @property
+    def opening(self) -> tuple[int, ...]:
+        """The literals that the frame starts with, outside of the region."""
+        return tuple(self._literals_from(0, 1, None if self.region is None else self.region.first))
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """The literals that the frame ends with, outside of the region."""
+        last = len(self.parts) - 1
+        edge = None if self.region is None else self.region.last
+        return tuple(self._literals_from(last, -1, edge))[::-1]
+
+    def _literals_from(self, index: int, step: int, edge: int | None) -> Iterator[int]:
+        while 0 <= index < len(self.parts) and self.parts[index].role == "literal":
+            if index == edge:
+                return
+            yield index
+            index += step
+
+    @property
+    def delimited(self) -> bool:
+        """Whether the frame tells where the payload ends."""
+        return bool(self.closing) or any(part.role == "length" for part in self.parts)
+
+    @property
+    def starts_with_set(self) -> bool:
+        """Whether the range of the first part marks the start."""
+        covered = self.region is not None and self.region.first == 0
+        return not self.opening and "range" in self.parts[0].data and not covered
+
+    def literal_of(self, places: Sequence[int]) -> bytes:
+        """Literals that stand side by side, joined."""
+        return b"".join(self.parts[index].literal for index in places)
+
+    # -- what depends on the messages --------------------------------------------------------
+
+    def with_least_payload(self, least: int, slack: int) -> FramePlan:
+        """The frame whose length says at least what the smallest payload needs, less `slack`."""
+        return replace(
+            self, parts=tuple(_with_least(part, least, slack) for part in self.parts)
+        )
+
+    def stretches(self, payload: frozenset[int]) -> Iterator[Stretch]:
+        """What the frame can be on the wire, where the payload holds such bytes."""
+        own = {*self.opening, *self.closing}
+        for index, part in enumerate(self.parts):
+            inside = self.region is not None and self.region.first <= index <= self.region.last
+            if inside and self.code is not None and self.code.codewords is None:
+                if self.region is not None and index == self.region.first:
+                    yield Stretch(_EVERY_COBS_BYTE)
+                    yield Stretch(_EVERY_COBS_BYTE, repeated=True)
+                continue
+            words = plain()
+            if inside and self.code is not None and self.code.codewords is not None:
+                words = dict(self.code.codewords)
+            yield from _stretches_of(part, words, payload, own=index in own)
+
+    def with_unprotected(self, payload: frozenset[int], decision: str) -> FramePlan:
+        """The frame with `unprotected` on the delimiters that can occur in the data."""
+        automaton = Delimited(self.stretches(payload))
+        parts = list(self.parts)
+        for places in (self.opening, self.closing):
+            if places and automaton.holds(self.literal_of(places)):
+                parts[places[-1]] = parts[places[-1]].adding(unprotected=decision)
+        return replace(self, parts=tuple(parts))
+
+    # -- as it is written --------------------------------------------------------------------
+
+    def data(self) -> dict[str, Any]:
+        """The frame in the schema language."""
+        return {part.name: part.data for part in self.parts}
+
+    def transparency(self) -> Any:
+        """The transparency in the schema language, or None."""
+        if self.code is None or self.region is None:
+            return None
+        if not self.region.written and not self.lenient:
+            return self.code.data
+        data = self.code.data
+        full = {"preset": data} if isinstance(data, str) else dict(data)
+        if self.lenient:
+            full["lenient"] = True
+        if self.region.written:
+            first, last = self.parts[self.region.first], self.parts[self.region.last]
+            full["covers"] = f"{first.name}..{last.name}"
+        return full
+
+
+def _with_least(part: PartPlan, least: int, slack: int) -> PartPlan:
+    if part.role != "length" or "range" not in part.data:
+        return part
+    assert part.type is not None
+    counted, greatest = part.bounds
+    low = max(0, counted + least - slack)
+    values = part.type.bytes_between(low, greatest)
+    return replace(part.adding(range=[low, greatest]), bytes=values)
+
+
+def _stretches_of(
+    part: PartPlan, words: dict[int, bytes], payload: frozenset[int], *, own: bool
+) -> Iterator[Stretch]:
+    if part.role == "payload":
+        yield Stretch(frozenset(words[byte] for byte in payload), repeated=True)
+    elif part.role == "literal":
+        yield Stretch(frozenset({b"".join(words[byte] for byte in part.literal)}), own=own)
+    else:
+        for values in part.bytes:
+            found = frozenset(words[byte] for byte in values)
+            yield Stretch(found, optional=part.optional)
+
+
+# --- drawing ------------------------------------------------------------------------------------
+
+
+@st.composite
+def frames(
+    draw: st.DrawFn, byte_bits: int, order: str | None, identity: Sequence[PartPlan]
+) -> FramePlan:
+    """A frame; what its length can say at least and its `unprotected` keys are still missing."""
+    return _Drawing(draw, byte_bits, order, identity).frame()
+
+
+class _Drawing:
+    """Draws one frame."""
+
+    def __init__(
+        self, draw: st.DrawFn, byte_bits: int, order: str | None, identity: Sequence[PartPlan]
+    ) -> None:
+        self._draw = draw
+        self._byte_bits = byte_bits
+        self._maker = Maker(draw, byte_bits, order)
+        self._maker.take([part.name for part in identity])
+        self._code = draw(codes())
+        self._start = draw(st.sampled_from(STARTS))
+        self._end = draw(st.sampled_from(ENDS))
+        self._has_length = draw(st.booleans())
+        self._anywhere = self._start == self._end == "none"
+        self._head, self._tail = self._around_payload(list(identity))
+
+    def frame(self) -> FramePlan:
+        opening, closing = self._delimiters()
+        parts = [*opening, *self._head, self._maker.payload(), *self._tail, *closing]
+        region = self._region(parts, len(opening), len(closing))
+        parts, room = self._with_length(parts)
+        parts = self._with_covers(parts, region)
+        lenient = self._code is not None and self._draw(forms.one_in(6))
+        return FramePlan(tuple(parts), self._code, region, lenient, room)
+
+    # -- delimiters --------------------------------------------------------------------------
+
+    def _delimiters(self) -> tuple[list[PartPlan], list[PartPlan]]:
+        opening = [self._literal() for _ in range(_literals(self._start))]
+        closing = [self._literal() for _ in range(_literals(self._end))]
+        alike = len(opening) == len(closing) == 1 and self._draw(forms.one_in(3))
+        if alike:
+            closing = [self._maker.literal(opening[0].literal)]
+        return opening, closing
+
+    def _literal(self) -> PartPlan:
+        size = self._draw(st.sampled_from([1, 1, 1, 2, 2, 3]))
+        return self._maker.literal(bytes(self._delimiter_byte() for _ in range(size)))
+
+    def _delimiter_byte(self) -> int:
+        """Mostly a byte that is kept out of the data, where there is one."""
+        if self._draw(forms.one_in(5)):
+            return self._draw(BYTE)
+        if self._code is not None:
+            return self._draw(st.sampled_from(self._code.clean))
+        return self._draw(st.sampled_from([0xFF, 0x80, 0x55, 0x0A]))
+
+    # -- what stands around the payload ------------------------------------------------------
+
+    def _around_payload(
+        self, identity: list[PartPlan]
+    ) -> tuple[list[PartPlan], list[PartPlan]]:
+        draw, maker = self._draw, self._maker
+        tail = [maker.number("value")] if draw(forms.one_in(6)) else []
+        late = self._has_length or self._end != "none"
+        if len(identity) > 1 and late and draw(forms.one_in(4)):
+            tail.append(identity.pop())
+        others = [maker.number(draw(st.sampled_from(["counter", "value"])))
+                  for _ in range(draw(st.sampled_from([0, 0, 0, 1, 1, 2])))]  # fmt: skip
+        if self._has_length:
+            others.append(PartPlan(maker.name(), "length"))
+        sums = self._checksums()
+        if sums and not self._anywhere and draw(forms.one_in(6)):
+            others.append(maker.checksum(optional=False))
+            sums.pop()
+        head = self._mixed(identity, others)
+        if self._start == "set" and not (head and head[0].data.get("range") and head[0].size == 1):
+            head.insert(0, maker.number("value", start=True))
+        tail += sums
+        self._mark(head, tail)
+        return head, tail
+
+    def _checksums(self) -> list[PartPlan]:
+        count = self._draw(st.sampled_from([0, 1, 1, 2]))
+        if self._anywhere:
+            count = max(1, count)
+        return [
+            self._maker.checksum(
+                optional=not self._anywhere and self._draw(forms.one_in(5))
+            )
+            for _ in range(count)
+        ]
+
+    def _mixed(self, identity: list[PartPlan], others: list[PartPlan]) -> list[PartPlan]:
+        """The identity parts in their order, with the others before, between and behind."""
+        head = list(identity)
+        fixed = 1 if self._start == "set" and identity else 0
+        for part in others:
+            head.insert(self._draw(st.integers(min(fixed, len(head)), len(head))), part)
+        return head
+
+    def _mark(self, head: list[PartPlan], tail: list[PartPlan]) -> None:
+        """Put a literal between other parts, sometimes."""
+        if head and self._draw(forms.one_in(8)):
+            place = self._draw(st.integers(1, len(head)))
+            head.insert(place, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
+        if tail and self._draw(forms.one_in(10)):
+            tail.insert(0, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
+
+    # -- the region --------------------------------------------------------------------------
+
+    def _region(self, parts: list[PartPlan], opening: int, closing: int) -> Region | None:
+        """The parts under transparency: nothing but the end literal may follow without a length."""
+        if self._code is None:
+            return None
+        first, last = opening, len(parts) - closing - 1
+        if self._start != "set" and self._draw(st.booleans()):
+            return Region(first, last, written=False)
+        payload = next(i for i, part in enumerate(parts) if part.role == "payload")
+        earliest = first + (self._start == "set")
+        first = self._draw(st.integers(min(earliest, payload), payload))
+        if self._has_length:
+            last = self._draw(st.integers(payload, last))
+            if self._draw(forms.one_in(10)):
+                last = self._draw(st.integers(first, last))
+        return Region(first, last, written=True)
+
+    # -- lengths -----------------------------------------------------------------------------
+
+    def _with_length(self, parts: list[PartPlan]) -> tuple[list[PartPlan], int | None]:
+        """The length part with its type, now that it is known what it can count."""
+        place = next((i for i, part in enumerate(parts) if part.role == "length"), None)
+        if place is None:
+            return parts, None
+        itself = self._draw(st.booleans())
+        others = [
+            part for part in parts
+            if part.role not in ("payload", "length") and not part.optional
+            and self._draw(st.booleans())
+        ]  # fmt: skip
+        counted = sum(part.size for part in others)
+        type_, keys = self._maker.type(least_greatest=counted + 12)
+        counted += type_.size if itself else 0
+        names = {part.name for part in others} | {"payload"}
+        names |= {parts[place].name} if itself else set()
+        every = [part.name for part in parts]
+        keys["counts"] = self._draw(forms.run([n for n in every if n in names], every))
+        greatest = type_.greatest
+        if greatest > 1000 or self._draw(st.booleans()):
+            greatest = min(greatest, counted + self._draw(st.sampled_from([8, 20, 60, 300])))
+            keys["range"] = [0, greatest]
+        keys.update(self._draw(forms.about()))
+        values = type_.bytes_between(0, greatest)
+        bounds = (counted, greatest)
+        part = PartPlan(parts[place].name, "length", keys, values, type=type_, bounds=bounds)
+        return [*parts[:place], part, *parts[place + 1 :]], greatest - counted
+
+    # -- checksums ---------------------------------------------------------------------------
+
+    def _with_covers(self, parts: list[PartPlan], region: Region | None) -> list[PartPlan]:
+        """The checksums with what they cover: never each other in a circle."""
+        every = [part.name for part in parts]
+        seen: list[str] = []
+        found = list(parts)
+        for index, part in enumerate(parts):
+            if part.role != "checksum":
+                continue
+            allowed = [p.name for p in parts if p.role != "checksum" or p.name in seen]
+            covered = self._covered(allowed, every, index)
+            keys = {"covers": self._draw(forms.run(covered, every))}
+            places = {every.index(name) for name in covered}
+            if self._may_be_over_wire(places, index, region) and self._draw(forms.one_in(4)):
+                keys["over"] = "wire"
+            elif self._draw(forms.one_in(4)):
+                keys["over"] = "content"
+            found[index] = found[index].adding(**keys)
+            seen.append(part.name)
+        return found
+
+    def _covered(self, allowed: list[str], every: list[str], index: int) -> list[str]:
+        """Some of the allowed parts: all before the checksum, the payload, or any."""
+        before = [name for name in every[:index] if name in allowed]
+        choice = self._draw(st.sampled_from(["before", "payload", "any"]))
+        if before and (self._anywhere or choice == "before"):
+            return before
+        if choice == "payload":
+            return ["payload"]
+        chosen = self._draw(st.sets(st.sampled_from(allowed), min_size=1))
+        return [name for name in every if name in chosen]
+
+    def _may_be_over_wire(self, places: set[int], index: int, region: Region | None) -> bool:
+        """COBS bytes belong to no part: only the whole region can be covered, from outside."""
+        if region is None or self._code is None or self._code.codewords is not None:
+            return True
+        inside = set(range(region.first, region.last + 1))
+        return not places & inside or (inside <= places and index not in inside)
+
+
+
+
+def _literals(shape: str) -> int:
+    return {"literal": 1, "two literals": 2}.get(shape, 0)

@@ -1,0 +1,215 @@
+"""Messages: who sends them, how they are told apart, and what they carry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms
+from schema_fuzzing.fields import structs
+from schema_fuzzing.frames import FramePlan
+from schema_fuzzing.names import MESSAGES, fresh, several
+from schema_fuzzing.numbers import ORDERS
+from schema_fuzzing.parts import PartPlan
+from schema_fuzzing.setting import Built, Declared, Setting, Size
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What messages are drawn for."""
+
+    byte_bits: int
+    whole_bytes: bool
+    orders: Mapping[str, str]
+    """Byte order by sender, as far as the protocol states one."""
+    frames: Mapping[str, FramePlan]
+    """By sender."""
+    identity: Mapping[str, Sequence[PartPlan]]
+    """The identity parts by sender."""
+    shared: bool
+    """Whether a message may have several senders."""
+    types: tuple[Declared, ...]
+    budget: int
+
+    @property
+    def senders(self) -> tuple[str, ...]:
+        return tuple(self.frames)
+
+
+@dataclass(frozen=True, slots=True)
+class MessagePlan:
+    """A message that was drawn."""
+
+    name: str
+    senders: tuple[str, ...]
+    data: dict[str, Any]
+    size: Size
+
+
+@st.composite
+def messages(draw: st.DrawFn, plan: Plan) -> list[MessagePlan]:
+    """Messages that differ in identity, at least one for each sender."""
+    found: list[MessagePlan] = []
+    for senders in _sendings(draw, plan):
+        taken = {message.name for message in found}
+        name = draw(fresh(MESSAGES, taken))
+        whole = plan.byte_bits == 7 and plan.whole_bytes
+        found.append(_Message(draw, plan, senders, whole=whole).message(name))
+    return _identified(draw, plan, found)
+
+
+def _sendings(draw: st.DrawFn, plan: Plan) -> list[tuple[str, ...]]:
+    """The senders of each message."""
+    found = [(sender,) for sender in plan.senders]
+    if not all(plan.identity[sender] for sender in plan.senders):
+        return found
+    for _ in range(draw(st.integers(0, 3))):
+        if plan.shared and draw(st.booleans()):
+            found.append(tuple(draw(several(plan.senders, 1, len(plan.senders)))))
+        else:
+            found.append((draw(st.sampled_from(plan.senders)),))
+    return draw(st.permutations(found))
+
+
+def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[MessagePlan]:
+    """The messages with an identity each: no two of one sender have the same."""
+    result = list(found)
+    groups: dict[str, list[int]] = {}
+    for index, message in enumerate(found):
+        groups.setdefault("" if plan.shared else message.senders[0], []).append(index)
+    for members in groups.values():
+        scheme = plan.identity[found[members[0]].senders[0]]
+        values = st.tuples(*(st.integers(*part.bounds) for part in scheme))
+        count = len(members) if scheme else 0
+        drawn = draw(st.lists(values, min_size=count, max_size=count, unique=True))
+        for index, identity in zip(members, drawn, strict=False):
+            written = {"id": draw(_written_identity(scheme, identity))}
+            result[index] = replace(result[index], data={**written, **result[index].data})
+    return result
+
+
+@st.composite
+def _written_identity(
+    draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int]
+) -> Any:
+    written = {}
+    for part, value in zip(scheme, identity, strict=True):
+        assert part.type is not None
+        character = part.type.type == "char"
+        written[part.name] = draw(forms.raw_number(value, character=character))
+    if len(written) == 1 and not draw(forms.one_in(4)):
+        return next(iter(written.values()))
+    return dict(draw(st.permutations(list(written.items()))))
+
+
+class _Message:
+    """Draws one message."""
+
+    def __init__(
+        self, draw: st.DrawFn, plan: Plan, senders: tuple[str, ...], *, whole: bool
+    ) -> None:
+        self._draw = draw
+        self._plan = plan
+        self._senders = senders
+        self._whole = whole
+        self._frames = [plan.frames[sender] for sender in senders]
+
+    def message(self, name: str) -> MessagePlan:
+        data: dict[str, Any] = {"from": self._written_senders()}
+        if self._must_be_ordered() or self._draw(forms.one_in(5)):
+            data["byte_order"] = self._draw(ORDERS)
+        setting = self._setting(ordered="byte_order" in data)
+        unspecified = setting.delimited and not self._whole and self._draw(forms.one_in(10))
+        fields, size = self._unspecified(setting) if unspecified else self._fields(setting)
+        data.update(fields)
+        data.update(self._texts())
+        return MessagePlan(name, self._senders, data, size)
+
+    def _written_senders(self) -> Any:
+        if len(self._senders) == 1 and self._draw(st.booleans()):
+            return self._senders[0]
+        return list(self._senders)
+
+    def _must_be_ordered(self) -> bool:
+        """Senders of different byte orders: the message has to say which is its own."""
+        return len({self._plan.orders.get(sender) for sender in self._senders}) > 1
+
+    def _setting(self, *, ordered: bool) -> Setting:
+        rooms = [frame.room for frame in self._frames if frame.room is not None]
+        room = min(rooms, default=None)
+        return Setting(
+            byte_bits=self._plan.byte_bits,
+            ordered=ordered or self._plan.orders.get(self._senders[0]) is not None,
+            whole_bytes=self._plan.whole_bytes,
+            budget=self._plan.budget if room is None else min(room, self._plan.budget),
+            room=room,
+            delimited=all(frame.delimited for frame in self._frames),
+            last=True,
+            types=self._plan.types,
+        )
+
+    def _fields(self, setting: Setting) -> tuple[dict[str, Any], Size]:
+        fields: dict[str, Any] = {}
+        size = Size(0, 0)
+        if self._whole:
+            fields["whole_byte"] = "byte"
+            size = Size(1, 1)
+        built: Built = self._draw(structs(setting.behind(size), greatest=5))
+        fields.update(built.data)
+        if not fields and self._draw(st.booleans()):
+            return {}, size
+        return {"fields": fields}, size + built.size
+
+    def _unspecified(self, setting: Setting) -> tuple[dict[str, Any], Size]:
+        data: dict[str, Any] = {"fields": "unspecified"}
+        greatest = setting.room
+        if greatest is None or self._draw(st.booleans()):
+            greatest = data["max_size"] = self._draw(st.integers(0, setting.budget))
+        least = 0
+        if self._draw(st.booleans()):
+            least = data["min_size"] = self._draw(st.integers(0, min(greatest, 4)))
+        return data, Size(least, greatest)
+
+    def _texts(self) -> dict[str, Any]:
+        found = dict(self._draw(forms.about()))
+        for key in ("title", "summary"):
+            if self._draw(forms.one_in(6)):
+                found[key] = self._draw(st.sampled_from(forms.TEXTS))
+        return found
+
+
+# --- overloads ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Overload:
+    """A second message with the identity of a first one, and how they are told apart."""
+
+    partner: MessagePlan
+    data: dict[str, Any]
+
+
+@st.composite
+def overload(
+    draw: st.DrawFn, plan: Plan, first: MessagePlan, taken: Sequence[str]
+) -> Overload | None:
+    """A partner for a message, where one can be made."""
+    frames = [plan.frames[sender] for sender in first.senders]
+    rooms = [frame.room for frame in frames if frame.room is not None]
+    delimited = all(frame.delimited for frame in frames)
+    size = first.size.greatest + 1
+    by_size = delimited and size <= min(rooms, default=plan.budget + 1) and not draw(forms.one_in(4))
+    if not by_size and not (first.size.fixed or delimited):
+        return None
+    if not by_size:
+        size = first.size.least
+    name = draw(fresh(MESSAGES, taken))
+    kept = {key: first.data[key] for key in ("id", "from", "byte_order") if key in first.data}
+    data = {**kept, "fields": {"filling": {"type": "bytes", "size": size}}}
+    written: dict[str, Any] = {"messages": [first.name, name], "by": "size"}
+    if not by_size:
+        written = {**written, "by": "undecidable", "yields": first.name}
+    return Overload(MessagePlan(name, first.senders, data, Size(size, size)), written)

@@ -1,0 +1,204 @@
+"""The parts of a frame: literals, identities, lengths, counters, values, checksums."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms
+from schema_fuzzing.names import PARTS, fresh
+from schema_fuzzing.numbers import ORDERS
+
+ALGORITHMS = (
+    ("xor-8", 8), ("sum-8", 8), ("sum-8/negated", 8), ("fletcher-16", 16), ("CRC-3/GSM", 3),
+    ("CRC-5/USB", 5), ("CRC-7/MMC", 7), ("CRC-8/SMBUS", 8), ("CRC-8/MAXIM-DOW", 8),
+    ("CRC-12/UMTS", 12), ("CRC-15/CAN", 15), ("CRC-16/KERMIT", 16), ("CRC-16/MODBUS", 16),
+    ("CRC-16/XMODEM", 16), ("CRC-24/OPENPGP", 24), ("crc-32", 32), ("CRC-32/MPEG-2", 32),
+    ("CRC-40/GSM", 40), ("CRC-64/XZ", 64),
+)  # fmt: skip
+_BYTE = frozenset(range(256))
+
+
+@dataclass(frozen=True, slots=True)
+class PartType:
+    """An unsigned integer as the type of a part."""
+
+    type: str
+    bits: int
+    byte_bits: int
+    order: str
+
+    @property
+    def size(self) -> int:
+        return -(-self.bits // self.byte_bits)
+
+    @property
+    def greatest(self) -> int:
+        return (1 << self.bits) - 1
+
+    def bytes_between(self, least: int, greatest: int) -> tuple[frozenset[int], ...]:
+        """What each byte can be: the bounds tell of the most significant one, of others nothing."""
+        shift = self.byte_bits * (self.size - 1)
+        top = frozenset(range(least >> shift, (greatest >> shift) + 1))
+        rest = (frozenset(range(1 << self.byte_bits)),) * (self.size - 1)
+        return (top, *rest) if self.order == "big" else (*rest, top)
+
+
+@dataclass(frozen=True, slots=True)
+class PartPlan:
+    """A part that was drawn. `bytes` is what each of its bytes can be, unstuffed."""
+
+    name: str
+    role: str
+    data: dict[str, Any] = field(default_factory=dict)
+    bytes: tuple[frozenset[int], ...] = ()
+    optional: bool = False
+    type: PartType | None = None
+    bounds: tuple[int, int] = (0, 0)
+
+    @property
+    def size(self) -> int:
+        return len(self.bytes)
+
+    @property
+    def literal(self) -> bytes:
+        """The bytes of a literal."""
+        return bytes(next(iter(values)) for values in self.bytes)
+
+    def adding(self, **more: Any) -> PartPlan:
+        """The part with further keys."""
+        return replace(self, data={**self.data, **more})
+
+
+class Maker:
+    """Draws parts of one frame, each with a name of its own."""
+
+    def __init__(self, draw: st.DrawFn, byte_bits: int, order: str | None) -> None:
+        self._draw = draw
+        self._byte_bits = byte_bits
+        self._order = order
+        self._taken = {"payload"}
+
+    def take(self, names: Sequence[str]) -> None:
+        """Keep names for parts that are made elsewhere."""
+        self._taken.update(names)
+
+    def name(self) -> str:
+        found = self._draw(fresh(PARTS, self._taken))
+        self._taken.add(found)
+        return found
+
+    def literal(self, data: bytes) -> PartPlan:
+        written = {"literal": self._draw(forms.octets(data)), **self._draw(forms.about())}
+        values = tuple(frozenset({byte}) for byte in data)
+        return PartPlan(self.name(), "literal", written, values)
+
+    def payload(self) -> PartPlan:
+        return PartPlan("payload", "payload", self._draw(forms.about()))
+
+    # -- numbers -----------------------------------------------------------------------------
+
+    def type(
+        self, bits: int | None = None, *, one_byte: bool = False, least_greatest: int = 0
+    ) -> tuple[PartType, dict[str, Any]]:
+        """A type, and the keys that say so; one that can say at least `least_greatest`."""
+        names: list[tuple[str, int]] = [("byte", 8), ("char", self._byte_bits)]
+        names += [(f"uint{width}", width) for width in (4, 7, 8, 8, 12, 16)]
+        if bits is not None:
+            names = [item for item in names if item[1] == bits] or [(f"uint{bits}", bits)]
+        if one_byte:
+            names = [item for item in names if item[1] <= self._byte_bits or item[0] == "byte"]
+        names = [item for item in names if (1 << item[1]) > least_greatest]
+        name, width = self._draw(st.sampled_from(names))
+        byte_bits = 8 if name == "byte" else self._byte_bits
+        order = self._order
+        keys: dict[str, Any] = {"type": name}
+        if -(-width // byte_bits) > 1 and (order is None or self._draw(forms.one_in(4))):
+            order = keys["byte_order"] = self._draw(ORDERS)
+        return PartType(name, width, byte_bits, order or "little"), keys
+
+    def number(self, role: str, *, start: bool = False) -> PartPlan:
+        """A counter or a value; `start`: one byte with a range, which marks the frame's start."""
+        type_, keys = self.type(one_byte=start)
+        least, greatest = 0, type_.greatest
+        if start or self._draw(forms.one_in(3)):
+            least, greatest = self._small_bounds(type_)
+            keys["range"] = self._written_range(type_, least, greatest)
+        if role == "counter":
+            keys["counter"] = True
+        if self._draw(st.booleans()):
+            keys["default"] = self._draw(st.integers(least, greatest))
+        keys.update(self._draw(forms.about()))
+        values = type_.bytes_between(least, greatest)
+        return PartPlan(self.name(), role, keys, values, type=type_, bounds=(least, greatest))
+
+    def _written_range(self, type_: PartType, least: int, greatest: int) -> list[Any]:
+        character = type_.type == "char" and greatest < 0x7F
+        return [
+            self._draw(forms.raw_number(least, character=character)),
+            self._draw(forms.raw_number(greatest, character=character)),
+        ]
+
+    def identity(self, name: str, keys: dict[str, Any], type_: PartType) -> PartPlan:
+        """An identity part of which all but its place is known."""
+        bounds = identity_bounds(keys, type_)
+        return PartPlan(
+            name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds
+        )
+
+    def new_identity(self, *, start: bool = False) -> PartPlan:
+        """An identity part; `start`: its range sets it apart from 7-bit bytes."""
+        type_, keys = self.type(one_byte=start)
+        keys["id"] = True
+        if start and type_.bits == 8 and self._draw(st.booleans()):
+            keys["range"] = [0x80, self._draw(st.integers(0x90, 0xFF))]
+        elif start or self._draw(forms.one_in(4)):
+            keys["range"] = self._written_range(type_, *self._small_bounds(type_))
+        keys.update(self._draw(forms.about()))
+        return self.identity(self.name(), keys, type_)
+
+    def _small_bounds(self, type_: PartType) -> tuple[int, int]:
+        least = self._draw(st.integers(0, type_.greatest // 2))
+        return least, self._draw(st.integers(min(least + 6, type_.greatest), type_.greatest - 1))
+
+    # -- checksums ---------------------------------------------------------------------------
+
+    def checksum(self, *, optional: bool) -> PartPlan:
+        """A checksum; what it covers is said later."""
+        algorithm, width = self._draw(st.sampled_from(ALGORITHMS))
+        if self._draw(forms.one_in(6)):
+            algorithm, width = self._parameters()
+        type_, keys = self.type(width)
+        keys["algorithm"] = algorithm
+        if optional:
+            keys["when"] = "payload"
+        values = type_.bytes_between(0, type_.greatest)
+        return PartPlan(self.name(), "checksum", keys, values, optional=optional, type=type_)
+
+    def _parameters(self) -> tuple[Any, int]:
+        width = self._draw(st.integers(1, 64))
+        register = st.integers(0, (1 << width) - 1)
+        found: dict[str, Any] = {"width": width, "poly": self._draw(register) | 1}
+        for key, values in (
+            ("init", register), ("xorout", register), ("refin", st.booleans()),
+            ("refout", st.booleans()),
+        ):  # fmt: skip
+            if self._draw(st.booleans()):
+                found[key] = self._draw(values)
+        return found, width
+
+
+def identity_bounds(keys: dict[str, Any], type_: PartType) -> tuple[int, int]:
+    """The range of an identity part as numbers."""
+    if "range" not in keys:
+        return 0, type_.greatest
+    least, greatest = (ord(end) if isinstance(end, str) else end for end in keys["range"])
+    return least, greatest
+
+
+def every_payload_byte(byte_bits: int, *, whole_bytes: bool) -> frozenset[int]:
+    """The bytes that a payload can hold."""
+    return _BYTE if byte_bits == 8 or whole_bytes else frozenset(range(128))

@@ -1,0 +1,252 @@
+"""The bytes of messages and frames, worked out a second time and as plainly as possible.
+
+Slow, without checks, and only from values to bytes: just enough to compare the generated codecs
+with something that shares no code with them.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.fields import Field
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Encoding,
+    Escape,
+    Frame,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    Substitution,
+)
+from protogen.model.messages import Message
+from protogen.model.types import Array, Fixed, Float, Integer, Octets, Struct, Switch, Text, Type
+
+Scope = Mapping[str, Any]
+
+
+def payload_bytes(fields: Sequence[Field], values: Mapping[str, Any], outer: Scope) -> bytes:
+    """The bytes of fields, whose values are as `to_dict` shows them."""
+    scope = dict(outer)
+    found = b""
+    for field in fields:
+        found += _value(field.type, values[field.name], scope)
+        scope[field.name] = values[field.name]
+    return found
+
+
+def _value(type_: Type, value: Any, scope: Scope) -> bytes:
+    match type_:
+        case Integer():
+            return number_bytes(type_, int(value))
+        case Float():
+            return _float_bytes(type_, value)
+        case Text():
+            data: bytes = value.encode("latin-1")
+            return data.ljust(type_.extent.count, b"\0") if isinstance(type_.extent, Fixed) else data
+        case Octets():
+            return bytes.fromhex(value)
+        case Struct():
+            return payload_bytes(type_.fields, value or {}, scope)
+        case Array():
+            return b"".join(_value(type_.element, element, scope) for element in value)
+    return _switch_bytes(type_, value, scope)
+
+
+def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
+    for case in type_.cases:
+        if case.value == scope[type_.selector]:
+            return _value(case.type, value, scope)
+    return bytes.fromhex(value)
+
+
+def number_bytes(type_: Integer, value: int) -> bytes:
+    """A number in groups of 7 or 8 bits."""
+    return _grouped(value % (1 << type_.bits), type_.size, type_.byte_bits, type_.byte_order)
+
+
+def _float_bytes(type_: Float, value: float | str) -> bytes:
+    code = ">f" if type_.bits == 32 else ">d"
+    raw = int.from_bytes(struct.pack(code, float(value)), "big")
+    return _grouped(raw, type_.size, type_.byte_bits, type_.byte_order)
+
+
+def _grouped(raw: int, size: int, bits: int, order: str) -> bytes:
+    groups = [(raw >> (bits * index)) % (1 << bits) for index in range(size)]
+    return bytes(groups if order == "little" else reversed(groups))
+
+
+# --- frames -------------------------------------------------------------------------------------
+
+
+def frame_bytes(
+    frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]
+) -> bytes:
+    """The frame of a payload; `given` holds all counters and values."""
+    return _Assembly(frame, message, payload, given).wire()
+
+
+class _Assembly:
+    """One frame."""
+
+    def __init__(
+        self, frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]
+    ) -> None:
+        self._frame = frame
+        self._payload = payload
+        names = [part.name for part in frame.identity]
+        self._numbers = {**given, **dict(zip(names, message.identity, strict=True))}
+
+    def wire(self) -> bytes:
+        return self._wire(part.name for part in self._present())
+
+    def _present(self) -> list[Part]:
+        optional = [part for part in self._frame.checksums if part.when_payload]
+        return [part for part in self._frame.parts if self._payload or part not in optional]
+
+    def _wire(self, names: Iterable[str]) -> bytes:
+        """Parts as they stand on the wire; all under transparency are encoded together."""
+        covered = self._covered()
+        wanted = set(names)
+        found, region, is_inside = b"", b"", False
+        for part in self._frame.parts:
+            inside = part.name in covered
+            if is_inside and not inside:
+                found += self._encoded(region)
+            is_inside = inside
+            if part not in self._present() or part.name not in wanted:
+                continue
+            content = self._content(part)
+            region += content if inside else b""
+            found += b"" if inside else content
+        return found + (self._encoded(region) if is_inside else b"")
+
+    def _encoded(self, region: bytes) -> bytes:
+        transparency = self._frame.transparency
+        assert transparency is not None
+        return encoded(transparency.encoding, region)
+
+    def _covered(self) -> set[str]:
+        transparency = self._frame.transparency
+        if transparency is None:
+            return set()
+        names = [part.name for part in self._frame.parts]
+        return set(names[names.index(transparency.first) : names.index(transparency.last) + 1])
+
+    def _content(self, part: Part) -> bytes:
+        match part:
+            case LiteralPart():
+                return part.bytes
+            case PayloadPart():
+                return self._payload
+            case ChecksumPart():
+                return number_bytes(part.type, self._checksum(part))
+            case LengthPart():
+                counted = [other for other in self._present() if other.name in part.counts]
+                return number_bytes(part.type, sum(self._size(other) for other in counted))
+            case NumberPart():
+                return number_bytes(part.type, self._numbers[part.name])
+        raise AssertionError(part)
+
+    def _size(self, part: Part) -> int:
+        match part:
+            case LiteralPart():
+                return len(part.bytes)
+            case PayloadPart():
+                return len(self._payload)
+            case NumberPart() | ChecksumPart():
+                return part.type.size
+        raise AssertionError(part)
+
+    def _checksum(self, part: ChecksumPart) -> int:
+        covered = [other for other in self._present() if other.name in part.covers]
+        if not part.over_wire:
+            return checksum(part.algorithm, b"".join(map(self._content, covered)))
+        names = {other.name for other in covered}
+        return checksum(part.algorithm, self._wire_of_some(names))
+
+    def _wire_of_some(self, names: set[str]) -> bytes:
+        """As they stand on the wire. Of a COBS region either all parts are covered or none."""
+        if not names & self._covered():
+            return b"".join(self._content(self._frame.part(n)) for n in self._ordered(names))
+        return self._wire(names)
+
+    def _ordered(self, names: set[str]) -> list[str]:
+        return [part.name for part in self._frame.parts if part.name in names]
+
+
+def encoded(encoding: Encoding, region: bytes) -> bytes:
+    """A region as its transparency makes it."""
+    match encoding:
+        case Substitution():
+            table = dict(encoding.table)
+            return b"".join(table.get(byte, bytes((byte,))) for byte in region)
+        case Escape():
+            return b"".join(
+                bytes((encoding.byte, byte ^ encoding.xor))
+                if byte in encoding.of
+                else bytes((byte,))
+                for byte in region
+            )
+        case Base16():
+            return region.hex().upper().encode()
+        case Cobs():
+            return _cobs(region)
+
+
+def _cobs(region: bytes) -> bytes:
+    found, block, is_full = b"", b"", False
+    for index, byte in enumerate(region):
+        is_full = False
+        if byte:
+            block += bytes((byte,))
+        if not byte or len(block) == 254:
+            found += bytes((len(block) + 1,)) + block
+            is_full = bool(byte) and index == len(region) - 1
+            block = b""
+    return found if is_full else found + bytes((len(block) + 1,)) + block
+
+
+# --- checksums ----------------------------------------------------------------------------------
+
+
+def checksum(spec: ChecksumSpec, data: bytes) -> int:
+    """A checksum, bit by bit."""
+    match spec.kind:
+        case "xor":
+            found = spec.init
+            for byte in data:
+                found ^= byte
+            return found
+        case "sum":
+            total = (spec.init + sum(data)) % 256
+            return -total % 256 if spec.negated else total
+        case "fletcher":
+            low = high = 0
+            for byte in data:
+                low = (low + byte) % 255
+                high = (high + low) % 255
+            return high << 8 | low
+    return _crc(spec, data)
+
+
+def _crc(spec: ChecksumSpec, data: bytes) -> int:
+    """The register is shifted once for each bit, as the definition has it."""
+    register = spec.init
+    for byte in data:
+        for place in range(8):
+            bit = byte >> (place if spec.refin else 7 - place) & 1
+            top = register >> (spec.width - 1) & 1
+            register = (register << 1) % (1 << spec.width)
+            if bit ^ top:
+                register ^= spec.poly
+    if spec.refout:
+        register = int(f"{register:0{spec.width}b}"[::-1], 2)
+    return register ^ spec.xorout

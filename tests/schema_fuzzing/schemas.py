@@ -1,0 +1,205 @@
+"""Whole schemas as plain data, valid because of how they are made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms, names
+from schema_fuzzing.frames import FramePlan, frames
+from schema_fuzzing.messages import MessagePlan, Plan, messages, overload
+from schema_fuzzing.numbers import ORDERS
+from schema_fuzzing.parts import Maker, PartPlan, every_payload_byte
+from schema_fuzzing.shapes import shapes_of
+from schema_fuzzing.types import declared_types
+
+DECISION = "delimiter_in_data"
+_SHARED = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Schema:
+    """A schema as a reader of YAML sees it, and in words what occurs in it."""
+
+    data: dict[str, Any]
+    shapes: tuple[str, ...]
+
+
+@st.composite
+def schemas(draw: st.DrawFn) -> Schema:
+    """Valid schemas of every shape that the language has words for."""
+    return _Drawing(draw).schema()
+
+
+class _Drawing:
+    """Draws one schema."""
+
+    def __init__(self, draw: st.DrawFn) -> None:
+        self._draw = draw
+        self._byte_bits = draw(st.sampled_from([8, 8, 8, 7]))
+        self._whole = self._byte_bits == 8 or draw(forms.one_in(3))
+        self._endpoints = draw(names.several(names.ENDPOINTS, 1, 3))
+        self._senders = self._endpoints[: draw(st.integers(1, len(self._endpoints)))]
+        self._order, self._orders = self._byte_orders()
+        self._per_sender = draw(st.booleans())
+        self._same_identity = not self._per_sender or draw(st.booleans())
+
+    def schema(self) -> Schema:
+        types = self._draw(declared_types(self._byte_bits, whole_bytes=self._whole))
+        identity = self._identities()
+        drawn = self._frames(identity)
+        plan = Plan(
+            byte_bits=self._byte_bits,
+            whole_bytes=self._whole,
+            orders=self._orders,
+            frames={sender: self._of(drawn, sender) for sender in self._senders},
+            identity={sender: self._of(identity, sender) for sender in self._senders},
+            shared=self._same_identity,
+            types=types,
+            budget=self._draw(st.sampled_from([6, 20, 20, 40, 300])),
+        )
+        found = self._draw(messages(plan))
+        overloads = self._overloads(plan, found)
+        finished = self._finished(drawn, found)
+        data = self._root(types=types, found=found, frames=finished)
+        if overloads:
+            data["overloads"] = overloads
+        data.update(self._extras(finished, found))
+        return Schema(data, tuple(shapes_of(data, finished, self._byte_bits)))
+
+    def _of(self, keyed: Mapping[str, Any], sender: str) -> Any:
+        return keyed[sender] if sender in keyed else keyed[_SHARED]
+
+    # -- what holds for frames and messages --------------------------------------------------
+
+    def _byte_orders(self) -> tuple[Any, dict[str, str]]:
+        """As written, and by sender."""
+        choice = self._draw(st.sampled_from(["none", "all", "all", "all", "each"]))
+        if choice == "none":
+            return None, {}
+        if choice == "all":
+            order = self._draw(ORDERS)
+            return order, dict.fromkeys(self._senders, order)
+        orders = {sender: self._draw(ORDERS) for sender in self._senders}
+        return orders, orders
+
+    def _common_order(self, senders: Sequence[str]) -> str | None:
+        orders = {self._orders.get(sender) for sender in senders}
+        return next(iter(orders)) if len(orders) == 1 else None
+
+    def _identities(self) -> dict[str, list[PartPlan]]:
+        """The identity parts of all senders, or of each."""
+        if self._same_identity:
+            return {_SHARED: self._identity(self._common_order(self._senders))}
+        return {sender: self._identity(self._orders.get(sender)) for sender in self._senders}
+
+    def _identity(self, order: str | None) -> list[PartPlan]:
+        maker = Maker(self._draw, self._byte_bits, order)
+        count = self._draw(st.sampled_from([0, 1, 1, 1, 2, 3]))
+        start = self._draw(st.booleans())
+        return [maker.new_identity(start=start and index == 0) for index in range(count)]
+
+    def _frames(self, identity: Mapping[str, list[PartPlan]]) -> dict[str, FramePlan]:
+        if not self._per_sender:
+            order = self._common_order(self._senders)
+            return {_SHARED: self._draw(frames(self._byte_bits, order, identity[_SHARED]))}
+        return {
+            sender: self._draw(
+                frames(self._byte_bits, self._orders.get(sender), self._of(identity, sender))
+            )
+            for sender in self._senders
+        }
+
+    def _finished(
+        self, drawn: Mapping[str, FramePlan], found: list[MessagePlan]
+    ) -> dict[str, FramePlan]:
+        """The frames with what depends on the messages."""
+        payload = every_payload_byte(self._byte_bits, whole_bytes=self._whole)
+        finished: dict[str, FramePlan] = {}
+        for key, frame in drawn.items():
+            sent = [message for message in found if key == _SHARED or key in message.senders]
+            least = min(message.size.least for message in sent)
+            slack = self._draw(st.sampled_from([0, 0, 1, 1000]))
+            frame = frame.with_least_payload(least, slack)
+            finished[key] = frame.with_unprotected(payload, DECISION)
+        return finished
+
+    def _overloads(self, plan: Plan, found: list[MessagePlan]) -> dict[str, Any]:
+        """Sometimes a second message with the identity of one; adds it to those found."""
+        if not self._draw(forms.one_in(5)):
+            return {}
+        first = self._draw(st.sampled_from(found))
+        taken = [message.name for message in found]
+        made = self._draw(overload(plan, first, taken))
+        if made is None:
+            return {}
+        found.append(made.partner)
+        return {"shared_identity": made.data}
+
+    # -- as it is written --------------------------------------------------------------------
+
+    def _root(self, *, types: Any, found: list[MessagePlan], frames: Any) -> dict[str, Any]:
+        draw = self._draw
+        data: dict[str, Any] = {
+            "protocol": draw(st.sampled_from(names.PROTOCOLS)),
+            "endpoints": {name: self._endpoint() for name in self._endpoints},
+        }
+        if self._order is not None:
+            data["byte_order"] = self._order
+        if self._byte_bits == 7 or draw(st.booleans()):
+            data["byte_bits"] = self._byte_bits
+        data["frame"] = self._by_sender({key: frame.data() for key, frame in frames.items()})
+        stuffed = {key: frame.transparency() for key, frame in frames.items()}
+        stuffed = {key: value for key, value in stuffed.items() if value is not None}
+        if stuffed:
+            data["transparency"] = self._by_sender(stuffed)
+        if types:
+            data["types"] = {declared.name: declared.built.data for declared in types}
+        data["messages"] = {message.name: message.data for message in found}
+        return data
+
+    def _by_sender(self, keyed: dict[str, Any]) -> Any:
+        return keyed.get(_SHARED, keyed)
+
+    def _endpoint(self) -> Any:
+        title = self._draw(st.sampled_from(forms.TEXTS))
+        return self._draw(st.sampled_from([title, {"title": title, "doc": "Some words."}]))
+
+    def _extras(self, frames: Mapping[str, FramePlan], found: list[MessagePlan]) -> dict[str, Any]:
+        """What does not change a byte, and the decisions that are referred to."""
+        draw = self._draw
+        data: dict[str, Any] = {}
+        for key in ("title", "doc", "version"):
+            if draw(forms.one_in(4)):
+                data[key] = draw(st.sampled_from(forms.TEXTS))
+        if draw(forms.one_in(3)):
+            data["link"] = draw(_links())
+        accepted = any("unprotected" in p.data for f in frames.values() for p in f.parts)
+        if accepted or draw(forms.one_in(6)):
+            keys = ("question", "document", "choice", "because")
+            data["decisions"] = {DECISION: {key: draw(_TEXT) for key in keys}}
+        if draw(forms.one_in(5)):
+            steps = draw(st.lists(st.sampled_from([m.name for m in found]), max_size=4))
+            data["exchanges"] = {"startup": {"title": draw(_TEXT), "steps": list(steps)}}
+        if draw(forms.one_in(6)):
+            data["reserved"] = {"fields": {found[0].name: ["no_longer_used"]}}
+        return data
+
+
+_TEXT = st.sampled_from(forms.TEXTS)
+
+
+@st.composite
+def _links(draw: st.DrawFn) -> dict[str, Any]:
+    options: dict[str, list[Any]] = {
+        "baud": [9600, 115200],
+        "data_bits": [7, 8],
+        "parity": ["none", "even", "odd"],
+        "stop_bits": [1, 2],
+        "idle_timeout": ["20 ms", "1.5 s"],
+    }
+    chosen = draw(names.several(tuple(options), 0, len(options)))
+    return {key: draw(st.sampled_from(options[key])) for key in chosen}

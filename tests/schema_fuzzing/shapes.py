@@ -1,0 +1,125 @@
+"""In words what occurs in a schema, to see that everything does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from schema_fuzzing.frames import FramePlan
+
+_FIELD_KEYS = (
+    "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
+    "special", "byte_order", "unknown", "switch",
+)  # fmt: skip
+
+
+def shapes_of(
+    data: dict[str, Any], frames: Mapping[str, FramePlan], byte_bits: int
+) -> Iterator[str]:
+    """What occurs, each thing at least once."""
+    yield f"{byte_bits} bits a byte"
+    yield "one frame for all" if "" in frames else f"frames of {len(frames)} senders"
+    order = data.get("byte_order")
+    yield f"byte order: {'each sender' if isinstance(order, dict) else order}"
+    for frame in frames.values():
+        yield from _frame(frame)
+    for message in data["messages"].values():
+        yield from _message(message)
+    for declared in data.get("types", {}).values():
+        yield "declared struct" if "fields" in declared else "declared number"
+        yield from _field(declared)
+    for entry in data.get("overloads", {}).values():
+        yield f"overload by {entry['by']}"
+
+
+def _frame(frame: FramePlan) -> Iterator[str]:
+    code = "none" if frame.code is None else frame.code.kind
+    start = _start(frame)
+    end = _mark(frame, frame.closing)
+    roles = [part.role for part in frame.parts]
+    yield f"transparency: {code}"
+    yield f"start: {start}"
+    yield f"end: {end}"
+    yield f"start and end: {start}, {end}"
+    yield f"start and transparency: {start}, {code}"
+    yield f"end and transparency: {end}, {code}"
+    yield f"size: {_size(frame)}"
+    yield f"identity parts: {roles.count('id')}"
+    yield f"checksums: {roles.count('checksum')}"
+    yield from (role for role in roles if role in ("counter", "value"))
+    if frame.lenient:
+        yield "lenient"
+    for part in frame.parts:
+        yield from _part(part.data)
+
+
+def _start(frame: FramePlan) -> str:
+    if frame.opening:
+        return _mark(frame, frame.opening)
+    if frame.starts_with_set:
+        return "set"
+    return "after end" if frame.closing else "anywhere"
+
+
+def _mark(frame: FramePlan, places: tuple[int, ...]) -> str:
+    if not places:
+        return "none"
+    accepted = any("unprotected" in frame.parts[index].data for index in places)
+    return "unprotected" if accepted else "protected"
+
+
+def _size(frame: FramePlan) -> str:
+    length = next((part for part in frame.parts if part.role == "length"), None)
+    if length is None:
+        return "by the end" if frame.closing else "by the message"
+    return "length with a range" if "range" in length.data else "length"
+
+
+def _part(data: dict[str, Any]) -> Iterator[str]:
+    if "algorithm" in data:
+        algorithm = data["algorithm"]
+        yield f"algorithm: {algorithm if isinstance(algorithm, str) else 'parameters'}"
+        yield f"checksum over {data.get('over', 'content')}"
+        if "when" in data:
+            yield "checksum when payload"
+    if "byte_order" in data:
+        yield "byte order of a part"
+
+
+def _message(data: dict[str, Any]) -> Iterator[str]:
+    yield "several senders" if isinstance(data["from"], list) and data["from"][1:] else "one sender"
+    if "byte_order" in data:
+        yield "byte order of a message"
+    fields = data.get("fields", {})
+    if fields == "unspecified":
+        yield "unspecified payload"
+    elif not fields:
+        yield "empty message"
+    else:
+        for item in fields.values():
+            yield from _field(item)
+
+
+def _field(item: Any) -> Iterator[str]:
+    if isinstance(item, str):
+        yield f"type: {item}"
+        return
+    kind = item.get("type", "struct" if "fields" in item else "switch")
+    yield f"type: {kind}"
+    for key in _FIELD_KEYS:
+        if key in item:
+            yield f"field with {key}"
+    for key in ("count", "size"):
+        if key in item:
+            yield f"{kind if kind in ('ascii', 'bytes', 'struct') else 'number'}: {_extent(item[key])}"
+    inner = [*item.get("fields", {}).values(), *item.get("cases", {}).values()]
+    for field in inner:
+        yield from _field(field)
+
+
+def _extent(extent: Any) -> str:
+    if isinstance(extent, int):
+        return "fixed"
+    if isinstance(extent, dict):
+        return "fill, bounded" if "max" in extent else "fill"
+    return "fill" if extent == "fill" else "counted"

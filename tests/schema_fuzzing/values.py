@@ -1,0 +1,272 @@
+"""Values for the messages of a resolved protocol, as `to_dict` shows them; ends of ranges often."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from math import ceil, floor
+from typing import Any
+
+from hypothesis import strategies as st
+
+from protogen.model.fields import Field
+from protogen.model.frame import CounterPart, Frame, ValuePart
+from protogen.model.messages import Message
+from protogen.model.types import (
+    Array,
+    Counted,
+    Extent,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+
+_USUAL_COUNT = 5
+_GREATEST_COUNT = 300
+
+Scope = dict[str, int]
+"""The integers in front, which count and choose."""
+
+
+@st.composite
+def values_of(draw: st.DrawFn, message: Message) -> dict[str, Any]:
+    """Values that strict encoding takes."""
+    if message.unspecified:
+        size = draw(_count(message.sizes.least, message.sizes.greatest))
+        (field,) = message.fields
+        assert isinstance(field.type, Octets)
+        return {field.name: draw(_octets(size, field.type.byte_bits)).hex()}
+    return draw(_struct(message.fields, {}))
+
+
+@st.composite
+def parts_of(draw: st.DrawFn, frame: Frame) -> dict[str, int]:
+    """Values for counters and values of a frame; one with a default is left out sometimes."""
+    return {
+        part.name: draw(_between(part.least, part.greatest))
+        for part in frame.caller_parts
+        if part.default is None or draw(st.booleans())
+    }
+
+
+def all_parts(frame: Frame, message: Message, given: dict[str, int]) -> dict[str, int]:
+    """What an event shows: identity, counters and values."""
+    identity = dict(zip((part.name for part in frame.identity), message.identity, strict=True))
+    shown: dict[str, int] = {}
+    for part in frame.parts:
+        if part.name in identity:
+            shown[part.name] = identity[part.name]
+        elif isinstance(part, CounterPart | ValuePart):
+            default = part.default if part.default is not None else -1
+            shown[part.name] = given.get(part.name, default)
+    return shown
+
+
+# --- structs ------------------------------------------------------------------------------------
+
+
+@st.composite
+def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str, Any]:
+    scope = dict(outer)
+    found: dict[str, Any] = {}
+    for index, field in enumerate(fields):
+        uses = list(_uses(field.name, fields[index + 1 :]))
+        found[field.name] = draw(_field(field, scope, uses))
+        scope.pop(field.name, None)
+        if isinstance(field.type, Integer):
+            scope[field.name] = int(found[field.name])
+    return found
+
+
+def _uses(name: str, fields: Sequence[Field]) -> Iterator[Counted | Switch]:
+    """The counts and switches behind a field that mean it."""
+    for field in fields:
+        yield from _uses_in(name, field.type)
+        if field.name == name:
+            return
+
+
+def _uses_in(name: str, type_: Type) -> Iterator[Counted | Switch]:
+    match type_:
+        case Struct():
+            yield from _uses(name, type_.fields)
+        case Array():
+            yield from _counted_by(name, type_.extent)
+            yield from _uses_in(name, type_.element)
+        case Text() | Octets():
+            yield from _counted_by(name, type_.extent)
+        case Switch():
+            if type_.selector == name:
+                yield type_
+            for case in type_.cases:
+                yield from _uses_in(name, case.type)
+
+
+def _counted_by(name: str, extent: Extent) -> Iterator[Counted]:
+    if isinstance(extent, Counted) and extent.field == name:
+        yield extent
+
+
+# --- values -------------------------------------------------------------------------------------
+
+
+def _field(field: Field, scope: Scope, uses: list[Counted | Switch]) -> st.SearchStrategy[Any]:
+    if field.const is not None:
+        return st.just(_shown(field))
+    if uses and isinstance(field.type, Integer):
+        return _used(field, field.type, uses)
+    return _value(field.type, field, scope)
+
+
+def _shown(field: Field) -> Any:
+    """A constant as JSON shows it."""
+    constant = field.const
+    if isinstance(field.type, Integer) and field.type.role == "bool":
+        return bool(constant)
+    if isinstance(constant, bytes):
+        return list(constant) if isinstance(field.type, Array) else constant.hex()
+    if isinstance(constant, tuple):
+        return list(constant)
+    return constant
+
+
+def _value(type_: Type, field: Field | None, scope: Scope) -> st.SearchStrategy[Any]:
+    match type_:
+        case Integer():
+            return _integer(type_, field)
+        case Float():
+            return _float(type_, field)
+        case Text() | Octets():
+            return _string(type_, scope)
+        case Struct():
+            return _struct(type_.fields, scope)
+        case Array():
+            return _array(type_, field, scope)
+    return _switch(type_, scope)
+
+
+def _integer(type_: Integer, field: Field | None) -> st.SearchStrategy[Any]:
+    if type_.role == "bool":
+        return st.booleans()
+    if type_.enum is not None and type_.enum.closed:
+        return st.sampled_from([entry.value for entry in type_.enum.values])
+    least, greatest = _bounds(type_, field)
+    special = [] if field is None else [entry.value for entry in field.special]
+    named = [] if type_.enum is None else [entry.value for entry in type_.enum.values]
+    known = [*special, *(value for value in named if least <= value <= greatest)]
+    usual = _between(least, greatest)
+    return usual | st.sampled_from(known) if known else usual
+
+
+def _bounds(type_: Integer, field: Field | None) -> tuple[int, int]:
+    if field is None or field.least is None or field.greatest is None:
+        return type_.least, type_.greatest
+    return int(field.least), int(field.greatest)
+
+
+def _between(least: int, greatest: int) -> st.SearchStrategy[int]:
+    ends = [value for value in (least, greatest, 0, -1, 1) if least <= value <= greatest]
+    return st.sampled_from(ends) | st.integers(least, greatest)
+
+
+@st.composite
+def _used(
+    draw: st.DrawFn, field: Field, type_: Integer, uses: list[Counted | Switch]
+) -> int | bool:
+    """A value that counts or chooses what follows, so that it can follow."""
+    least, greatest = _bounds(type_, field)
+    counts = [use for use in uses if isinstance(use, Counted)]
+    switches = [use for use in uses if isinstance(use, Switch)]
+    greatest = min([greatest, *(use.greatest for use in counts)])
+    if counts:
+        usual = _count(least, greatest)
+    elif type_.enum is not None and type_.enum.closed:
+        usual = st.sampled_from([entry.value for entry in type_.enum.values])
+    else:
+        usual = _between(least, greatest)
+    if switches:
+        known = [case.value for case in switches[0].cases if least <= case.value <= greatest]
+        open_ended = all(switch.rest is not None for switch in switches)
+        usual = usual | st.sampled_from(known) if open_ended else st.sampled_from(known)
+    value = draw(usual)
+    return bool(value) if type_.role == "bool" else value
+
+
+def _count(least: int, greatest: int) -> st.SearchStrategy[int]:
+    """Mostly few; as many as there can be, where that is not too many."""
+    few = st.integers(least, max(least, min(greatest, _USUAL_COUNT)))
+    return few | st.just(min(greatest, max(least, _GREATEST_COUNT)))
+
+
+def _float(type_: Float, field: Field | None) -> st.SearchStrategy[float]:
+    if field is None or field.least is None or field.greatest is None:
+        return st.floats(width=type_.bits, allow_nan=False)
+    least, greatest = field.least, field.greatest
+    steps = (least + (greatest - least) * Fraction(step, 8) for step in range(9))
+    points = [_rounded(point, type_.bits) for point in (*steps, ceil(least), floor(greatest))]
+    return st.sampled_from([point for point in points if least <= point <= greatest])
+
+
+def _rounded(value: Fraction | int, bits: int) -> float:
+    code = "f" if bits == 32 else "d"
+    return float(struct.unpack(code, struct.pack(code, float(value)))[0])
+
+
+# --- several ------------------------------------------------------------------------------------
+
+
+@st.composite
+def _string(draw: st.DrawFn, type_: Text | Octets, scope: Scope) -> str:
+    size = draw(_size(type_.extent, scope))
+    if isinstance(type_, Octets):
+        return draw(_octets(size, type_.byte_bits)).hex()
+    if not isinstance(type_.extent, Fixed):
+        return draw(_text(size, size, type_.byte_bits))
+    return draw(_text(0, size, type_.byte_bits)).rstrip("\0")
+
+
+def _text(least: int, greatest: int, byte_bits: int) -> st.SearchStrategy[str]:
+    characters = st.characters(max_codepoint=0x7F if byte_bits == 7 else 0xFF)
+    return st.text(characters, min_size=least, max_size=greatest)
+
+
+def _octets(size: int, byte_bits: int) -> st.SearchStrategy[bytes]:
+    if byte_bits == 8:
+        return st.binary(min_size=size, max_size=size)
+    return st.lists(st.integers(0, 0x7F), min_size=size, max_size=size).map(bytes)
+
+
+def _size(extent: Extent, scope: Scope) -> st.SearchStrategy[int]:
+    match extent:
+        case Fixed():
+            return st.just(extent.count)
+        case Counted():
+            return st.just(scope[extent.field])
+    return _count(0, extent.greatest)
+
+
+@st.composite
+def _array(draw: st.DrawFn, type_: Array, field: Field | None, scope: Scope) -> list[Any]:
+    count = draw(_size(type_.extent, scope))
+    elements = _value(type_.element, field, scope)
+    if count > _USUAL_COUNT:
+        few = [draw(elements) for _ in range(3)]
+        return [few[index % 3] for index in range(count)]
+    return [draw(elements) for _ in range(count)]
+
+
+@st.composite
+def _switch(draw: st.DrawFn, type_: Switch, scope: Scope) -> Any:
+    case = next((case for case in type_.cases if case.value == scope[type_.selector]), None)
+    if case is None:
+        assert type_.rest is not None
+        return draw(_octets(draw(_count(0, type_.rest)), 7)).hex()
+    if isinstance(case.type, Struct) and not case.type.fields:
+        return None
+    return draw(_value(case.type, None, scope))

@@ -1,0 +1,188 @@
+"""The decoder on every kind of framing: whatever the bytes, and however they arrive."""
+
+import random
+from typing import Any
+
+import handwritten_framings
+import handwritten_reference
+import handwritten_streams as streams
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protogen.runtime import api as rt
+
+SENDERS = {name: make() for name, make in handwritten_framings.FRAMINGS.items()}
+every_framing = pytest.mark.parametrize("sender", SENDERS.values(), ids=SENDERS.keys())
+
+
+def decode(sender: Any, portions: list[bytes]) -> list[Any]:
+    decoder = rt.Decoder(sender)
+    events = [event for portion in portions for event in decoder.feed(portion)]
+    return events + decoder.flush()
+
+
+def as_bytes(stream: bytes) -> list[bytes]:
+    return [stream[place : place + 1] for place in range(len(stream))]
+
+
+@every_framing
+@given(data=st.data())
+def test_no_byte_is_lost_and_portions_change_nothing(sender: Any, data: st.DataObject) -> None:
+    stream = data.draw(streams.streams(sender))
+    portions = streams.in_portions(stream, data.draw(st.randoms(use_true_random=False)))
+    events = decode(sender, [stream])
+    assert b"".join(event.raw for event in events) == stream
+    assert decode(sender, portions) == events
+    assert decode(sender, as_bytes(stream)) == events
+    offset = 0
+    for event in events:
+        assert (event.offset, event.size) == (offset, len(event.raw))
+        assert event.size > 0
+        offset += event.size
+
+
+@every_framing
+@given(data=st.data())
+def test_events_are_those_of_the_reference(sender: Any, data: st.DataObject) -> None:
+    stream = data.draw(streams.streams(sender))
+    found = [handwritten_reference.summary(event) for event in decode(sender, [stream])]
+    assert found == handwritten_reference.reference_events(sender, stream)
+
+
+@every_framing
+def test_events_of_many_streams_are_those_of_the_reference(sender: Any) -> None:
+    source = random.Random(20241123)
+    for _ in range(40):
+        stream = streams.random_stream(sender, source, pieces=8)
+        found = [handwritten_reference.summary(event) for event in decode(sender, [stream])]
+        assert found == handwritten_reference.reference_events(sender, stream)
+
+
+@every_framing
+@given(data=st.data())
+def test_json_lines_give_the_stream_back(sender: Any, data: st.DataObject) -> None:
+    stream = data.draw(streams.streams(sender))
+    protocol: rt.Protocol[Any, Any] = rt.Protocol("test", sender)
+    lines = [event.as_json() for event in decode(sender, [stream])]
+    assert b"".join(map(protocol.encode_line, lines)) == stream
+    for line in lines:
+        # All of these encodings are canonical, so valid frames need no raw bytes.
+        assert ("raw" in line) == (line["event"] == "invalid")
+
+
+@every_framing
+@given(data=st.data())
+def test_a_frame_alone_is_accepted_just_as_in_a_stream(sender: Any, data: st.DataObject) -> None:
+    source = data.draw(st.randoms(use_true_random=False))
+    frame = streams.random_frame(sender, source)
+    if data.draw(st.booleans()):
+        frame = streams.damaged(frame, source, streams.telling_bytes(sender))
+    protocol: rt.Protocol[Any, Any] = rt.Protocol("test", sender)
+    events = decode(sender, [frame])
+    is_one = len(events) == 1 and events[0].kind != "invalid"
+    try:
+        event = protocol.read(frame, sender.name)
+    except rt.DecodeError as error:
+        assert not is_one
+        assert 0 <= error.offset <= len(frame)
+    else:
+        assert [event] == events
+
+
+@every_framing
+def test_memory_is_bounded(sender: Any) -> None:
+    # Where every byte may start a frame, noise waits together with a candidate.
+    frames = 2 if isinstance(sender.frame.start, rt.Anywhere) else 1
+    source = random.Random(7)
+    decoder = rt.Decoder(sender)
+    for _ in range(30):
+        for byte in streams.random_stream(sender, source):
+            decoder.feed(bytes((byte,)))
+            assert decoder.pending <= frames * sender.frame.greatest
+    decoder.flush()
+    assert decoder.pending == 0
+
+
+@every_framing
+@given(data=st.data())
+def test_a_flush_separates_what_comes_before_from_what_comes_behind(
+    sender: Any, data: st.DataObject
+) -> None:
+    first, second = data.draw(streams.streams(sender)), data.draw(streams.streams(sender))
+    decoder = rt.Decoder(sender)
+    events = decoder.feed(first) + decoder.flush() + decoder.feed(second) + decoder.flush()
+    before, behind = decode(sender, [first]), decode(sender, [second])
+    assert events[: len(before)] == before
+    assert [(e.offset, e.raw, e.kind) for e in events[len(before) :]] == [
+        (len(first) + e.offset, e.raw, e.kind) for e in behind
+    ]
+
+
+# --- every frame that was not damaged is recovered -----------------------------------------------
+
+PROTECTED = [
+    "matty pc",
+    "matty esp",
+    "rn1 host",
+    "rn1 brain",
+    "rflex",
+    "uherobot",
+    "next protected start ends",
+    "checksum over the wire",
+]
+AFTER_ENDS = ["dagny library", "cobs with an end only", "hdlc with an end only"]
+SAME_ENDS = ["slip with two ends"]
+LIKELY = ["ubx", "repeated sync", "cobs of the payload only"]
+"""Noise could be a valid frame by chance; in these streams it is not."""
+
+
+def corpus(sender: Any, source: random.Random) -> tuple[bytes, dict[int, bytes]]:
+    """A stream of noise, damaged and whole frames; offset and bytes of the whole ones.
+
+    Where only an end marks a start, a frame counts only if it follows a whole end; where start and
+    end are the same, too, because a frame that lost its end takes the next one's start for it.
+    """
+    telling = streams.telling_bytes(sender)
+    end = sender.frame.end
+    stream, whole = b"", {}
+    for _ in range(200):
+        kind = source.randrange(6)
+        frame = known_frame(sender, source)
+        if kind == 0:
+            stream += bytes(source.choice(telling) for _ in range(source.randrange(12)))
+        elif kind < 3:
+            stream += streams.damaged(frame, source, telling)
+        else:
+            needs_end = isinstance(sender.frame.start, rt.AfterEnd) or has_same_ends(sender)
+            if not stream or not needs_end or stream.endswith(end.value):
+                whole[len(stream)] = frame
+            stream += frame
+    return stream, whole
+
+
+def has_same_ends(sender: Any) -> bool:
+    start = sender.frame.start
+    return isinstance(start, rt.StartLiteral) and start.value == getattr(
+        sender.frame.end, "value", None
+    )
+
+
+def known_frame(sender: Any, source: random.Random) -> bytes:
+    while True:
+        frame = streams.random_frame(sender, source)
+        events = decode(sender, [frame])
+        if [event.kind for event in events] == ["message"]:
+            return frame
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("name", [*PROTECTED, *AFTER_ENDS, *SAME_ENDS, *LIKELY])
+def test_every_frame_that_was_not_damaged_is_recovered(name: str, seed: int) -> None:
+    sender = SENDERS[name]
+    source = random.Random(f"{name} {seed}")
+    stream, whole = corpus(sender, source)
+    events = decode(sender, streams.in_portions(stream, source))
+    recovered = {event.offset: event.raw for event in events if event.kind == "message"}
+    assert len(whole) > 50
+    assert {offset: recovered.get(offset) for offset in whole} == whole
