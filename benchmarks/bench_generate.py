@@ -255,8 +255,11 @@ class Timing(NamedTuple):
 
 
 def _measure(command: Callable[[Path], list[str]], runs: int) -> Timing:
-    """Run a command, each time with a new folder for what it writes."""
-    timings = [_run(command) for _ in range(runs)]
+    """Run a command, each time with a new folder for what it writes.
+
+    A first run, which fills caches, does not count.
+    """
+    timings = [_run(command) for _ in range(runs + 1)][1:]
     return Timing(*(median(column) for column in zip(*timings, strict=True)))
 
 
@@ -265,7 +268,9 @@ def _run(command: Callable[[Path], list[str]]) -> Timing:
         argv = command(Path(folder))
         with tempfile.TemporaryFile() as output:
             start = time.perf_counter()
-            process = subprocess.Popen(argv, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)
+            process = subprocess.Popen(
+                argv, cwd=ROOT, env=_environment(), stdout=output, stderr=subprocess.STDOUT
+            )
             _, status, usage = os.wait4(process.pid, 0)
             wall = time.perf_counter() - start
             process.returncode = os.waitstatus_to_exitcode(status)
@@ -273,6 +278,12 @@ def _run(command: Callable[[Path], list[str]]) -> Timing:
                 output.seek(0)
                 raise SystemExit(f"{argv[0]} failed:\n{output.read().decode()}")
     return Timing(wall, usage.ru_utime + usage.ru_stime)
+
+
+def _environment() -> dict[str, str]:
+    """Return an environment in which Python keeps its bytecode, as it does for its users."""
+    kept = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return {**kept, "PYTHONPYCACHEPREFIX": str(CACHE / "bytecode"), "PYTHONPATH": str(ROOT)}
 
 
 def _measure_tool(tool: Tool, size: int, runs: int) -> Timing | None:
@@ -311,7 +322,8 @@ _PAGE = """\
 
 Made by `python benchmarks/bench_generate.py --runs {runs}`: medians of {runs} runs. Each run is a
 process of its own, so start-up is included. CPU is the process's user and system time; wall time
-also holds what other processes on the machine took.
+also holds what other processes on the machine took. A first run, which fills caches of bytecode,
+does not count.
 
 {versions}
 

@@ -122,6 +122,12 @@ class ClassNumberSubclass:
     subclass: int
 
 
+@dataclass(frozen=True, slots=True)
+class NumberMark:
+    number: int
+    mark: int
+
+
 Framing = rt.SenderSpec[Any, Any]
 ID = rt.IdentityPart("id", BYTE)
 PAYLOAD = rt.PayloadPart("payload")
@@ -391,6 +397,54 @@ def wire_checksum() -> Framing:
     )
 
 
+def lenient_by_size() -> Framing:
+    """Stuffing that also lets bytes pass, in a frame that only its length ends."""
+    return framing(
+        (literal(b"\xaa"), length("payload"), ID, PAYLOAD, XOR),
+        40,
+        *every_message(),
+        start=rt.StartLiteral(b"\xaa", protected=False),
+        transparency=Substitution({0x7C: b"\x7c\x1b\x01", 0x1B: b"\x1b\x00"}, lenient=True),
+        stuffed=("length", "id", "payload"),
+    )
+
+
+def lenient_with_end() -> Framing:
+    """The same with an end, which decides, and the checksum under stuffing as well."""
+    return framing(
+        (ID, PAYLOAD, XOR, literal(b"\x1b\x03", "end")),
+        40,
+        *every_message(),
+        start=rt.AfterEnd(),
+        end=rt.End(b"\x1b\x03", protected=True),
+        transparency=Substitution({0x7C: b"\x7c\x1b\x01", 0x1B: b"\x1b\x00"}, lenient=True),
+        stuffed=("id", "payload", "checksum"),
+    )
+
+
+def only_one_message() -> Framing:
+    """No identity; numbers with padding on both sides of a 7-bit payload of unknown size."""
+    twelve = rt.Number(12, order="big")
+    spec = rt.FrameSpec(
+        parts=(
+            literal(b"<"),
+            rt.ValuePart("number", twelve, least=0, greatest=4095),
+            PAYLOAD,
+            literal(b"|", "bar"),
+            rt.ValuePart("mark", rt.Number(7, seven_bit=True), least=0, greatest=127),
+            literal(b">", "end"),
+        ),
+        start=rt.StartLiteral(b"<", protected=False),
+        end=rt.End(b">", protected=False),
+        least=6,
+        greatest=12,
+        greatest_payload=6,
+        seven_bit=True,
+        ambiguous_cut=True,
+    )
+    return rt.SenderSpec("a", spec, NumberMark, (blob(),))
+
+
 def anywhere_length() -> Framing:
     crc = replace(CRC, covers=("length", "id", "payload"))
     return framing((length("payload"), ID, PAYLOAD, crc), 13, *every_message(), start=rt.Anywhere())
@@ -422,6 +476,9 @@ FRAMINGS: dict[str, Callable[[], Framing]] = {
     "next start ends": next_start_ends,
     "next protected start ends": next_protected_start_ends,
     "checksum over the wire": wire_checksum,
+    "lenient stuffing and a length": lenient_by_size,
+    "lenient stuffing and an end": lenient_with_end,
+    "only one message": only_one_message,
     "anywhere with a length": anywhere_length,
     "anywhere with fixed sizes": anywhere_fixed,
 }

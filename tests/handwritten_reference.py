@@ -239,7 +239,7 @@ class _Candidate:
         if content.broken:
             self.fails(content.broken[0], STUFFING, content.broken[1])
 
-    # --- delimiters ---------------------------------------------------------------------------
+    # --- delimiters ------------------------------------------------------------------------------
 
     def look_for_nothing(self) -> None:
         """Nothing in front of the end."""
@@ -252,10 +252,8 @@ class _Candidate:
     def look_for_start(self, opened: int | None) -> None:
         """A protected start inside."""
         start = self.spec.start
-        if (
-            (getattr(start, "protected", False)
-            and self.start != self.end)
-            or (isinstance(start, rt.StartSet) and start.protected)
+        if (getattr(start, "protected", False) and self.start != self.end) or (
+            isinstance(start, rt.StartSet) and start.protected
         ):
             place = self.start_behind(1)
             ends = opened is not None and self.ends_at_start and place >= opened
@@ -294,7 +292,7 @@ class _Candidate:
             for first in range(max(low, time + 2 - len(delimiter)), place + 1)
         )
 
-    # --- unstuffing -----------------------------------------------------------------------------
+    # --- unstuffing ------------------------------------------------------------------------------
 
     def unstuff(
         self, times: list[Time], limit: int, total: int | None, by_size: bool = False
@@ -315,7 +313,8 @@ class _Candidate:
                 return content
         while place < limit:
             if total is not None and len(content.values) >= total:
-                content.surplus = min(content.surplus, times[place])
+                if not (by_size and self.end):  # An end that is not protected has to stand here.
+                    content.surplus = min(content.surplus, times[place])
                 return content
             content.put(self.wire[place], times[place], place + 1)
             place += 1
@@ -360,6 +359,8 @@ class _Candidate:
                 content.surplus = min(content.surplus, time)
             place += 1
             for value in released:
+                if due is not None and len(content.values) >= due:
+                    content.surplus = min(content.surplus, time)
                 content.put(value, time, place)
         if by_size and is_full():
             content.region_end = place
@@ -369,25 +370,24 @@ class _Candidate:
                 content.broken = (times[place - 1], error.reason)
         return place
 
-    def finish(self, limit: int) -> str | None:
-        """Whether the region may end behind `limit` wire bytes; if not, why."""
+    def finish(self, content: _Content, limit: int, time: int) -> str | None:
+        """End the region behind `limit` wire bytes. Why it may not end there, if it may not."""
         stuffed = [i for i, part in enumerate(self.parts) if part.name in self.spec.stuffed]
-        if not stuffed:
-            return None
-        raw = sum(part.size for part in self.parts[: stuffed[0]])
-        if limit < raw:
+        raw = sum(part.size for part in self.parts[: stuffed[0]]) if stuffed else 0
+        if not stuffed or limit < raw:
             return None
         assert self.spec.transparency is not None
         unstuffer = self.spec.transparency.decoder()
         try:
             for byte in self.wire[raw:limit]:
                 unstuffer.push(byte)
-            unstuffer.finish()
+            for value in unstuffer.finish():
+                content.put(value, (time, -1), limit)
         except TransparencyError as error:
             return error.reason
         return None
 
-    # --- the parts in front of the payload ----------------------------------------------------------
+    # --- the parts in front of the payload -------------------------------------------------------
 
     def read_head(self, content: _Content) -> int | None:
         """Read what can be read. The wire byte behind the head, if the head is there."""
@@ -452,7 +452,7 @@ class _Candidate:
             if self.length_part() is None and least == greatest:
                 self.payload = least
 
-    # --- a payload of known size ----------------------------------------------------------------
+    # --- a payload of known size -----------------------------------------------------------------
 
     def look_known(self, found: int | None, times: list[Time], limit: int, protected: bool) -> None:
         total = self.total()
@@ -461,7 +461,7 @@ class _Candidate:
         )
         self.check_known(content)
         self.look_broken(content)
-        if content.surplus[0] < NEVER and (protected or not self.end):
+        if content.surplus[0] < NEVER:
             self.fails(content.surplus, SIZE, self.announced())
         if protected:
             self.end_known(content, found, total)
@@ -496,7 +496,7 @@ class _Candidate:
             self.fails(len(self.wire), END, "truncated", size=len(self.wire))
             return
         time = found + len(self.end) - 1
-        broken = self.finish(found) if not self.raw_behind() else None
+        broken = self.finish(content, found, time) if not self.raw_behind() else None
         if broken:
             self.fails(time, END, broken)
         elif len(content.values) != total:
@@ -518,7 +518,7 @@ class _Candidate:
         end = last + len(self.end)
         self.close(content, total, end - 1, end)
 
-    # --- a payload that says itself where it ends --------------------------------------------------
+    # --- a payload that says itself where it ends ------------------------------------------------
 
     def measure(self, content: _Content, times: list[Time], limit: int) -> None:
         head = self.head_size
@@ -540,7 +540,7 @@ class _Candidate:
             return
         self.fails(len(self.wire), END, "truncated", size=len(self.wire))
 
-    # --- a payload that only a delimiter ends --------------------------------------------------------
+    # --- a payload that only a delimiter ends ----------------------------------------------------
 
     def look_open(
         self,
@@ -597,7 +597,7 @@ class _Candidate:
 
     def close_open(self, content: _Content, place: int, time: int, end: int) -> None:
         """The content ends in front of `place` on the wire; the frame has `end` bytes."""
-        broken = self.finish(place)
+        broken = self.finish(content, place, time)
         if broken:
             self.fails(time, END, broken, size=end)
             return
@@ -630,9 +630,9 @@ class _Candidate:
             self.fails(len(self.wire), END, "truncated", size=len(self.wire))
             return
         time = found + len(self.end) - 1
-        self.fails(time, END, self.finish(found) or "truncated")
+        self.fails(time, END, self.finish(content, found, time) or "truncated")
 
-    # --- complete frames --------------------------------------------------------------------------
+    # --- complete frames -------------------------------------------------------------------------
 
     def close(self, content: _Content, total: int, time: int, end: int) -> None:
         assert self.payload is not None

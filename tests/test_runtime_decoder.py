@@ -7,12 +7,13 @@ import handwritten_framings
 import handwritten_reference
 import handwritten_streams as streams
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from protogen.runtime import api as rt
 
 SENDERS = {name: make() for name, make in handwritten_framings.FRAMINGS.items()}
+fewer = settings(max_examples=20)
 every_framing = pytest.mark.parametrize("sender", SENDERS.values(), ids=SENDERS.keys())
 
 
@@ -28,7 +29,9 @@ def as_bytes(stream: bytes) -> list[bytes]:
 
 @every_framing
 @given(data=st.data())
-def test_no_byte_is_lost_and_portions_change_nothing(sender: Any, data: st.DataObject) -> None:
+def test_whatever_the_bytes_none_is_lost_and_portions_change_nothing(
+    sender: Any, data: st.DataObject
+) -> None:
     stream = data.draw(streams.streams(sender))
     portions = streams.in_portions(stream, data.draw(st.randoms(use_true_random=False)))
     events = decode(sender, [stream])
@@ -40,13 +43,7 @@ def test_no_byte_is_lost_and_portions_change_nothing(sender: Any, data: st.DataO
         assert (event.offset, event.size) == (offset, len(event.raw))
         assert event.size > 0
         offset += event.size
-
-
-@every_framing
-@given(data=st.data())
-def test_events_are_those_of_the_reference(sender: Any, data: st.DataObject) -> None:
-    stream = data.draw(streams.streams(sender))
-    found = [handwritten_reference.summary(event) for event in decode(sender, [stream])]
+    found = [handwritten_reference.summary(event) for event in events]
     assert found == handwritten_reference.reference_events(sender, stream)
 
 
@@ -60,18 +57,21 @@ def test_events_of_many_streams_are_those_of_the_reference(sender: Any) -> None:
 
 
 @every_framing
+@fewer
 @given(data=st.data())
 def test_json_lines_give_the_stream_back(sender: Any, data: st.DataObject) -> None:
     stream = data.draw(streams.streams(sender))
     protocol: rt.Protocol[Any, Any] = rt.Protocol("test", sender)
     lines = [event.as_json() for event in decode(sender, [stream])]
     assert b"".join(map(protocol.encode_line, lines)) == stream
-    for line in lines:
-        # All of these encodings are canonical, so valid frames need no raw bytes.
+    stuffing = sender.frame.transparency
+    for line in lines if stuffing is None or not stuffing.lenient else ():
+        # Only one frame can have this meaning, so a valid one needs no raw bytes.
         assert ("raw" in line) == (line["event"] == "invalid")
 
 
 @every_framing
+@fewer
 @given(data=st.data())
 def test_a_frame_alone_is_accepted_just_as_in_a_stream(sender: Any, data: st.DataObject) -> None:
     source = data.draw(st.randoms(use_true_random=False))
@@ -105,6 +105,7 @@ def test_memory_is_bounded(sender: Any) -> None:
 
 
 @every_framing
+@fewer
 @given(data=st.data())
 def test_a_flush_separates_what_comes_before_from_what_comes_behind(
     sender: Any, data: st.DataObject

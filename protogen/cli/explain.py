@@ -101,13 +101,6 @@ def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:
     """Yield the cells of a row; many bytes take several lines."""
     from rich.text import Text
 
-    value = (
-        ""
-        if row.value is None
-        else repr(row.value)
-        if isinstance(row.value, str)
-        else str(row.value)
-    )
     meaning = Text(row.meaning)
     if row.fault:
         meaning.append(f"{' ' if row.meaning else ''}! {row.fault}", style="bold red")
@@ -116,7 +109,7 @@ def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:
         part = slice(index * _BYTES_IN_A_ROW, (index + 1) * _BYTES_IN_A_ROW)
         place = str(offset + row.offset + part.start)
         texts = (place, row.wire[part].hex(" ").upper(), row.bytes[part].hex(" ").upper())
-        named = (row.path, row.type, value, meaning) if index == 0 else ("", "", "", "")
+        named = (row.path, row.type, _value(row.value), meaning) if index == 0 else ("", "", "", "")
         yield [*texts, *named]
 
 

@@ -106,6 +106,6 @@ def _print_failure(failure: Outcome, engine: Engine, seed: int) -> None:
 
 
 def _print_summary(engine: Engine, tried: int, refused: int, failed: int, seed: int) -> None:
-    wrong = f"{failed} messages fail" if failed else "all came back"
+    wrong = f"{failed} message{'s fail' if failed > 1 else ' fails'}" if failed else "all came back"
     kept = f", {refused} were refused because a decoder would cut them elsewhere" if refused else ""
     typer.echo(f"{engine.name}: {tried} samples, {wrong}{kept} (seed {seed})")

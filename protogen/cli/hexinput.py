@@ -8,6 +8,7 @@ digit is a byte, too.
 from __future__ import annotations
 
 import re
+from string import hexdigits
 
 _TOKEN = re.compile(
     r"(?P<pairs>(?:[0-9A-Fa-f]{2}[ \t\r\n]+)+)"  # what most files hold, read in one go
@@ -77,7 +78,7 @@ class HexReader:
         rest = self._text[self._position : self._position + 3]
         if found is None:
             if final or not _UNFINISHED.fullmatch(rest):
-                raise self._error(f"`{rest[0]}` is no hex digit and no separator")
+                raise self._stranger_error()
             return 0
         self._in_comment = found["comment"] is not None
         if found["digits"]:
@@ -102,8 +103,14 @@ class HexReader:
         stranger = self._text[found.end() : found.end() + 1]
         if stranger and not _TOKEN.match(stranger) and not _UNFINISHED.match(stranger):
             self._position = found.end()
-            return self._error(f"`{stranger}` is no hex digit and no separator")
+            return self._stranger_error()
         return self._error(f"`{found[0][-20:]}` has an odd number of hex digits")
+
+    def _stranger_error(self) -> HexError:
+        # A digit that fits nothing has an `x` behind it.
+        self._position += self._text[self._position] in hexdigits
+        stranger = self._text[self._position : self._position + 1]
+        return self._error(f"`{stranger}` is no hex digit and no separator")
 
     def _forget(self) -> None:
         """Drop the text that was read, and keep count of lines and columns."""

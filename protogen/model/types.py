@@ -6,6 +6,7 @@ A type says how a value lies on the wire; what the value means is on the field.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from typing import TYPE_CHECKING, Literal
 
 from protogen.model.origin import NOTHING, About
@@ -152,7 +153,7 @@ class Counted:
     field: str
     least: int
     greatest: int
-    stated: bool = False
+    stated: bool = dataclass_field(default=False, compare=False)
     """Whether the schema bounds the number; else `greatest` is what the field or frame can take."""
 
     @property
@@ -166,7 +167,7 @@ class Fill:
     """As many as the payload has left, at most `greatest`."""
 
     greatest: int
-    stated: bool = False
+    stated: bool = dataclass_field(default=False, compare=False)
     """Whether the schema bounds the number; else `greatest` is what the frame can take."""
 
     @property
@@ -212,11 +213,11 @@ class Struct:
     """Snake-case name, unique in the protocol."""
     fields: tuple[Field, ...]
     about: About = NOTHING
+    sizes: SizeSet = dataclass_field(init=False, repr=False, compare=False)
+    """Wire bytes. Added up once: structs that hold each other are asked at every level."""
 
-    @property
-    def sizes(self) -> SizeSet:
-        """Wire bytes."""
-        return total(self.fields)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sizes", total(self.fields))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

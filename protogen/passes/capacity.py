@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, Part
+from protogen.model.frame import ChecksumPart, Frame, LengthPart, LiteralPart, NumberPart, Part
 from protogen.model.sizes import SizeSet
 
 GREATEST_FRAME = 1 << 20
 """No frame may be longer than 1 MiB: a receiver has to hold it."""
+
+_MANY = 10**18
+
+
+def amount(number: int) -> str:
+    """A number of bytes for people; counts that multiply can make it longer than any text."""
+    return str(number) if number < _MANY else "more than 10^18"
 
 
 def part_size(part: Part) -> int:
@@ -19,20 +26,33 @@ def part_size(part: Part) -> int:
     return 0
 
 
-def counted_size(frame: Frame) -> int:
-    """Bytes that the length part counts besides the payload."""
-    length = frame.length
-    return 0 if length is None else sum(part_size(frame.part(name)) for name in length.counts)
+def is_optional(part: Part) -> bool:
+    """Whether the part is absent where the payload is empty."""
+    return isinstance(part, ChecksumPart) and part.when_payload
+
+
+def counted_size(frame: Frame, length: LengthPart, *, empty: bool) -> int:
+    """Bytes that the length part counts besides the payload, which is empty or not."""
+    counted = (frame.part(name) for name in length.counts)
+    return sum(part_size(part) for part in counted if not (empty and is_optional(part)))
 
 
 def payload_range(frame: Frame) -> SizeSet | None:
-    """The payload sizes that the length part can state; None where there is no length part."""
+    """The payload sizes that the length part can state; None where there is no length part.
+
+    A frame whose length part can state none at all is reported when it is built.
+    """
     length = frame.length
-    if length is None:
-        return None
-    fixed = counted_size(frame)
-    greatest = max(length.greatest - fixed, 0)
-    return SizeSet.between(min(max(length.least - fixed, 0), greatest), greatest)
+    return None if length is None else stated_range(frame, length)
+
+
+def stated_range(frame: Frame, length: LengthPart) -> SizeSet | None:
+    """The payload sizes that a length part can state; None where it can't even state 0."""
+    around = counted_size(frame, length, empty=False)
+    least, greatest = max(length.least - around, 1), length.greatest - around
+    if length.least <= counted_size(frame, length, empty=True) <= length.greatest:
+        return SizeSet.between(0, max(greatest, 0))
+    return SizeSet.between(least, greatest) if least <= greatest else None
 
 
 def tail_literals(frame: Frame) -> tuple[LiteralPart, ...]:

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from protogen.model.origin import NOTHING, About, Source
-from protogen.problems import Problems, Span
+from protogen.problems import Problem, Problems, Span
+from protogen.problems.problem import Note
 from protogen.schema.syntax.base import Source as SourceSyntax
 from protogen.schema.syntax.protocol import ProtocolSyntax
 
@@ -41,16 +42,25 @@ class Context:
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
         """Report a problem at a value."""
-        self._report(self.find, code, loc, message, hint)
+        self._report(Problem.of(code, self.find(loc), message, hint), loc)
 
-    def error_at_key(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
-        """Report a problem at the key of a value."""
-        self._report(self.find_key, code, loc, message, hint)
+    def error_at_key(
+        self,
+        code: str,
+        loc: Loc,
+        message: str,
+        hint: str | None = None,
+        note: Note | None = None,
+    ) -> None:
+        """Report a problem at the key of a value; a note says what else there is to see."""
+        self._report(
+            Problem.of(code, self.find_key(loc), message, hint, [note] if note else ()), loc
+        )
 
-    def _report(self, find: Find, code: str, loc: Loc, message: str, hint: str | None) -> None:
+    def _report(self, problem: Problem, loc: Loc) -> None:
         self.tally.errors += 1
         if loc[:2] not in self.doubtful:
-            self.problems.add(code, find(loc), message, hint)
+            self.problems.extend([problem])
 
     @property
     def failed(self) -> bool:

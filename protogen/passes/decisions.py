@@ -27,3 +27,9 @@ def resolve_decisions(context: Context, draft: Draft) -> None:
             loc: Loc = ("overloads", name, "decision")
             text = f"there is no decision `{overload.decision}`"
             context.error("PG165", loc, text, hint_for(overload.decision, decisions))
+    for sender, frame in context.syntax.frame.items():
+        for part, written in frame.items():
+            if written.unprotected is not None and written.unprotected not in decisions:
+                loc = ("frame", sender, part, "unprotected")
+                text = f"there is no decision `{written.unprotected}`"
+                context.error("PG143", loc, text, hint_for(written.unprotected, decisions))

@@ -45,9 +45,10 @@ class Effective:
         return self.chain[self._naming()][1]
 
     def at(self, key: str) -> Loc:
-        """The place of a key, where it was written."""
+        """The place of a key: where it was written, else where it could have been."""
         places = [loc for syntax, loc in self.chain if key in syntax.model_fields_set]
-        return (*(places[-1] if key == "type" else places[0]), key)
+        here = self.chain[0][1] if not places else places[-1 if key == "type" else 0]
+        return (*here, key)
 
     def followed(self, name: str, declaration: FieldSyntax) -> Effective:
         """This use on top of the declaration of `name`."""

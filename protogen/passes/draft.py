@@ -22,6 +22,8 @@ class Draft:
     messages: dict[str, Message] = field(default_factory=dict)
     unidentified: set[str] = field(default_factory=set)
     """Messages whose identity is wrong: no receiver could have them, so later passes don't."""
+    used_types: frozenset[str] = frozenset()
+    """The declared types that messages have."""
     overloads: dict[str, list[Overload]] = field(default_factory=dict)
     """By sender."""
     framings: dict[str, Framing] = field(default_factory=dict)

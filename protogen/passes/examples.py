@@ -11,8 +11,7 @@ from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.frames import FrameBuilder, byte_order_of
-from protogen.passes.type_names import Layout
+from protogen.passes.runs import Runs
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
 from protogen.schema.syntax.messages import Exchange as ExchangeSyntax
@@ -41,7 +40,9 @@ def _example(
     sender = _sender(context, message, item, loc)
     if sender is None or sender not in draft.frames:
         return None
-    covers = None if item.frame is not None else _covers(context, sender, item, loc)
+    covers = None
+    if item.frame is None:
+        covers = _covers(context, draft.frames[sender], item, loc)
     if item.content is not None and not covers:
         return None
     if not _parts_known(context, draft.frames[sender], item, loc):
@@ -75,7 +76,7 @@ def _sender(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -
     return item.sender
 
 
-def _covers(context: Context, sender: str, item: ExampleSyntax, loc: Loc) -> tuple[str, ...]:
+def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tuple[str, ...]:
     """The parts that `content` holds."""
     written = item.covers or context.syntax.content_covers
     if written is None:
@@ -83,8 +84,7 @@ def _covers(context: Context, sender: str, item: ExampleSyntax, loc: Loc) -> tup
         context.error_at_key("PG162", (*loc, "content"), text, "add `covers`, or `content_covers`")
         return ()
     place: Loc = (*loc, "covers") if item.covers else ("content_covers",)
-    layout = Layout(byte_bits=8, byte_order=byte_order_of(context, sender))
-    return FrameBuilder(context, sender, layout).run(written, place)
+    return Runs(context, (part.name for part in frame.parts)).run(written, place)
 
 
 def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> bool:

@@ -10,7 +10,9 @@ from protogen.passes.declared import Effective
 from protogen.schema.syntax.fields import FieldSyntax
 
 _FORMS = ("type", "fields", "switch")
-_NAMING_KEYS = ("values", "flags", "bits")
+NAMING_KEYS = ("values", "flags", "bits")
+"""What gives names to the values or bits of an integer; a field has one of them."""
+
 _STRINGS = ("ascii", "bytes")
 
 
@@ -47,7 +49,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
 def _only_for_integers(context: Context, item: Effective) -> None:
     syntax = item.syntax
     kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
-    for key in _NAMING_KEYS:
+    for key in NAMING_KEYS:
         if getattr(syntax, key) is not None:
             text = f"{key} are for integers, not for {kind}"
             context.error_at_key("PG110", item.at(key), text)

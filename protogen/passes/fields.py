@@ -5,15 +5,15 @@ Turns the fields of a message or struct into resolved types, outer before inner,
 
 from __future__ import annotations
 
-from collections import ChainMap
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from protogen.model.fields import Field
-from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
+    Extent,
     Fill,
+    Fixed,
     Float,
     Integer,
     Octets,
@@ -25,9 +25,11 @@ from protogen.model.types import (
 from protogen.passes import meaning
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.declared import Declarations, Effective
-from protogen.passes.extents import Extents
+from protogen.passes.expansion import Expansion
+from protogen.passes.extents import Extents, Written
 from protogen.passes.field_keys import check_keys, has_one_form
 from protogen.passes.named_types import NamedTypes
+from protogen.passes.positions import placed
 from protogen.passes.setting import Setting
 from protogen.passes.switches import SwitchBuilder
 from protogen.passes.type_names import (
@@ -44,9 +46,6 @@ from protogen.schema.syntax.fields import Fill as FillSyntax
 UNKNOWN_TYPE = Integer(bits=8)
 """Stands in for a type that could not be resolved, so that the other fields are still checked."""
 
-GREATEST_NUMBER = 100_000
-"""So many fields may come of the declared types. Types that hold each other twice double them."""
-
 
 class FieldBuilder:
     """Resolves fields; reports what is wrong with each and goes on with the next."""
@@ -57,7 +56,7 @@ class FieldBuilder:
         self._extents = Extents(context)
         self._declarations = Declarations(context)
         self._switches = SwitchBuilder(context, named, self)
-        self._from_types = 0
+        self._expansion = Expansion(context)
 
     @property
     def followed(self) -> frozenset[str]:
@@ -69,14 +68,14 @@ class FieldBuilder:
     ) -> tuple[Field, ...]:
         """The fields of one struct or message, with their positions."""
         built: dict[str, Field] = {}
-        scope = ChainMap(built, *_maps(setting.outer))
+        scope = setting.outer.new_child(built)
         used = 0
         filler = ""
-        final = next(reversed(syntax), None)
+        final = list(syntax)[-1:]
         for name, item in syntax.items():
             if filler:
                 self._behind(filler, (*loc, name))
-            inner = setting.inside(name, used, scope, name == final)
+            inner = setting.inside(name, used, scope, [name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
             used += built[name].type.sizes.least
             filler = filler or (name if fills(built[name].type) else "")
@@ -85,7 +84,7 @@ class FieldBuilder:
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
         """One field; its position is not known here."""
         unknown = Field(name=name, type=UNKNOWN_TYPE, position=None)
-        if not has_one_form(self._context, item, loc) or self._is_too_much(loc, setting):
+        if not has_one_form(self._context, item, loc) or not self._expansion.enter(loc, setting):
             return unknown
         effective = self.effective(item, loc, setting)
         if not all(has_one_form(self._context, *link) for link in effective.chain[1:]):
@@ -102,20 +101,11 @@ class FieldBuilder:
         hint = f"move `{filler}` to the end, or give it a count"
         self._context.error_at_key("PG111", loc, text, hint)
 
-    def _is_too_much(self, loc: Loc, setting: Setting) -> bool:
-        """Whether the declared types have become too many fields; said once."""
-        if not setting.stack:
-            return False
-        self._from_types += 1
-        if self._from_types == GREATEST_NUMBER + 1:
-            text = f"with this, more than {GREATEST_NUMBER} fields come of declared types"
-            self._context.error_at_key("PG122", loc, text)
-        return self._from_types > GREATEST_NUMBER
-
     # -- types --------------------------------------------------------------------------------
 
     def _type(self, item: Effective) -> Type:
         if item.syntax.switch is not None:
+            self._expansion.vary()
             return self._switches.switch(item) or UNKNOWN_TYPE
         if item.syntax.type in ("ascii", "bytes"):
             return self._string(item)
@@ -138,11 +128,17 @@ class FieldBuilder:
     def _struct(
         self, item: Effective, fields: Mapping[str, FieldSyntax], setting: Setting
     ) -> Struct:
+        known = self._expansion.known(item, setting.layout)
+        if known is not None:
+            return known
+        begun = self._expansion.mark()
         inner = replace(setting, owner=item.owner, depth=setting.depth + 1)
         built = self.fields(fields, (*item.place, "fields"), inner)
         origin = item.origin
         struct = Struct(name=item.owner, fields=built, about=about(origin.doc, origin.source))
-        self._named.register(struct, item.chain[0][1])
+        if not self._expansion.is_spent:
+            self._named.register(struct, item.chain[0][1])
+            self._expansion.keep(struct, setting.layout, begun)
         return struct
 
     def _array(self, item: Effective) -> Array:
@@ -155,19 +151,24 @@ class FieldBuilder:
             text = "an element may be empty, so nothing says how many fill the payload"
             self._context.error("PG118", loc, text)
         least = max(1, element.sizes.least)
-        extent = self._extents.extent(written, loc, least, item.setting)
-        return Array(element=element, extent=extent)
+        return Array(element=element, extent=self._extent(written, loc, least, item.setting))
 
     def _string(self, item: Effective) -> Text | Octets:
         kind, size = item.syntax.type, item.syntax.size
         if size is None:
             text = f"{kind} needs a `size`: a number, an earlier field, or fill"
             self._context.error_at_key("PG110", item.chain[0][1], text)
-        extent = self._extents.extent(size, item.at("size"), 1, item.setting)
+        extent = self._extent(size, item.at("size"), 1, item.setting)
         byte_bits = item.setting.layout.byte_bits
         if kind == "ascii":
             return Text(extent=extent, byte_bits=byte_bits)
         return Octets(extent=extent, byte_bits=byte_bits)
+
+    def _extent(self, written: Written, loc: Loc, element: int, setting: Setting) -> Extent:
+        extent = self._extents.extent(written, loc, element, setting)
+        if not isinstance(extent, Fixed):
+            self._expansion.vary()
+        return extent
 
     # -- problems -----------------------------------------------------------------------------
 
@@ -188,27 +189,13 @@ class FieldBuilder:
         )
 
 
-def _maps(scope: Mapping[str, Field]) -> Iterable[Mapping[str, Field]]:
-    return scope.maps if isinstance(scope, ChainMap) else (scope,)
-
-
-def placed(fields: Iterable[Field]) -> tuple[Field, ...]:
-    """The fields with their positions, behind each other."""
-    found: list[Field] = []
-    behind = SizeSet.exactly(0)
-    for field in fields:
-        found.append(replace(field, position=behind.fixed))
-        behind += field.type.sizes
-    return tuple(found)
-
-
 def fills(type_: Type) -> bool:
     """Whether a value of the type takes all that the payload has left."""
     match type_:
         case Text() | Octets() | Array():
             return isinstance(type_.extent, Fill)
         case Struct():
-            return any(fills(field.type) for field in type_.fields)
+            return bool(type_.fields) and fills(type_.fields[-1].type)
         case Switch():
             return type_.rest is not None or any(fills(case.type) for case in type_.cases)
         case Float() | Integer():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.frame import Frame, LiteralPart, PayloadPart
+from protogen.model.frame import Frame, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -24,17 +24,10 @@ from protogen.model.protocol import Link
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Integer, Struct, Switch, Type
 from protogen.passes import framing_words, wire_sizes
-from protogen.passes.capacity import (
-    GREATEST_FRAME,
-    head_literals,
-    part_size,
-    payload_range,
-    tail_literals,
-)
-from protogen.passes.codewords import occurs
-from protogen.passes.context import Context, Loc
+from protogen.passes.capacity import GREATEST_FRAME, amount, part_size, payload_range
+from protogen.passes.context import Context
+from protogen.passes.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.draft import Draft
-from protogen.passes.fields import fills
 from protogen.passes.undetected import undetected_errors
 from protogen.passes.wire_code import (
     EVERY_BYTE,
@@ -42,41 +35,34 @@ from protogen.passes.wire_code import (
     ByteSet,
     covered_parts,
     part_bytes,
-    segments,
     wire_bytes,
 )
+from protogen.schema.syntax.protocol import ALL_SENDERS
 
 
 def analyse_framing(context: Context, draft: Draft) -> None:
     """The framing of each sender."""
-    accepted: set[tuple[str, str]] = set()
-    for sender, frame in draft.frames.items():
-        analysis = _Analysis(context, sender, frame, draft.sent_by(sender), accepted)
+    analyses = [_Analysis(context, draft, sender, frame) for sender, frame in draft.frames.items()]
+    judge_delimiters(context, [(item.sender, item.frame, item.delimiters) for item in analyses])
+    for analysis in analyses:
         framing = analysis.framing()
         if framing is not None:
-            draft.framings[sender] = framing
+            draft.framings[analysis.sender] = framing
 
 
 class _Analysis:
     """One sender's frames."""
 
-    def __init__(
-        self,
-        context: Context,
-        sender: str,
-        frame: Frame,
-        messages: list[Message],
-        reported: set[tuple[str, str]],
-    ) -> None:
+    def __init__(self, context: Context, draft: Draft, sender: str, frame: Frame) -> None:
         self._context = context
-        self._sender = sender
-        self._key = sender if sender in context.syntax.frame else ""
-        self._frame = frame
-        self._messages = messages
-        self._reported = reported
-        self._payload = payload_alphabet(context.syntax.byte_bits, messages)
-        self._head = head_literals(frame)
-        self._tail = tail_literals(frame)
+        self._key = sender if sender in context.syntax.frame else ALL_SENDERS
+        self._messages = draft.sent_by(sender)
+        self._overloads = draft.overloads[sender]
+        self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)
+        self.sender = sender
+        self.frame = frame
+        self.delimiters = delimiters_of(frame, self._payload)
+        self._stated = payload_range(frame)
 
     def framing(self) -> Framing | None:
         """The framing, or None where a receiver could not tell."""
@@ -91,103 +77,101 @@ class _Analysis:
     # -- start and end ------------------------------------------------------------------------
 
     def _end(self) -> End | None:
-        if not self._tail:
-            return None
-        literal = b"".join(part.bytes for part in self._tail)
-        return End(bytes=literal, protected=self._protected(literal, self._tail))
+        tail = self.delimiters.tail
+        return None if tail is None else End(bytes=tail.bytes, protected=tail.protected)
 
     def _start(self, end: End | None) -> Start | None:
-        if self._head:
-            literal = b"".join(part.bytes for part in self._head)
-            return StartLiteral(bytes=literal, protected=self._protected(literal, self._head))
+        head = self.delimiters.head
+        if head is not None:
+            return StartLiteral(bytes=head.bytes, protected=head.protected)
         marked = self._start_set()
         if marked is not None:
             return marked
         if end is not None:
             return AfterEnd()
-        if self._frame.checksums:
+        if self._always_checked():
             return Anywhere()
         self._context.error_at_key(
             "PG146",
             ("frame", self._key),
-            f"nothing tells a receiver where a frame of {self._sender} starts",
-            "a frame needs a literal, an identity with a `range`, or at least a checksum",
+            f"nothing tells a receiver where a frame of {self.sender} starts",
+            "a frame needs a literal, a first byte with a `range` of its own, or at least a "
+            "checksum that is always there",
         )
         return None
 
+    def _always_checked(self) -> bool:
+        return any(not part.when_payload for part in self.frame.checksums)
+
     def _start_set(self) -> StartSet | None:
-        """The first part, where a range sets its byte apart."""
-        first = self._frame.parts[0]
+        """The first part, where a range sets its byte apart.
+
+        Where other bytes of a frame can be such a byte too, it takes more to tell frames: a length
+        or a checksum. A set that holds all of them tells nothing.
+        """
+        first = self.frame.parts[0]
         item = self._context.syntax.frame[self._key][first.name]
-        if item.range is None or first.name in covered_parts(self._frame):
+        if item.range is None or first.name in covered_parts(self.frame):
             return None
         values = part_bytes(first, self._payload)[0]
-        others = (used for part, used in wire_bytes(self._frame, self._payload) if part != first)
-        protected = not any(values & used for used in others) and part_size(first) == 1
+        used = (used for part, used in wire_bytes(self.frame, self._payload) if part != first)
+        others = frozenset().union(*used)
+        protected = values.isdisjoint(others) and part_size(first) == 1
+        told = protected or self.frame.length is not None or self._always_checked()
+        if not told or others <= values:
+            return None
         return StartSet(least=min(values), greatest=max(values), protected=protected)
-
-    def _protected(self, literal: bytes, parts: tuple[LiteralPart, ...]) -> bool:
-        """Whether the literal occurs only in its place; if not, a decision has to accept it."""
-        delimiters = [part.name for part in (*self._head, *self._tail)]
-        witness = occurs(literal, b"", segments(self._frame, self._payload, delimiters), b"")
-        decision = next((part.unprotected for part in parts if part.unprotected), None)
-        name = parts[0].name
-        if (self._key, name) not in self._reported:
-            self._reported.add((self._key, name))
-            self._judge(name, witness, decision)
-        return witness is None
-
-    def _judge(self, name: str, witness: tuple[bytes, int] | None, decision: str | None) -> None:
-        loc: Loc = ("frame", self._key, name)
-        if witness is not None and decision is None:
-            data, offset = witness
-            self._context.error_at_key(
-                "PG142",
-                loc,
-                f"`{name}` can also occur inside a frame, and nothing protects it: "
-                f"{_hex(data)} has it at byte {offset}",
-                "add a transparency, or accept it: `unprotected:` and a decision's name",
-            )
-        if witness is None and decision is not None:
-            text = f"`{name}` can't occur inside a frame, so nothing needs to be accepted"
-            self._context.error("PG144", (*loc, "unprotected"), text, "remove `unprotected`")
-        if decision is not None and decision not in self._context.syntax.decisions:
-            text = f"there is no decision `{decision}`"
-            self._context.error("PG143", (*loc, "unprotected"), text)
 
     # -- what a receiver can tell -------------------------------------------------------------
 
     def _ends_known(self, end: End | None) -> bool:
         """Whether the frame, or each message, says where it ends."""
-        if self._frame.length is not None or end is not None:
+        if self.frame.length is not None or end is not None:
             return True
         if not self._identity_first():
             text = "the identity comes behind the payload, and nothing else tells where it ends"
             self._context.error_at_key("PG145", ("frame", self._key), text)
             return False
-        endless = [message for message in self._messages if _has_filler(message)]
-        for message in endless:
-            self._context.error_at_key(
-                "PG145",
-                ("messages", message.name),
-                f"a receiver can't tell where `{message.name}` ends",
-                "give the frame a length or an end literal, or the message a fixed size",
-            )
-        return not endless
+        before = self._context.tally.errors
+        self._messages_end()
+        self._overloads_end()
+        return self._context.tally.errors == before
+
+    def _messages_end(self) -> None:
+        """Fields that fill the payload were refused already; an unspecified one is such a field."""
+        for message in self._messages:
+            if message.unspecified and message.sizes.fixed is None:
+                self._context.error_at_key(
+                    "PG145",
+                    ("messages", message.name),
+                    f"a receiver can't tell where `{message.name}` ends",
+                    "give the frame a length or an end literal, or the message a fixed size",
+                )
+
+    def _overloads_end(self) -> None:
+        """The size tells messages apart only if something else tells the size."""
+        sizes = {message.name: message.sizes.fixed for message in self._messages}
+        for overload in self._overloads:
+            if len({sizes[name] for name in overload.messages} | {None}) != 2:
+                text = "a receiver can't tell where these messages end: they differ in size"
+                hint = "give the frame a length or an end literal"
+                self._context.error_at_key("PG145", ("overloads", overload.name), text, hint)
 
     def _identity_first(self) -> bool:
-        names = [part.name for part in self._frame.parts]
-        payload = next(p.name for p in self._frame.parts if isinstance(p, PayloadPart))
-        return all(names.index(p.name) < names.index(payload) for p in self._frame.identity)
+        names = [part.name for part in self.frame.parts]
+        payload = next(p.name for p in self.frame.parts if isinstance(p, PayloadPart))
+        return all(names.index(p.name) < names.index(payload) for p in self.frame.identity)
 
     def _region_unclear(self) -> bool:
         """Raw parts between a stuffed region and the end need a length to be found."""
-        transparency = self._frame.transparency
-        if transparency is None or self._frame.length is not None:
+        transparency = self.frame.transparency
+        if transparency is None or self.frame.length is not None:
             return False
-        names = [part.name for part in self._frame.parts]
+        names = [part.name for part in self.frame.parts]
         rest = names[names.index(transparency.last) + 1 :]
-        unclear = [name for name in rest if name not in {part.name for part in self._tail}]
+        tail = self.delimiters.tail
+        ends = {part.name for part in tail.parts} if tail is not None else set()
+        unclear = [name for name in rest if name not in ends]
         if unclear:
             text = f"nothing tells where the stuffed parts end and `{unclear[0]}` begins"
             self._context.error_at_key("PG149", ("frame", self._key, unclear[0]), text)
@@ -196,12 +180,13 @@ class _Analysis:
     # -- results ------------------------------------------------------------------------------
 
     def _describe(self, start: Start, end: End | None) -> Framing | None:
-        frame = self._frame
+        frame = self.frame
         payload = self._payload_sizes()
         wire = wire_sizes.WireSizes(frame, self._payload)
         greatest = wire.frame(payload).greatest
         if greatest > GREATEST_FRAME:
-            text = f"a frame of {self._sender} can have {greatest} bytes; at most 1 MiB is allowed"
+            text = f"a frame of {self.sender} can have {amount(greatest)} bytes; "
+            text = f"{text}at most 1 MiB is allowed"
             self._context.error_at_key("PG122", ("frame", self._key), text)
             return None
         per_message = tuple(self._message(wire, message) for message in self._messages)
@@ -221,20 +206,25 @@ class _Analysis:
             why_synchronising=why,
             finds_start=framing_words.finds_start(start),
             finds_end=framing_words.finds_end(frame, end, self._messages),
-            undetected=undetected_errors(frame, start, end, self._messages),
+            undetected=undetected_errors(frame, end, self._messages, self._payload),
             messages=per_message,
         )
 
     def _payload_sizes(self) -> SizeSet:
-        sizes = payload_range(self._frame)
-        if sizes is not None:
-            return sizes
+        if self._stated is not None:
+            return self._stated
         least = min((message.sizes.least for message in self._messages), default=0)
         greatest = max((message.sizes.greatest for message in self._messages), default=0)
         return SizeSet.between(least, greatest)
 
+    def _sendable(self, sizes: SizeSet) -> SizeSet:
+        """What this sender's frames can carry of a message that others may send as well."""
+        if self._stated is None:
+            return sizes
+        return sizes.within(self._stated.least, self._stated.greatest) or sizes
+
     def _message(self, wire: wire_sizes.WireSizes, message: Message) -> MessageFraming:
-        sizes = wire.message(message)
+        sizes = wire.message(message, self._sendable(message.sizes))
         return MessageFraming(
             message=message.name,
             least=sizes.least,
@@ -247,10 +237,6 @@ def _rate(context: Context, size: int) -> Fraction | None:
     link = context.syntax.link
     bits = Link(data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits)
     return Fraction(link.baud, bits.bits_per_byte * size) if link.baud else None
-
-
-def _has_filler(message: Message) -> bool:
-    return any(fills(field.type) for field in message.fields)
 
 
 def payload_alphabet(byte_bits: int, messages: list[Message]) -> ByteSet:
@@ -272,10 +258,6 @@ def _holds_whole_bytes(type_: Type) -> bool:
         case Switch():
             return any(_holds_whole_bytes(case.type) for case in type_.cases)
     return False
-
-
-def _hex(data: bytes) -> str:
-    return data.hex(" ").upper()
 
 
 __all__ = ["analyse_framing", "payload_alphabet"]

@@ -48,9 +48,14 @@ def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, 
     """Whether a receiver that joins anywhere finds the next frame for sure, and why."""
     match start:
         case StartLiteral(protected=True) | StartSet(protected=True):
-            return True, "the start can't occur inside a frame, so every start is one"
+            return True, (
+                "the start can't occur inside a frame, so a receiver is in step from the next "
+                "frame on"
+            )
         case AfterEnd() if end is not None and end.protected:
-            return True, "the end can't occur inside a frame, so a frame starts behind every end"
+            return True, (
+                "the end can't occur inside a frame, so a receiver is in step from the next end on"
+            )
         case AfterEnd():
             return False, (
                 "the end can occur in the data, so a receiver may start in the middle of a frame; "

@@ -1,4 +1,4 @@
-"""Can a receiver tell the messages of each sender apart?"""
+"""Can a receiver tell the messages of each sender apart, and does nothing reserved come back?"""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.identity import Identity, IdentityReader
+from protogen.passes.names import check_endpoint
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Overload
-
-Identity = tuple[int, ...]
+from protogen.schema.syntax.protocol import ReservedIdentity
 
 
 def check_identities(context: Context, draft: Draft) -> None:
@@ -106,16 +107,23 @@ def _used(context: Context, draft: Draft) -> None:
 def _reserved(context: Context, draft: Draft) -> None:
     """Identities, field names and values that may not come back."""
     for index, entry in enumerate(context.syntax.reserved.identities):
-        identity = tuple(entry.id.values())
-        for message in draft.sent_by(entry.from_):
-            if message.identity == identity:
-                text = f"the identity of `{message.name}` is reserved"
-                place = context.find(("reserved", "identities", index))
-                context.problems.add("PG156", message.span, text, None, [(place, "reserved here")])
+        _reserved_identity(context, draft, ("reserved", "identities", index), entry)
     for name, fields in context.syntax.reserved.fields.items():
         _reserved_fields(context, draft, name, fields)
     for path, values in context.syntax.reserved.values.items():
         _reserved_values(context, draft, path, values)
+
+
+def _reserved_identity(context: Context, draft: Draft, loc: Loc, entry: ReservedIdentity) -> None:
+    if not check_endpoint(context, entry.from_, (*loc, "from")) or entry.from_ not in draft.frames:
+        return
+    reader = IdentityReader(context, loc, "the reserved identity")
+    identity = reader.read(entry.id, draft.frames[entry.from_])
+    for message in draft.sent_by(entry.from_):
+        if message.identity == identity:
+            text = f"the identity of `{message.name}` is reserved"
+            note = (context.find(loc), "reserved here")
+            context.error_at_key("PG156", ("messages", message.name), text, note=note)
 
 
 def _reserved_fields(context: Context, draft: Draft, name: str, fields: tuple[str, ...]) -> None:

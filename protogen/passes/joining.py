@@ -47,7 +47,9 @@ def _type(one: Type, other: Type) -> Type | None:
     match one, other:
         case Struct(), Struct():
             return one if one.name == other.name else None
-        case (Text(), Text()) | (Octets(), Octets()):
+        case Text(), Text():
+            return _with_extent(one, other)
+        case Octets(), Octets():
             return _with_extent(one, other)
         case Array(), Array():
             element = _type(one.element, other.element)

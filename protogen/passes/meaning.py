@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from protogen.model.fields import Constant, Field
 from protogen.model.types import Array, Float, Integer, NamedValue, Type
-from protogen.passes.constants import Constants
+from protogen.passes.constants import read_constant
 from protogen.passes.context import Context, about
 from protogen.passes.declared import Effective
 
@@ -18,8 +18,8 @@ def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
     check = _Check(context, name, type_, item)
     check.keys_fit()
     least, greatest = check.bounds()
-    const = Constants(context, "const", type_, item).read()
-    default = Constants(context, "default", type_, item).read()
+    const = read_constant(context, "const", type_, item)
+    default = read_constant(context, "default", type_, item)
     check.constants_agree(const, default)
     syntax = item.syntax
     return Field(
@@ -65,7 +65,7 @@ class _Check:
     def constants_agree(self, const: Constant | None, default: Constant | None) -> None:
         """Nothing but the constant can be the default."""
         if const is not None and default is not None and const != default:
-            self._error("PG114", "default", f"{default} is not the constant, {const}")
+            self._error("PG114", "default", "`default` differs from `const`")
 
     def bounds(self) -> tuple[Fraction | None, Fraction | None]:
         """The raw bounds: the range, else what the type can hold (None for floats)."""

@@ -1,4 +1,4 @@
-"""Can every target use the names, and does each name that is referred to exist?"""
+"""Can every target use the names, and does each endpoint that is referred to exist?"""
 
 from __future__ import annotations
 
@@ -11,30 +11,32 @@ from protogen.passes.type_names import is_builtin
 from protogen.problems import hint_for
 from protogen.schema.syntax.fields import FieldSyntax
 
-ROOT_NAMES = frozenset(
-    {"protocol", "encode", "decode", "decoder", "encoder", "messages", "message"}
-)
-"""Names that generated modules use themselves, which a type or message would hide."""
+_NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
+_VALUE_KEYS = ("values", "flags", "bits", "special")
+_BY_SENDER = ("byte_order", "frame", "transparency")
 
 
 def check_names(context: Context, draft: Draft) -> None:
     """Reserved words and unknown endpoints; finds the senders."""
     syntax = context.syntax
     _usable(context, syntax.protocol, ("protocol",), at_value=True)
-    for key in ("endpoints", "types", "messages", "decisions", "exchanges"):
+    for key in _NAMED_KEYS:
         for name in getattr(syntax, key):
             _usable(context, name, (key, name))
     for sender, frame in syntax.frame.items():
         for name in frame:
             _usable(context, name, ("frame", sender, name))
     for name, declared in syntax.types.items():
-        _type_name(context, name)
-        _field_names(context, {name: declared}, ("types",))
+        if is_builtin(name):
+            context.error_at_key("PG107", ("types", name), f"`{name}` is a built-in type")
+        _inside_field(context, declared, ("types", name))
     for name, message in syntax.messages.items():
         if not isinstance(message.fields, str):
-            _field_names(context, message.fields, ("messages", name, "fields"))
-    _message_names(context)
+            _fields(context, message.fields, ("messages", name, "fields"))
+    if not syntax.messages:
+        context.error("PG157", ("messages",), "the protocol has no messages")
     draft.senders = _senders(context)
+    _keys_are_endpoints(context)
 
 
 def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) -> None:
@@ -45,35 +47,23 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
         report("PG106", loc, text, f"another name, such as `{name}_` with a word behind it")
 
 
-def _field_names(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:
+def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:
     for name, item in fields.items():
-        here = (*loc, name)
-        _usable(context, name, here)
-        for key in ("values", "flags", "bits", "special"):
-            for entry in getattr(item, key) or ():
-                _usable(context, entry, (*here, key, entry))
-        if item.fields:
-            _field_names(context, item.fields, (*here, "fields"))
-        for case, inner in (item.cases or {}).items():
-            if inner.fields:
-                _field_names(context, inner.fields, (*here, "cases", case, "fields"))
+        _usable(context, name, (*loc, name))
+        _inside_field(context, item, (*loc, name))
 
 
-def _type_name(context: Context, name: str) -> None:
-    if is_builtin(name):
-        context.error_at_key("PG107", ("types", name), f"`{name}` is a built-in type")
-
-
-def _message_names(context: Context) -> None:
-    for name in context.syntax.messages:
-        if name in ROOT_NAMES:
-            text = f"`{name}` is a name that generated code uses itself"
-            context.error_at_key("PG106", ("messages", name), text)
-        if name in context.syntax.types:
-            text = f"a type is called `{name}` too"
-            context.error_at_key("PG107", ("messages", name), text)
-    if not context.syntax.messages:
-        context.error("PG157", ("messages",), "the protocol has no messages")
+def _inside_field(context: Context, item: FieldSyntax, loc: Loc) -> None:
+    """The names that stand inside of a field, those of its cases included."""
+    for key in _VALUE_KEYS:
+        for entry in getattr(item, key) or ():
+            _usable(context, entry, (*loc, key, entry))
+    for name, bits in (item.bits or {}).items():
+        for entry in bits.values or ():
+            _usable(context, entry, (*loc, "bits", name, "values", entry))
+    _fields(context, item.fields or {}, (*loc, "fields"))
+    for key, case in (item.cases or {}).items():
+        _inside_field(context, case, (*loc, "cases", key))
 
 
 def _senders(context: Context) -> tuple[str, ...]:
@@ -82,19 +72,23 @@ def _senders(context: Context) -> tuple[str, ...]:
     sending: set[str] = set()
     for name, message in context.syntax.messages.items():
         for index, sender in enumerate(message.from_):
-            if sender in endpoints:
-                sending.add(sender)
-                continue
-            loc: Loc = ("messages", name, "from", index)
-            text = f"there is no endpoint `{sender}`"
-            context.error("PG108", loc, text, hint_for(sender, endpoints))
-    _keys_are_endpoints(context)
+            sending.add(sender)
+            check_endpoint(context, sender, ("messages", name, "from", index))
     return tuple(name for name in endpoints if name in sending)
+
+
+def check_endpoint(context: Context, name: str, loc: Loc) -> bool:
+    """Whether there is such an endpoint; a problem at `loc` if not."""
+    endpoints = context.syntax.endpoints
+    if name not in endpoints:
+        text = f"there is no endpoint `{name}`"
+        context.error("PG108", loc, text, hint_for(name, endpoints))
+    return name in endpoints
 
 
 def _keys_are_endpoints(context: Context) -> None:
     endpoints = context.syntax.endpoints
-    for key in ("byte_order", "transparency"):
+    for key in _BY_SENDER:
         for sender in getattr(context.syntax, key):
             if sender and sender not in endpoints:
                 text = f"there is no endpoint `{sender}`"

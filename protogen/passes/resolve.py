@@ -7,16 +7,19 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
+from protogen.passes.class_names import check_class_names
 from protogen.passes.codes import check_codes
 from protogen.passes.context import Context, about, source_of
 from protogen.passes.decisions import resolve_decisions
 from protogen.passes.draft import Draft
 from protogen.passes.examples import attach_examples, resolve_exchanges
+from protogen.passes.frames import resolve_frames
 from protogen.passes.framing import analyse_framing
 from protogen.passes.identities import check_identities
-from protogen.passes.messages import resolve_frames, resolve_messages
+from protogen.passes.messages import resolve_messages
 from protogen.passes.names import check_names
 from protogen.passes.spec_hash import spec_hash
+from protogen.passes.unused import check_unused
 
 Pass = Callable[[Context, Draft], None]
 
@@ -26,6 +29,8 @@ PASSES: tuple[Pass, ...] = (
     resolve_frames,
     check_codes,
     resolve_messages,
+    check_unused,
+    check_class_names,
     check_identities,
     attach_examples,
     resolve_exchanges,

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from protogen.model.fields import Field
 from protogen.passes.capacity import GREATEST_FRAME
 from protogen.passes.type_names import Layout
+
+Scope = ChainMap[str, Field]
+"""Earlier fields by name, those of the innermost struct first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,7 @@ class Setting:
     """Whether nothing of the payload follows."""
     used: int = 0
     """The least number of bytes in front."""
-    outer: Mapping[str, Field] = ChainMap()
+    outer: Scope = field(default_factory=ChainMap)
     """Fields that counts and switches may name, from the structs around."""
     stack: tuple[str, ...] = ()
     """Declared types that are being resolved, the outermost first."""
@@ -40,7 +42,7 @@ class Setting:
         """The greatest number of bytes that are left, where the frame bounds them."""
         return None if self.capacity is None else max(0, self.capacity - self.used)
 
-    def inside(self, name: str, used: int, outer: Mapping[str, Field], last: bool) -> Setting:
+    def inside(self, name: str, used: int, outer: Scope, last: bool) -> Setting:
         """The setting of the field `name`, behind so many bytes of earlier fields."""
         return replace(
             self,

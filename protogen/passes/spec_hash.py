@@ -6,53 +6,51 @@ hash to know whether they speak the same protocol.
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import json
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
-from protogen.model.framing import Framing
-from protogen.model.messages import Example
-from protogen.model.origin import About, Source
 from protogen.model.protocol import Protocol
 
 _LEFT_OUT = frozenset(
     {
-        "spec_hash", "files", "title", "summary", "doc", "version", "span", "examples", "exchanges",
-        "decisions", "decision", "unprotected", "unknown", "link", "endpoints", "ranged", "preset",
-        "enums", "flags", "structs",
+        "about", "doc", "title", "summary", "source", "span", "examples", "exchanges", "decision",
+        "decisions", "unprotected", "unknown", "version", "files", "link", "endpoints", "framing",
+        "ranged", "stated", "preset", "spec_hash",
     }
 )  # fmt: skip
-_TEXTS = (About, Source, Example, Framing)
+"""What people read, and what follows from the rest."""
+
+_IN_OTHER_PLACES = frozenset({"enums", "flags", "structs", "messages"})
+"""What a protocol lists once more: it is found where it is used."""
 
 
 def spec_hash(protocol: Protocol) -> str:
     """SHA-256 in hex of everything that changes bytes or what they mean."""
-    text = json.dumps(_plain(protocol), sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    text = json.dumps(_plain(protocol), separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _plain(value: Any) -> Any:
-    """Data classes as mappings tagged with their kind, without what people read."""
-    if isinstance(value, _TEXTS):
-        return None
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        kept = {
-            field.name: _plain(getattr(value, field.name))
-            for field in dataclasses.fields(value)
-            if field.name not in _LEFT_OUT and not isinstance(getattr(value, field.name), _TEXTS)
-        }
-        return {"kind": type(value).__name__, **kept}
-    return _plain_leaf(value)
-
-
-def _plain_leaf(value: Any) -> Any:
+    """Data classes as mappings tagged with their kind, without what is left out."""
     match value:
+        case None | int() | str() | float():
+            return value
         case tuple():
             return [_plain(item) for item in value]
         case Fraction():
             return str(value)
         case bytes():
             return value.hex()
-    return value
+    kind = type(value)
+    assert is_dataclass(kind), kind
+    return {"kind": kind.__name__} | {name: _plain(getattr(value, name)) for name in _kept(kind)}
+
+
+@cache
+def _kept(kind: type[Any]) -> tuple[str, ...]:
+    left_out = _LEFT_OUT | _IN_OTHER_PLACES if kind is Protocol else _LEFT_OUT
+    return tuple(sorted({field.name for field in fields(kind)} - left_out))

@@ -20,34 +20,46 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
 )
-from protogen.model.framing import End, Start
+from protogen.model.framing import End
 from protogen.model.messages import Message
+from protogen.passes.wire_code import SEVEN_BITS, ByteSet
 
 
 def undetected_errors(
-    frame: Frame, start: Start, end: End | None, messages: list[Message]
+    frame: Frame, end: End | None, messages: list[Message], payload: ByteSet
 ) -> tuple[str, ...]:
     """One sentence for each kind of wrong byte that a receiver takes for right."""
-    sentences = [_part(frame, part, end, messages) for part in frame.parts]
+    sentences = [_part(frame, part, end, messages, payload) for part in frame.parts]
+    sentences.append(_early_end(frame, end, messages))
     sentences.append(_weak_checksum(frame))
     sentences.append(_stuffing(frame))
     return tuple(sentence for sentence in sentences if sentence)
 
 
-def _part(frame: Frame, part: Part, end: End | None, messages: list[Message]) -> str:
-    if isinstance(part, LiteralPart | ChecksumPart) or _covered(frame, part.name):
+def _part(
+    frame: Frame, part: Part, end: End | None, messages: list[Message], payload: ByteSet
+) -> str:
+    if isinstance(part, LiteralPart | ChecksumPart):
         return ""
+    covering = [checksum for checksum in frame.checksums if part.name in checksum.covers]
+    if covering:
+        return _sometimes(part, covering, messages)
     if isinstance(part, LengthPart):
         return _length(frame, part, end)
     if isinstance(part, IdentityPart):
-        return _identity(frame, part, messages)
+        return _identity(frame, part, end, messages)
     if isinstance(part, PayloadPart):
-        return f"a wrong byte in the payload{_inside(frame)}: nothing checks it"
+        return f"a wrong byte in the payload{_inside(frame, payload)}: nothing checks it"
     return f"a wrong `{part.name}`: no checksum covers it"
 
 
-def _covered(frame: Frame, name: str) -> bool:
-    return any(name in checksum.covers for checksum in frame.checksums)
+def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]) -> str:
+    """Where each checksum is absent without a payload, a frame without one is not checked."""
+    empty = any(message.sizes.least == 0 for message in messages)
+    always = any(not checksum.when_payload for checksum in covering)
+    if always or not empty or isinstance(part, PayloadPart):
+        return ""
+    return f"a wrong `{part.name}` in a frame without payload: it has no checksum"
 
 
 def _length(frame: Frame, part: LengthPart, end: End | None) -> str:
@@ -56,15 +68,32 @@ def _length(frame: Frame, part: LengthPart, end: End | None) -> str:
     return f"a wrong `{part.name}`, where the bytes that follow happen to check"
 
 
-def _identity(frame: Frame, part: IdentityPart, messages: list[Message]) -> str:
-    """Messages that differ in this part only are confusable where they can have one size."""
+def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[Message]) -> str:
+    """Messages that differ in this part only are confusable where they can have one size.
+
+    Where nothing but the identity tells the size, a shorter message is one as well.
+    """
     index = frame.identity.index(part)
     groups: dict[tuple[int, ...], list[Message]] = defaultdict(list)
     for message in messages:
         groups[message.identity[:index] + message.identity[index + 1 :]].append(message)
+    if frame.length is None and end is None:
+        several = any(len({message.identity for message in group}) > 1 for group in groups.values())
+        text = f"a wrong `{part.name}` that makes it another message of the same size, or a shorter"
+        return f"{text} one" if several else ""
     if any(_share_a_size(group) for group in groups.values()):
         return f"a wrong `{part.name}` that makes it another message of the same size"
     return ""
+
+
+def _early_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
+    """An end that is made of a wrong byte cuts a message that has no other size."""
+    if end is None or end.protected or frame.length is not None or not frame.checksums:
+        return ""
+    if all(message.sizes.fixed is not None for message in messages):
+        return ""
+    what = end.bytes.hex(" ").upper()
+    return f"a wrong byte that makes {what}, the end, where what stands before it happens to check"
 
 
 def _share_a_size(messages: list[Message]) -> bool:
@@ -78,12 +107,12 @@ def _share_a_size(messages: list[Message]) -> bool:
     return any(one.meets(other) for one in varying for other in by_least if one is not other)
 
 
-def _inside(frame: Frame) -> str:
-    """What still shows most wrong bytes where the payload is encoded."""
+def _inside(frame: Frame, payload: ByteSet) -> str:
+    """What still shows some wrong bytes: an encoding, or that their highest bit is 0."""
     encoding = frame.transparency.encoding if frame.transparency else None
     if isinstance(encoding, Base16):
         return " that is still a hex digit"
-    return ""
+    return " whose highest bit is still 0" if payload == SEVEN_BITS else ""
 
 
 def _weak_checksum(frame: Frame) -> str:

@@ -29,6 +29,7 @@ SEVEN_BITS: ByteSet = frozenset(range(128))
 _HEX_DIGITS = b"0123456789ABCDEF"
 
 
+@cache
 def code_of(encoding: Encoding | None) -> Mapping[int, bytes] | None:
     """The codeword of each byte; None for COBS, which does not work byte by byte."""
     match encoding:

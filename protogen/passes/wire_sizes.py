@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import Base16, ChecksumPart, Cobs, Frame, IdentityPart, Part, PayloadPart
+from protogen.model.frame import Base16, Cobs, Escape, Frame, IdentityPart, Part, PayloadPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
-from protogen.passes.capacity import part_size, tail_literals
+from protogen.passes.capacity import is_optional, part_size, tail_literals
 from protogen.passes.wire_code import ByteSet, code_of, covered_parts, part_bytes
 
 _COBS_BLOCK = 254
@@ -19,6 +19,7 @@ class WireSizes:
         self._payload = payload
         self._covered = covered_parts(frame)
         self._encoding = frame.transparency.encoding if frame.transparency else None
+        self._known: dict[str, tuple[int, int]] = {}
 
     @property
     def head(self) -> int:
@@ -42,10 +43,10 @@ class WireSizes:
         """Wire bytes of any frame with such a payload."""
         return self._sizes(payload, {})
 
-    def message(self, message: Message) -> SizeSet:
+    def message(self, message: Message, payload: SizeSet) -> SizeSet:
         """Wire bytes of the frames of one message, whose identity is known."""
         names = [part.name for part in self._frame.identity]
-        return self._sizes(message.sizes, dict(zip(names, message.identity, strict=True)))
+        return self._sizes(payload, dict(zip(names, message.identity, strict=True)))
 
     def _around(self) -> tuple[list[Part], list[Part]]:
         parts = list(self._frame.parts)
@@ -61,7 +62,7 @@ class WireSizes:
         return SizeSet.between(least, greatest, 1 if optional else step)
 
     def _total(self, payload: int, identity: dict[str, int], *, worst: bool) -> int:
-        present = [part for part in self._frame.parts if payload or not _optional(part)]
+        present = [part for part in self._frame.parts if payload or not is_optional(part)]
         raw = [part for part in present if part.name not in self._covered]
         covered = [part for part in present if part.name in self._covered]
         size = sum(payload if isinstance(part, PayloadPart) else part_size(part) for part in raw)
@@ -71,28 +72,51 @@ class WireSizes:
             inside = sum(
                 payload if isinstance(part, PayloadPart) else part_size(part) for part in covered
             )
-            return size + inside + (self._cobs_extra(inside) if worst else 0) + 1
+            return size + inside + self._cobs_codes(inside, worst=worst)
         return size + sum(self._stuffed(part, payload, identity, worst=worst) for part in covered)
 
-    def _cobs_extra(self, inside: int) -> int:
-        """Code bytes besides the first; a lenient decoder also takes a needless last one."""
+    def _cobs_codes(self, inside: int, *, worst: bool) -> int:
+        """Code bytes. Where no data are, a lenient decoder takes none; and one that is needless."""
         assert self._frame.transparency is not None
-        return inside // _COBS_BLOCK + self._frame.transparency.lenient
+        lenient = self._frame.transparency.lenient
+        if not worst:
+            return 0 if lenient and not inside else 1
+        return 1 + inside // _COBS_BLOCK if lenient else max(1, -(-inside // _COBS_BLOCK))
 
     def _stuffed(self, part: Part, payload: int, identity: dict[str, int], *, worst: bool) -> int:
         """Wire bytes of a covered part: the shortest or longest codewords of what it can hold."""
+        if isinstance(part, IdentityPart) and part.name in identity:
+            alone = (frozenset({byte}) for byte in _bytes_of(part, identity[part.name]))
+            return sum(self._codeword(values, worst=worst) for values in alone)
+        size = self._codewords(part.name)[worst]
+        return size * payload if isinstance(part, PayloadPart) else size
+
+    def _codewords(self, name: str) -> tuple[int, int]:
+        """Wire bytes of a part (of one byte of the payload), at best and at worst."""
+        if name not in self._known:
+            places = part_bytes(self._frame.part(name), self._payload)
+            self._known[name] = (
+                sum(self._codeword(values, worst=False) for values in places),
+                sum(self._codeword(values, worst=True) for values in places),
+            )
+        return self._known[name]
+
+    def _codeword(self, values: ByteSet, *, worst: bool) -> int:
+        """Wire bytes of one byte that has one of these values."""
         code = code_of(self._encoding)
         assert code is not None
-        choose = max if worst else min
-        if isinstance(part, IdentityPart) and part.name in identity:
-            value = identity[part.name].to_bytes(part.type.size, part.type.byte_order)
-            return sum(len(code[byte]) for byte in value)
-        per_byte = [
-            choose(len(code[value]) for value in values)
-            for values in part_bytes(part, self._payload)
-        ]
-        return per_byte[0] * payload if isinstance(part, PayloadPart) else sum(per_byte)
+        if not worst:
+            return min(len(code[value]) for value in values)
+        return self._needless or max(len(code[value]) for value in values)
+
+    @property
+    def _needless(self) -> int:
+        """Bytes that an escape takes, where a lenient decoder accepts one in front of any byte."""
+        lenient = self._frame.transparency is not None and self._frame.transparency.lenient
+        return 2 if lenient and isinstance(self._encoding, Escape) else 0
 
 
-def _optional(part: Part) -> bool:
-    return isinstance(part, ChecksumPart) and part.when_payload
+def _bytes_of(part: IdentityPart, value: int) -> list[int]:
+    """The unstuffed bytes of a value, in any order."""
+    bits, size = part.type.byte_bits, part.type.size
+    return [(value >> (bits * place)) & ((1 << bits) - 1) for place in range(size)]

@@ -126,7 +126,8 @@ class _Assembly:
 
     def _check_payload(self) -> None:
         greatest = self._layout.spec.greatest_payload
-        if len(self._payload) > greatest:
+        # Without a length, a message's own size bounds its payload, and the frame's an unknown one.
+        if self._layout.length is not None and len(self._payload) > greatest:
             problem = f"has {len(self._payload)} bytes, at most {greatest} fit the frame"
             raise EncodeError("payload", problem)
         if self._layout.spec.seven_bit and not self._payload.isascii():

@@ -32,8 +32,9 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
     message = sender.named(str(name))
     if message is None:
         raise EncodeError("message", f"{sender.name} sends no message called {name!r}")
+    fields = _mapping(line, "fields")
     try:
-        record = message.from_dict(_mapping(line, "fields"))
+        record = message.from_dict(fields)
         payload = record.to_payload(strict=False)
     except EncodeError as error:
         raise error.inside("fields") from None

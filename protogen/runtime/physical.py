@@ -50,17 +50,21 @@ class _PhysicalView(_View[ValueT]):
         rule = dict(owner.RULES)[self._field]
         self._rule = cast(Any, rule.element if isinstance(rule, ArrayRule) else rule)
 
-    def _show(self, raw: Any) -> float | None:
+    def _shown_or_none(self, raw: Any) -> float | None:
         value = self._rule.physical(raw)
         return None if value is None else float(value)
+
+    def _shown(self, raw: Any) -> float:
+        value = self._shown_or_none(raw)
+        assert value is not None, "a field with special values has another kind of property"
+        return value
 
 
 class Physical(_PhysicalView[float]):
     """The field's physical value. Writing takes the nearest raw value, ties to even."""
 
     def _read(self, record: object) -> float:
-        raw = getattr(record, self._field)
-        return float(raw * self._rule.scale + self._rule.offset)
+        return self._shown(getattr(record, self._field))
 
     def _raw(self, record: object, value: float) -> Any:
         return self._rule.nearest(value)
@@ -70,7 +74,7 @@ class PhysicalOrNone(_PhysicalView[float | None]):
     """The same for a field with special values: None while there is no reading."""
 
     def _read(self, record: object) -> float | None:
-        return self._show(getattr(record, self._field))
+        return self._shown_or_none(getattr(record, self._field))
 
     def _raw(self, record: object, value: float | None) -> Any:
         return self._rule.nearest(value)  # type: ignore[arg-type]
@@ -80,8 +84,7 @@ class PhysicalList(_PhysicalView[list[float]]):
     """The physical values of an array's elements."""
 
     def _read(self, record: object) -> list[float]:
-        scale, offset = self._rule.scale, self._rule.offset
-        return [float(raw * scale + offset) for raw in getattr(record, self._field)]
+        return [self._shown(raw) for raw in getattr(record, self._field)]
 
     def _raw(self, record: object, value: list[float]) -> Any:
         return [self._rule.nearest(element) for element in value]
@@ -91,7 +94,7 @@ class PhysicalListOrNone(_PhysicalView[list[float | None]]):
     """The physical values of an array's elements, None for those without a reading."""
 
     def _read(self, record: object) -> list[float | None]:
-        return [self._show(raw) for raw in getattr(record, self._field)]
+        return [self._shown_or_none(raw) for raw in getattr(record, self._field)]
 
     def _raw(self, record: object, value: list[float | None]) -> Any:
         return [self._rule.nearest(element) for element in value]  # type: ignore[arg-type]

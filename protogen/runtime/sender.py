@@ -22,17 +22,16 @@ class Kin(Generic[MessageT_co]):
     """The messages that a receiver may find behind one identity: one, or more told by size."""
 
     messages: tuple[type[MessageT_co], ...]
+    fixed: int | None = field(init=False)
+    """The payload's size, where no message has another one."""
+    greatest: int = field(init=False)
+    """The greatest payload of these messages."""
 
-    @property
-    def fixed(self) -> int | None:
-        """The payload's size, where no message has another one."""
+    def __post_init__(self) -> None:
         sizes = {message.SIZES.fixed for message in self.messages}
-        return sizes.pop() if len(sizes) == 1 else None
-
-    @property
-    def greatest(self) -> int:
-        """The greatest payload of these messages."""
-        return max(message.SIZES.greatest for message in self.messages)
+        object.__setattr__(self, "fixed", sizes.pop() if len(sizes) == 1 else None)
+        greatest = max(message.SIZES.greatest for message in self.messages)
+        object.__setattr__(self, "greatest", greatest)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""

@@ -1,4 +1,4 @@
-"""Data -> syntax tree; errors of shape, as pydantic finds them, -> problems with places and hints."""
+"""Data -> syntax tree, and errors of shape, as pydantic finds them, -> problems with places."""
 
 from __future__ import annotations
 
@@ -64,9 +64,10 @@ def _without_unknown(data: Any, unknown: Sequence[Loc]) -> Shape | None:
 def _drop(data: Any, loc: Steps) -> None:
     """Drop a key; a step of its location that leads nowhere is the label of a tagged union."""
     for step in loc[:-1]:
-        if isinstance(data, dict | list):
-            inside = step in data if isinstance(data, dict) else step in range(len(data))
-            data = data[step] if inside else data
+        if isinstance(data, dict):
+            data = data.get(step, data)
+        elif isinstance(data, list) and isinstance(step, int):
+            data = data[step]
     if isinstance(data, dict):
         data.pop(loc[-1], None)
 

@@ -154,20 +154,32 @@ def _stretches_of(
 
 @st.composite
 def frames(
-    draw: st.DrawFn, byte_bits: int, order: str | None, identity: Sequence[PartPlan]
+    draw: st.DrawFn,
+    byte_bits: int,
+    order: str | None,
+    identity: Sequence[PartPlan],
+    payload: frozenset[int],
 ) -> FramePlan:
-    """A frame; what its length can say at least and its `unprotected` keys are still missing."""
-    return _Drawing(draw, byte_bits, order, identity).frame()
+    """A frame for such payload bytes.
+
+    What its length can say at least and its `unprotected` keys are still missing.
+    """
+    return _Drawing(draw, byte_bits, order, identity, payload).frame()
 
 
 class _Drawing:
     """Draws one frame."""
 
     def __init__(
-        self, draw: st.DrawFn, byte_bits: int, order: str | None, identity: Sequence[PartPlan]
+        self,
+        draw: st.DrawFn,
+        byte_bits: int,
+        order: str | None,
+        identity: Sequence[PartPlan],
+        payload: frozenset[int],
     ) -> None:
         self._draw = draw
-        self._byte_bits = byte_bits
+        self._payload = payload
         self._maker = Maker(draw, byte_bits, order)
         self._maker.take([part.name for part in identity])
         self._code = draw(codes())
@@ -176,6 +188,7 @@ class _Drawing:
         self._has_length = draw(st.booleans())
         self._anywhere = self._start == self._end == "none"
         self._head, self._tail = self._around_payload(list(identity))
+        self._make_findable()
 
     def frame(self) -> FramePlan:
         opening, closing = self._delimiters()
@@ -192,7 +205,7 @@ class _Drawing:
         opening = [self._literal() for _ in range(_literals(self._start))]
         closing = [self._literal() for _ in range(_literals(self._end))]
         alike = len(opening) == len(closing) == 1 and self._draw(forms.one_in(3))
-        if alike:
+        if alike and self._is_never_empty():
             closing = [self._maker.literal(opening[0].literal)]
         return opening, closing
 
@@ -209,6 +222,25 @@ class _Drawing:
         return self._draw(st.sampled_from([0xFF, 0x80, 0x55, 0x0A]))
 
     # -- what stands around the payload ------------------------------------------------------
+
+    def _make_findable(self) -> None:
+        """Add what a receiver needs: no frame is nothing but its end; a start set tells little."""
+        if self._start == "none" and not self._is_never_empty():
+            self._head.append(self._maker.number("value"))
+        if self._start == "set" and self._end == "none" and not self._is_set_apart():
+            self._tail.append(self._maker.checksum(optional=False))
+
+    def _is_never_empty(self) -> bool:
+        """Whether something stands in every frame beside its delimiters and the payload."""
+        return any(not part.optional for part in (*self._head, *self._tail))
+
+    def _is_set_apart(self) -> bool:
+        """Whether, by its range alone, the first part tells where a frame starts."""
+        others = [values for part in (*self._head[1:], *self._tail) for values in part.bytes]
+        used = frozenset().union(self._payload, *others)
+        marks = self._head[0].bytes[0]
+        told = self._has_length or marks.isdisjoint(used)
+        return self._code is None and told and not used <= marks
 
     def _around_payload(
         self, identity: list[PartPlan]

@@ -41,6 +41,7 @@ class _Drawing:
         self._draw = draw
         self._byte_bits = draw(st.sampled_from([8, 8, 8, 7]))
         self._whole = self._byte_bits == 8 or draw(forms.one_in(3))
+        self._payload = every_payload_byte(self._byte_bits, whole_bytes=self._whole)
         self._endpoints = draw(names.several(names.ENDPOINTS, 1, 3))
         self._senders = self._endpoints[: draw(st.integers(1, len(self._endpoints)))]
         self._order, self._orders = self._byte_orders()
@@ -105,26 +106,26 @@ class _Drawing:
     def _frames(self, identity: Mapping[str, list[PartPlan]]) -> dict[str, FramePlan]:
         if not self._per_sender:
             order = self._common_order(self._senders)
-            return {_SHARED: self._draw(frames(self._byte_bits, order, identity[_SHARED]))}
+            return {_SHARED: self._frame(order, identity[_SHARED])}
         return {
-            sender: self._draw(
-                frames(self._byte_bits, self._orders.get(sender), self._of(identity, sender))
-            )
+            sender: self._frame(self._orders.get(sender), self._of(identity, sender))
             for sender in self._senders
         }
+
+    def _frame(self, order: str | None, identity: list[PartPlan]) -> FramePlan:
+        return self._draw(frames(self._byte_bits, order, identity, self._payload))
 
     def _finished(
         self, drawn: Mapping[str, FramePlan], found: list[MessagePlan]
     ) -> dict[str, FramePlan]:
         """The frames with what depends on the messages."""
-        payload = every_payload_byte(self._byte_bits, whole_bytes=self._whole)
         finished: dict[str, FramePlan] = {}
         for key, frame in drawn.items():
             sent = [message for message in found if key == _SHARED or key in message.senders]
             least = min(message.size.least for message in sent)
             slack = self._draw(st.sampled_from([0, 0, 1, 1000]))
             frame = frame.with_least_payload(least, slack)
-            finished[key] = frame.with_unprotected(payload, DECISION)
+            finished[key] = frame.with_unprotected(self._payload, DECISION)
         return finished
 
     def _overloads(self, plan: Plan, found: list[MessagePlan]) -> dict[str, Any]:

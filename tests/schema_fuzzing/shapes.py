@@ -12,6 +12,44 @@ _FIELD_KEYS = (
     "special", "byte_order", "unknown", "switch",
 )  # fmt: skip
 
+_CODES = (
+    "none", "substitute", "escape-invert", "escape-none", "escape-xor", "base16", "cobs", "slip",
+    "hdlc",
+)  # fmt: skip
+_STARTS = ("protected", "unprotected", "set", "after end", "anywhere")
+
+COMMON = (
+    "7 bits a byte", "8 bits a byte", "one frame for all", "frames of 2 senders", "several senders",
+    "byte order: None", "byte order: big", "byte order: little", "byte order: each sender",
+    "byte order of a message", "byte order of a part", "field with byte_order", "lenient",
+    "size: by the end", "size: by the message", "size: length", "size: length with a range",
+    "counter", "value", "checksum over wire", "checksum when payload", "algorithm: parameters",
+    "overload by size", "overload by undecidable", "unspecified payload", "empty message",
+    "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
+    "type: float64", "type: struct", "type: switch", "declared struct", "declared number",
+    "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
+    "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
+    "bytes: fill", *(f"field with {key}" for key in _FIELD_KEYS),
+    *(f"identity parts: {count}" for count in range(4)),
+    *(f"checksums: {count}" for count in range(3)),
+    *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
+    "end: protected", "end: unprotected", "end: none",
+)  # fmt: skip
+"""What a few hundred schemas hold."""
+
+PAIRS = tuple(
+    (
+        *(f"start and transparency: {start}, {code}" for start in _STARTS for code in _CODES),
+        *(
+            f"end and transparency: {end}, {code}"
+            for end in ("protected", "unprotected", "none")
+            for code in _CODES
+            if (end, code) != ("protected", "escape-none")
+        ),
+    )
+)
+"""What some thousand schemas hold."""
+
 
 def shapes_of(
     data: dict[str, Any], frames: Mapping[str, FramePlan], byte_bits: int

@@ -112,7 +112,7 @@ _MARKS: dict[str, frozenset[str]] = {
     "frame": frozenset({"payload"}),
     "transparency": frozenset(TransparencySyntax.model_fields),
 }
-"""Keys by which a frame or a transparency shows that it is one, also beside misspelled endpoints."""
+"""Keys by which a frame or a transparency shows what it is, also under a misspelled endpoint."""
 
 
 def _by_sender(key: str, value: Any, endpoints: Any) -> Any:
@@ -125,9 +125,7 @@ def _is_by_sender(value: Any, marks: Set[str], endpoints: Set[Any]) -> bool:
     if not keys or keys <= endpoints or keys & marks:
         return bool(keys) and keys <= endpoints
     named = bool(keys & endpoints)
-    return any(
-        _keys(item) & marks or (named and isinstance(item, str)) for item in value.values()
-    )
+    return any(_keys(item) & marks or (named and isinstance(item, str)) for item in value.values())
 
 
 def _keys(value: Any) -> Set[Any]:

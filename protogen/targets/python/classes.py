@@ -29,7 +29,6 @@ from protogen.targets.python.spelling import class_name, member_name, unit_suffi
 from protogen.targets.python.wrapping import docstring, remark, union, wrapped
 
 _INDENT = 4
-_BUILTINS = frozenset({"str", "bytes", "list", "int", "float", "bool"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,8 +163,7 @@ def _rule_line(field: Field) -> str:
 
 
 def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
-    prefix = "_builtins." if taken & _BUILTINS else ""
-    line = union(f"{field.name}: ", annotation(field.type, prefix), _INDENT)
+    line = union(f"{field.name}: ", annotation(field.type, taken), _INDENT)
     default = _default(field)
     if default is not None:
         column = _INDENT + len(line.rpartition("\n")[2]) + 3
@@ -173,36 +171,44 @@ def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
     return Attribute(line, remark(describing.field(field), _INDENT))
 
 
-def annotation(type_: Type, builtin: str = "") -> str:
-    """The type of a field's attribute. Named values may also be given as numbers."""
+def annotation(type_: Type, taken: frozenset[str]) -> str:
+    """The type of a field's attribute. Named values may also be given as numbers.
+
+    A built-in type whose name a field has `taken` is named by its module.
+    """
     match type_:
         case Integer():
-            return _integer_annotation(type_, builtin)
+            return _integer_annotation(type_, taken)
         case Float():
-            return f"{builtin}float"
+            return _builtin("float", taken)
         case Text():
-            return f"{builtin}str"
+            return _builtin("str", taken)
         case Octets():
-            return f"{builtin}bytes"
+            return _builtin("bytes", taken)
         case Struct():
             return "None" if is_empty(type_) else class_name(type_.name)
         case Array():
-            return f"{builtin}list[{annotation(type_.element, builtin)}]"
+            return f"{_builtin('list', taken)}[{annotation(type_.element, taken)}]"
         case Switch():
-            return _switch_annotation(type_, builtin)
+            return _switch_annotation(type_, taken)
 
 
-def _integer_annotation(type_: Integer, builtin: str) -> str:
+def _builtin(name: str, taken: frozenset[str]) -> str:
+    return f"_builtins.{name}" if name in taken else name
+
+
+def _integer_annotation(type_: Integer, taken: frozenset[str]) -> str:
     if type_.role == "bool":
-        return f"{builtin}bool"
+        return _builtin("bool", taken)
     named = type_.enum or type_.flags
-    return f"{class_name(named.name)} | {builtin}int" if named else f"{builtin}int"
+    number = _builtin("int", taken)
+    return f"{class_name(named.name)} | {number}" if named else number
 
 
-def _switch_annotation(type_: Switch, builtin: str) -> str:
-    choices = [annotation(case.type, builtin) for case in type_.cases]
+def _switch_annotation(type_: Switch, taken: frozenset[str]) -> str:
+    choices = [annotation(case.type, taken) for case in type_.cases]
     if type_.rest is not None:
-        choices.append(f"{builtin}bytes")
+        choices.append(_builtin("bytes", taken))
     distinct = dict.fromkeys(choices)
     ordered = [choice for choice in distinct if choice != "None"]
     return " | ".join([*ordered, *(["None"] if "None" in distinct else [])])

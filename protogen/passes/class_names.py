@@ -1,0 +1,39 @@
+"""Do two things come to the same name in generated code?
+
+Targets write `m_1` and `m1` as `M1`. Messages, named types and what a module needs itself share one
+set of such names.
+"""
+
+from __future__ import annotations
+
+from protogen.passes.context import Context, Loc
+from protogen.passes.draft import Draft
+
+ROOT_NAMES = frozenset(
+    {"protocol", "encode", "decode", "decoder", "encoder", "messages", "message"}
+)
+"""Names that generated modules use themselves, which a type or message would hide."""
+
+
+def check_class_names(context: Context, draft: Draft) -> None:
+    """Every message and named type has a class of its own."""
+    messages: dict[str, Loc] = {name: ("messages", name) for name in context.syntax.messages}
+    types = draft.named.places | {name: ("types", name) for name in context.syntax.types}
+    for name, loc in messages.items():
+        if name in types:
+            context.error_at_key("PG107", loc, f"a type is called `{name}` too")
+    own = ROOT_NAMES | {f"{sender}_parts" for sender in draft.senders}
+    generated = {_pascal(name) for name in own}
+    classes: dict[str, str] = {}
+    for name, loc in (types | messages).items():
+        other = classes.setdefault(_pascal(name), name)
+        if _pascal(name) in generated:
+            text = f"`{name}` is a name that generated code uses itself"
+            context.error_at_key("PG106", loc, text)
+        elif other != name:
+            text = f"`{name}` and `{other}` are both `{_pascal(name)}` in generated code"
+            context.error_at_key("PG107", loc, text, "rename one of them")
+
+
+def _pascal(name: str) -> str:
+    return "".join(word.capitalize() for word in name.split("_"))

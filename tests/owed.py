@@ -1,0 +1,93 @@
+"""What a decoder owes to the undamaged frames of a stream, and what became of each of them.
+
+The design promises that every frame that was not itself damaged is found. Exactly:
+
+* Where the start of a frame is protected (it occurs nowhere else in a valid frame), every one.
+* Where the same protected literal starts and ends frames, every one but those whose start was taken
+  for the end of valid bytes in front: then a frame that lost its end was found instead.
+* Where frames have no start and a protected end, every one at the start of the stream or behind an
+  end. In front of any other, damage reaches up to it: nothing tells where it begins.
+* Where nothing protects the delimiters, or there are none, every one (behind an end, if that is
+  where frames begin) that no accepted frame reaches into: one that began in front of it, and whose
+  length, checksum and end are right by chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Sequence
+from enum import StrEnum
+from typing import Any
+
+from corpus import Stream
+
+from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+
+
+class Fate(StrEnum):
+    """What became of an undamaged frame."""
+
+    FOUND = "found"
+    NOT_DUE = "not due"
+    """It was not found, and it does not stand behind an end, where alone such frames begin."""
+    COVERED = "covered"
+    """It was not found, and an accepted frame that began in front of it reaches into it."""
+    LOST = "lost"
+    """It was not found, without any excuse."""
+
+
+def fates(spec: FrameSpec, stream: Stream, events: Sequence[Any]) -> list[Fate]:
+    """What became of each undamaged frame of a stream."""
+    accepted = [event for event in events if event.kind != "invalid"]
+    found = {(event.offset, event.raw) for event in accepted}
+    return [
+        Fate.FOUND if frame in found else _missing(spec, stream, accepted, *frame)
+        for frame in stream.frames
+    ]
+
+
+def _missing(
+    spec: FrameSpec, stream: Stream, accepted: Iterable[Any], offset: int, raw: bytes
+) -> Fate:
+    if not is_due(spec, stream.data[:offset]):
+        return Fate.NOT_DUE
+    spans = ((event.offset, event.offset + event.size) for event in accepted)
+    if any(start < offset < end <= offset + reach(spec, raw) for start, end in spans):
+        return Fate.COVERED
+    return Fate.LOST
+
+
+def is_due(spec: FrameSpec, before: bytes) -> bool:
+    """Whether a frame can begin behind these bytes, which begin with the stream."""
+    if not isinstance(spec.start, AfterEnd):
+        return True
+    assert spec.end is not None
+    return not before or before.endswith(spec.end.value)
+
+
+def reach(spec: FrameSpec, raw: bytes) -> int:
+    """How far an accepted frame that begins in front of this one may reach into it, in bytes."""
+    if has_one_delimiter(spec):
+        return len(spec.start.value)
+    return 0 if is_protected(spec) else len(raw) + spec.greatest
+
+
+def is_protected(spec: FrameSpec) -> bool:
+    """Whether what a frame begins behind or with occurs nowhere inside of a valid frame."""
+    if isinstance(spec.start, StartLiteral | StartSet):
+        return spec.start.protected
+    return isinstance(spec.start, AfterEnd) and spec.end is not None and spec.end.protected
+
+
+def has_one_delimiter(spec: FrameSpec) -> bool:
+    """Whether one protected literal both starts and ends frames."""
+    return (
+        isinstance(spec.start, StartLiteral)
+        and spec.start.protected
+        and spec.end is not None
+        and spec.start.value == spec.end.value
+    )
+
+
+def false_frames(sent: Container[bytes], events: Iterable[Any]) -> list[Any]:
+    """Accepted frames that nobody sent. Damage and noise may make up one of those that were."""
+    return [event for event in events if event.kind != "invalid" and event.raw not in sent]

@@ -1,0 +1,234 @@
+"""`protogen decode` and back: events as text and as JSON lines, from every kind of input."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from cli_support import ROOT, run, start
+from hypothesis import given
+from hypothesis import strategies as st
+
+MATTY = str(ROOT / "schemas" / "matty.yaml")
+RFLEX = str(ROOT / "schemas" / "rflex.yaml")
+RN1 = str(ROOT / "schemas" / "rn1.yaml")
+
+# go: counter 1, speed 500 = 01F4, steer -250 = FF06; 06 01 47 F4 01 06 FF add up to 48 modulo 256.
+GO = "55 06 01 47 F4 01 06 FF B8"
+# stop with a checksum of 00 instead of AA, and an unknown command Z: 02 05 5A add up to 61.
+BAD = "55 02 01 53 00"
+STRANGE = "55 02 05 5A 9F"
+CAPTURE = bytes.fromhex(f"0011 {GO} {BAD} {STRANGE}")
+
+
+def test_text_has_offset_name_and_values() -> None:
+    result = run("decode", MATTY, "--sender", "pc", "--hex", CAPTURE.hex())
+    assert result.exit_code == 0
+    assert result.output.splitlines() == [
+        "       0  invalid   noise  00 11",
+        "       2  go        @counter=1 speed=500mm/s steer=-2.5deg",
+        "      11  invalid   checksum: crc is 00, not aa  55 02 01 53 00",
+        "      16  unknown   @counter=5 @command=90 payload=hex:",
+    ]
+
+
+def test_text_names_values() -> None:
+    # rn1 lidar: status 3, a distance of none, one of 5008, then 358 of none.
+    frame = "84 03 0000 1027" + "0000" * 358
+    result = run("decode", RN1, "--sender", "brain", "--hex", frame)
+    assert "lidar" in result.output
+    assert "status=initialized|speed_in_spec distances=[no_datapoint, 5008mm," in result.output
+    assert result.output.rstrip().endswith("... 360 in all]")
+
+
+def test_long_noise_is_shortened() -> None:
+    result = run("decode", MATTY, "--sender", "pc", "--hex", "00" * 40)
+    assert result.output.endswith("00 ... 40 bytes\n")
+
+
+def test_lines_of_json() -> None:
+    result = run("decode", MATTY, "--sender", "pc", "--format", "jsonl", input=CAPTURE)
+    lines = result.stdout.splitlines()
+    assert lines[1] == (
+        '{"offset": 2, "size": 9, "event": "message", "message": "go", "sender": "pc", '
+        '"parts": {"counter": 1, "command": 71}, "fields": {"speed": 500, "steer": -250}}'
+    )
+    assert [json.loads(line) for line in lines][::2] == [
+        {
+            "offset": 0,
+            "size": 2,
+            "event": "invalid",
+            "sender": "pc",
+            "reason": "noise",
+            "raw": "0011",
+        },
+        {
+            "offset": 11,
+            "size": 5,
+            "event": "invalid",
+            "sender": "pc",
+            "reason": "checksum",
+            "raw": "5502015300",
+        },
+    ]
+    assert json.loads(lines[3])["event"] == "unknown"
+    assert json.loads(lines[3])["parts"] == {"counter": 5, "command": 90}
+
+
+def test_file_and_standard_input_are_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "capture.bin"
+    file.write_bytes(CAPTURE)
+    from_file = start("decode", MATTY, str(file), "--sender", "pc").stdout
+    assert from_file == start("decode", MATTY, "-", "--sender", "pc", input=CAPTURE).stdout
+    assert from_file == start("decode", MATTY, "--sender", "pc", input=CAPTURE).stdout
+    assert from_file.count(b"\n") == 4
+
+
+def test_hex_file() -> None:
+    text = f"# a capture\n0x00, 0x11\n{GO}\n".encode()
+    result = run("decode", MATTY, "--sender", "pc", "--input", "hex", input=text)
+    assert [line.split()[1] for line in result.output.splitlines()] == ["invalid", "go"]
+
+
+def test_strict_fails_if_any_byte_is_in_no_frame() -> None:
+    arguments = ("decode", MATTY, "--sender", "pc", "--strict", "--hex")
+    assert run(*arguments, GO).exit_code == 0
+    assert run(*arguments, STRANGE).exit_code == 0
+    assert run(*arguments, f"00 {GO}").exit_code == 1
+    assert run(*arguments[:-2], "--hex", f"00 {GO}").exit_code == 0
+
+
+# --- logs of both directions ----------------------------------------------------------------------
+
+LOG = """\
+# startup, from the document
+Linux: 1B 02 05 05 00 04 00 00 27 10 37 1B 03
+
+Flex : 1B 02 05 05 00 08 00 00 00
+flex: 00 03 63 87 27 C0 1B 03
+"""
+
+
+def test_tagged_log() -> None:
+    result = run("decode", RFLEX, "--tagged", input=LOG)
+    assert result.exit_code == 0
+    assert result.output.splitlines() == [
+        "       0  linux  initialize_digital_io             @number=5 unknown=10000",
+        "       0  flex   confirm_initialize_digital_io     @number=5 unknown=0 timestamp=56854311",
+    ]
+
+
+def test_tagged_log_of_one_sender() -> None:
+    result = run("decode", RFLEX, "--input", "tagged", "--sender", "flex", input=LOG)
+    assert [line.split()[1] for line in result.output.splitlines()] == ["flex"]
+
+
+def test_lines_that_can_not_be_used_are_reported() -> None:
+    log = LOG + "robot: 00\n1B 02\nflex: 1B 0G\n"
+    result = run("decode", RFLEX, "--tagged", input=log)
+    assert result.exit_code == 0
+    assert result.stderr.splitlines() == [
+        "warning: line 6: does not begin with a sender: linux, flex",
+        "warning: line 7: does not begin with a sender: linux, flex",
+        "warning: line 8, column 11: `G` is no hex digit and no separator",
+    ]
+    assert run("decode", RFLEX, "--tagged", "--strict", input=log).exit_code == 1
+
+
+def test_many_bad_lines_are_counted() -> None:
+    result = run("decode", RFLEX, "--tagged", input="x\n" * 50)
+    lines = result.stderr.splitlines()
+    assert len(lines) == 21
+    assert lines[-1] == "warning: 30 more lines can't be used"
+
+
+def test_a_line_without_end_is_no_log() -> None:
+    result = run("decode", RFLEX, "--tagged", input=b"0" * ((1 << 24) + 70_000))
+    assert result.exit_code == 2
+    assert "this is no text" in result.stderr
+
+
+# --- there and back -------------------------------------------------------------------------------
+
+
+def back(schema: str, sender: str, capture: bytes) -> bytes:
+    lines = run("decode", schema, "--sender", sender, "--format", "jsonl", input=capture).stdout
+    result = run("encode", schema, "--format", "raw", input=lines)
+    assert result.exit_code == 0, result.output
+    return result.stdout_bytes
+
+
+SENDERS = [
+    ("rn1", "host"),
+    ("rn1", "brain"),
+    ("uherobot", "board"),
+    ("dagny", "robot"),
+    ("rflex", "flex"),
+    ("matty", "pc"),
+]
+
+
+@pytest.mark.parametrize(("name", "sender"), SENDERS)
+@given(data=st.binary(max_size=120))
+def test_any_bytes_come_back(name: str, sender: str, data: bytes) -> None:
+    assert back(str(ROOT / "schemas" / f"{name}.yaml"), sender, data) == data
+
+
+def test_a_capture_comes_back_through_a_pipe(tmp_path: Path) -> None:
+    capture = CAPTURE * 200 + b"\x55\x06"
+    lines = start("decode", MATTY, "--sender", "pc", "--format", "jsonl", input=capture).stdout
+    result = start("encode", MATTY, "--format", "raw", input=lines)
+    assert (result.returncode, result.stdout) == (0, capture)
+
+
+def test_each_direction_of_a_log_comes_back() -> None:
+    lines = run("decode", RFLEX, "--tagged", "--format", "jsonl", input=LOG).stdout
+    linux = run("encode", RFLEX, "--sender", "linux", input=lines).stdout
+    flex = run("encode", RFLEX, "--sender", "flex", input=lines).stdout
+    assert linux == "1B 02 05 05 00 04 00 00 27 10 37 1B 03\n"
+    assert flex == "1B 02 05 05 00 08 00 00 00 00 03 63 87 27 C0 1B 03\n"
+
+
+# --- mistakes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "messages"),
+    [
+        (["--hex", "00"], ["nothing says who sent the bytes", "give --sender pc or esp"]),
+        (
+            ["--sender", "esq", "--hex", "00"],
+            ["`matty` has no sender `esq`; it has pc, esp", "did you mean `esp`?"],
+        ),
+        (["--sender", "pc", "--hex", "0x"], ["line 1, column 2: `x` is"]),
+        (["--sender", "pc", "missing.bin"], ["missing.bin: No such file or directory"]),
+        (["--sender", "pc", "."], ["Is a directory"]),
+        (["--sender", "pc", "--input", "wav"], ["wav"]),
+    ],
+)
+def test_mistakes_in_the_call(arguments: list[str], messages: list[str]) -> None:
+    result = run("decode", MATTY, *arguments)
+    assert result.exit_code == 2
+    for message in messages:
+        assert message in result.stderr
+
+
+def test_bad_hex_in_a_file_comes_behind_the_events_before_it() -> None:
+    text = f"{GO}\n{GO} 5X".encode()
+    result = run("decode", MATTY, "--sender", "pc", "--input", "hex", input=text)
+    assert result.exit_code == 2
+    assert "line 2, column 29: `X` is no hex digit and no separator" in result.stderr
+
+
+def test_schema_that_is_not_there() -> None:
+    result = run("decode", "nowhere.yaml", "--sender", "pc", "--hex", "00")
+    assert (result.exit_code, result.stderr) == (2, "error: there is no schema `nowhere.yaml`\n")
+
+
+def test_schema_with_an_error(tmp_path: Path) -> None:
+    schema = tmp_path / "bad.yaml"
+    schema.write_text("protocol: bad\ncolour: red\n")
+    result = run("decode", str(schema), "--sender", "pc", "--hex", "00")
+    assert result.exit_code == 1
+    assert "bad.yaml:2:1: error[" in result.stderr

@@ -1,0 +1,154 @@
+"""`protogen encode`: frames from values and from lines of JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from cli_support import ROOT, SINK, run, start
+
+MATTY = str(ROOT / "schemas" / "matty.yaml")
+
+
+@pytest.fixture
+def sink(tmp_path: Path) -> str:
+    schema = tmp_path / "sink.yaml"
+    schema.write_text(SINK)
+    return str(schema)
+
+
+def test_frame_in_hex() -> None:
+    result = run("encode", MATTY, "go", "speed=500", "steer=-2.5deg", "@counter=1")
+    assert (result.exit_code, result.stdout) == (0, "55 06 01 47 F4 01 06 FF B8\n")
+
+
+def test_raw_frame() -> None:
+    result = start("encode", MATTY, "stop", "@counter=1", "--format", "raw")
+    assert result.stdout == bytes.fromhex("55 02 01 53 AA")
+
+
+def test_counter_that_is_not_given_starts_at_its_least() -> None:
+    assert run("encode", MATTY, "stop").stdout == "55 02 00 53 AB\n"
+
+
+def test_value_part_has_its_default(sink: str) -> None:
+    # E, number FF, length 0: 45 ^ FF ^ 00 = BA.
+    assert run("encode", sink, "empty").stdout == "1B 02 45 FF 00 BA 1B 03\n"
+    assert run("encode", sink, "empty", "@number=0x10").stdout == "1B 02 45 10 00 55 1B 03\n"
+
+
+def test_message_of_two_senders_with_one_frame(sink: str) -> None:
+    frame = run("encode", sink, "numbers", "angle=0", "control=0").stdout
+    assert frame == run("encode", sink, "numbers", "angle=0", "control=0", "--sender", "pc").stdout
+
+
+def test_message_of_two_senders_with_two_frames(tmp_path: Path) -> None:
+    schema = tmp_path / "two.yaml"
+    schema.write_text("""\
+protocol: two
+endpoints: {pc: Computer, board: Board}
+frame:
+  pc:
+    start: {literal: 0xC0}
+    id: {type: uint8, id: true}
+    payload: {}
+    end: {literal: 0xC0}
+  board:
+    start: {literal: 0xC0}
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: id}
+    end: {literal: 0xC0}
+transparency: slip
+messages:
+  ping: {id: 16, from: [pc, board]}
+""")
+    result = run("encode", str(schema), "ping")
+    assert result.exit_code == 2
+    assert "give --sender pc or board" in result.stderr
+    assert run("encode", str(schema), "ping", "--sender", "board").stdout == "C0 10 10 C0\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "messages"),
+    [
+        (["goo"], ["`matty` has no message `goo`", "did you mean `go`?"]),
+        (["xyzzy"], ["it has stop, reset"]),
+        (["go", "spead=1"], ["there is no field `spead`", "did you mean `speed`?"]),
+        (["go", "speed=1"], ["steer: the value is missing", "`steer` is sint16 little: a number"]),
+        (["go", "speed=99999", "steer=0"], ["speed: 99999 is not in -32768..32767"]),
+        (["go", "speed=fast", "steer=0"], ["speed: `fast` is none of: a number from -32768"]),
+        (["go", "speed"], ["`speed` is no assignment"]),
+        (["go", "@count=1"], ["there is no part `count` to give", "there are counter"]),
+        (["go", "@countr=1"], ["did you mean `counter`?"]),
+        (["stop", "@counter=x"], ["@counter: `x` is no number"]),
+        (["stop", "@counter=256"], ["counter: 256 is not in 0..255"]),
+        (["stop", "--sender", "esp"], ["esp does not send `stop`; pc does"]),
+        (["stop", "--sender", "pcc"], ["`matty` has no sender `pcc`"]),
+        (["gps", "nmea=" + "x" * 130], ["nmea: has 130 characters"]),
+    ],
+)
+def test_mistakes(arguments: list[str], messages: list[str]) -> None:
+    result = run("encode", MATTY, *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    for message in messages:
+        assert message in result.stderr
+
+
+# --- lines of JSON --------------------------------------------------------------------------------
+
+
+def line(**others: object) -> str:
+    known = {"event": "message", "message": "stop", "sender": "pc", "parts": {"counter": 1}}
+    return json.dumps({**known, "fields": {}, **others})
+
+
+def test_lines() -> None:
+    lines = [
+        line(),
+        "",
+        line(raw="0011"),
+        line(event="invalid", reason="noise", raw="00"),
+        line(event="unknown", parts={"counter": 5, "command": 90}, payload=""),
+    ]
+    result = run("encode", MATTY, input="\n".join(lines))
+    assert result.stdout.splitlines() == [
+        "55 02 01 53 AA",
+        "00 11",
+        "00",
+        "55 02 05 5A 9F",
+    ]
+
+
+def test_names_may_stand_for_numbers() -> None:
+    written = line(message="mode", fields={"mode": "autonomous"})
+    numbers = line(message="mode", fields={"mode": 2})
+    assert run("encode", MATTY, input=written).stdout == run("encode", MATTY, input=numbers).stdout
+
+
+def test_sender_may_be_given_for_all_lines() -> None:
+    text = json.dumps({"message": "stop", "parts": {"counter": 1}, "fields": {}})
+    assert run("encode", MATTY, "--sender", "pc", input=text).stdout == "55 02 01 53 AA\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "line 1: not JSON: "),
+        ("\n[1]", "line 2: must be a JSON object"),
+        (line(sender="nobody"), "line 1: sender: 'nobody' sends nothing; pc, esp do"),
+        (line(message="nothing"), "line 1: message: pc sends no message called 'nothing'"),
+        (line(event="invalid"), "line 1: event: 'invalid' without raw bytes can't be sent"),
+        (line(raw="0"), "line 1: raw: must be hexadecimal digits"),
+        (line(message="go", fields={"speed": 1}), "line 1: fields.steer: the value is missing"),
+    ],
+)
+def test_bad_lines(text: str, message: str) -> None:
+    result = run("encode", MATTY, input=text)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_unknown_sender_with_lines() -> None:
+    assert run("encode", MATTY, "--sender", "nobody", input="").exit_code == 2

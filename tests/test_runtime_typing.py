@@ -1,0 +1,71 @@
+"""What a type checker says about code that uses a generated module."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+USE = """
+from typing import assert_type
+
+import handwritten_matty as matty
+import handwritten_rn1 as rn1
+
+assert_type(rn1.decode(b"", sender="brain"), rn1.Gyro | rn1.Lidar)
+assert_type(matty.encode(matty.Ack(), counter=5), bytes)
+
+for event in matty.Decoder(sender="pc").feed(b""):
+    if event.kind == "message":
+        assert_type(event.message, matty.Stop | matty.Mode | matty.Go)
+        matty.encode(matty.Ack(), counter=event.parts.counter)
+    elif event.kind == "unknown":
+        assert_type(event.parts.command, int)
+    else:
+        print(event.reason, event.raw)
+
+
+def any_sender(name: matty.Sender) -> None:
+    for event in matty.Decoder(name).flush():
+        match event:
+            case matty.MessageEvent(message=matty.Status(status=status)):
+                print(status)
+
+
+go = matty.Go(speed=1, steer=2)
+go.steer_deg = 12.5
+assert_type(go.steer_deg, float)
+matty.Encoder("esp").encode(matty.Ack(), counter=3)
+matty.Go.FORMAT.parse(b"")
+"""
+
+MISUSE = """
+import handwritten_matty as matty
+
+matty.Go(speed="fast", steer=0)
+matty.Go(speed=1)
+matty.encode(matty.Ack(), number=5)
+matty.decode(b"", sender="robot")
+matty.Decoder(sender="robot")
+"""
+
+
+def errors(code: str, folder: Path, root: Path) -> list[str]:
+    """The lines of `code` that mypy complains about in its strict mode."""
+    (folder / "use.py").write_text(code)
+    run = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context",
+         "--cache-dir", str(root / ".mypy_cache" / "use"), str(folder / "use.py")],
+        env={**os.environ, "MYPYPATH": f"{root}{os.pathsep}{root / 'tests'}"},
+        cwd=root, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert not run.stderr
+    return [line for line in run.stdout.splitlines() if "error:" in line]
+
+
+def test_right_use_is_accepted(tmp_path: Path, project_root: Path) -> None:
+    assert errors(USE, tmp_path, project_root) == []
+
+
+def test_wrong_use_is_reported(tmp_path: Path, project_root: Path) -> None:
+    found = errors(MISUSE, tmp_path, project_root)
+    assert len({line.split(":")[1] for line in found}) == 5
