@@ -80,21 +80,27 @@ class _Input:
 
     def events(self) -> Iterator[tuple[Any, ...]]:
         done = place = 0
+        shared = b""  # The end of the frame before, where it may be a start as well.
         while place < len(self.data):
-            start = self.next_start(place, len(self.data))
+            start = place if shared else self.next_start(place, len(self.data))
             if start is None:
                 break
             anywhere = isinstance(self.spec.start, rt.Anywhere)
             if not anywhere:
                 yield from self.noise(done, start)
                 done = start
-            outcome = self.judge(start)
-            end = start + outcome.size
+            outcome = self.judge(start, shared)
+            end = start + outcome.size - len(shared)
             if isinstance(outcome, Frames):
                 yield from self.noise(done, start)
-                yield self.frame(start, outcome)
+                yield self.frame(start, end, outcome)
                 done = place = end
-            elif anywhere:
+                shared = self.shared_delimiter()
+                continue
+            shared = b""
+            if end == start:
+                continue
+            if anywhere:
                 place = start + 1
             else:
                 after = self.next_start(start + 1, end) or end
@@ -107,8 +113,15 @@ class _Input:
             raw = self.data[place : min(place + self.spec.greatest, end)]
             yield (place, raw, "invalid", "noise", None, None)
 
-    def frame(self, start: int, outcome: Frames) -> tuple[Any, ...]:
-        raw = self.data[start : start + outcome.size]
+    def shared_delimiter(self) -> bytes:
+        """The literal that ends a frame and may start the next, if it is one and the same."""
+        start, end = self.spec.start, self.spec.end
+        if isinstance(start, rt.StartLiteral) and end is not None and start.value == end.value:
+            return start.value
+        return b""
+
+    def frame(self, start: int, end: int, outcome: Frames) -> tuple[Any, ...]:
+        raw = self.data[start:end]
         messages = candidates(self.sender, outcome.parts)
         shown = {
             part.name: outcome.parts[part.name]
@@ -120,8 +133,8 @@ class _Input:
         message = read_payload(messages, outcome.payload)
         return (start, raw, "message", None, shown, message)
 
-    def judge(self, start: int) -> Outcome:
-        outcome = _Candidate(self.sender, self.data[start:]).outcome()
+    def judge(self, start: int, shared: bytes) -> Outcome:
+        outcome = _Candidate(self.sender, shared + self.data[start:]).outcome()
         if isinstance(outcome, Frames):
             messages = candidates(self.sender, outcome.parts)
             try:

@@ -45,7 +45,7 @@ def test_help_has_an_example(command: str) -> None:
 @pytest.mark.parametrize("command", [command for command in COMMANDS if command != "generate"])
 def test_examples_of_help_work(command: str) -> None:
     text = run(command, "--help").output.split("Example: protogen ")[1]
-    arguments = [word.strip('"') for word in text.split()]
+    arguments = text.replace("1000", "10").split()
     if command == "schema-json":
         arguments = [*arguments, "--check"]
     assert run(*arguments).exit_code == 0
@@ -191,16 +191,17 @@ def test_reader_that_goes_away() -> None:
     process.stderr.close()
 
 
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="Linux says how much was used")
 def test_memory_does_not_grow_with_the_capture(tmp_path: Path) -> None:
-    """The peak of a capture of 8 MB is that of 1 MB, but for a little."""
+    """The peak of a capture of 4 MB is that of half a MB, but for a little."""
     peaks = []
-    for count in (4_000, 32_000):
+    for count in (2_000, 16_000):
         file = tmp_path / f"{count}.bin"
         file.write_bytes((bytes.fromhex("55020153AA") + b"\0" * 251) * count)
         code = (
-            "import resource, sys; from protogen.cli import app;"
+            "import sys; from protogen.cli import app;"
             "app(sys.argv[1:], standalone_mode=False);"
-            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)"
+            "[sys.stderr.write(line) for line in open('/proc/self/status') if 'VmHWM' in line]"
         )
         result = subprocess.run(
             [sys.executable, "-c", code, "decode", MATTY, str(file), "--sender", "pc"],
@@ -208,8 +209,8 @@ def test_memory_does_not_grow_with_the_capture(tmp_path: Path) -> None:
             cwd=ROOT,
             check=True,
         )
-        peaks.append(int(result.stderr.split()[-1]))
-    assert peaks[1] - peaks[0] < 4_000
+        peaks.append(int(result.stderr.split()[1]))
+    assert peaks[1] - peaks[0] < 2_000
 
 
 # --- terminals ------------------------------------------------------------------------------------
@@ -253,8 +254,7 @@ def test_no_colour_if_asked() -> None:
         "decode", MATTY, "--sender", "pc", "--hex", "00 55 02 01 53 AA", NO_COLOR="1"
     )
     assert "invalid" in shown
-    assert "\x1b[1;31m" not in shown
-    assert "\x1b[1;36m" not in shown
+    assert "\x1b" not in shown
 
 
 def test_progress_on_a_terminal() -> None:

@@ -141,8 +141,7 @@ LIKELY = ["ubx", "repeated sync", "cobs of the payload only"]
 def corpus(sender: Any, source: random.Random) -> tuple[bytes, dict[int, bytes]]:
     """A stream of noise, damaged and whole frames; offset and bytes of the whole ones.
 
-    Where only an end marks a start, a frame counts only if it follows a whole end; where start and
-    end are the same, too, because a frame that lost its end takes the next one's start for it.
+    Where only an end marks a start, a frame counts only if it follows a whole end.
     """
     telling = streams.telling_bytes(sender)
     end = sender.frame.end
@@ -155,7 +154,7 @@ def corpus(sender: Any, source: random.Random) -> tuple[bytes, dict[int, bytes]]
         elif kind < 3:
             stream += streams.damaged(frame, source, telling)
         else:
-            needs_end = isinstance(sender.frame.start, rt.AfterEnd) or has_same_ends(sender)
+            needs_end = isinstance(sender.frame.start, rt.AfterEnd)
             if not stream or not needs_end or stream.endswith(end.value):
                 whole[len(stream)] = frame
             stream += frame
@@ -186,4 +185,15 @@ def test_every_frame_that_was_not_damaged_is_recovered(name: str, seed: int) -> 
     events = decode(sender, streams.in_portions(stream, source))
     recovered = {event.offset: event.raw for event in events if event.kind == "message"}
     assert len(whole) > 50
-    assert {offset: recovered.get(offset) for offset in whole} == whole
+    for offset, frame in whole.items():
+        assert is_recovered(sender, offset, frame, recovered)
+
+
+def is_recovered(sender: Any, offset: int, frame: bytes, recovered: dict[int, bytes]) -> bool:
+    """Where start and end are the same, a frame that lost its end ends with the next one's start;
+    that one then lacks it, but nothing else.
+    """
+    if recovered.get(offset) == frame:
+        return True
+    start = len(sender.frame.start.value) if has_same_ends(sender) else 0
+    return start > 0 and recovered.get(offset + start) == frame[start:]

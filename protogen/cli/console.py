@@ -1,11 +1,11 @@
 """Where a command prints: colour where a terminal takes it, plain text everywhere else.
 
-rich follows `NO_COLOR` and knows terminals; lines are never wrapped, so that a line of output is
-one line in a pipe as well.
+Lines are never wrapped, so that a line of output is one line in a pipe as well.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
@@ -30,8 +30,15 @@ def error_console() -> Console:
 def _console(*, stderr: bool) -> Console:
     from rich.console import Console
 
-    stream = sys.stderr if stderr else sys.stdout
-    return Console(file=stream, highlight=False, soft_wrap=True, emoji=False, markup=False)
+    return Console(
+        file=sys.stderr if stderr else sys.stdout,
+        # rich itself leaves bold and dim letters with NO_COLOR.
+        color_system=None if os.environ.get("NO_COLOR") else "auto",
+        highlight=False,
+        soft_wrap=True,
+        emoji=False,
+        markup=False,
+    )
 
 
 def print_table(console: Console, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -27,6 +27,8 @@ _LEFT_OUT = frozenset(
 _IN_OTHER_PLACES = frozenset({"enums", "flags", "structs", "messages"})
 """What a protocol lists once more: it is found where it is used."""
 
+_LEAVES = frozenset({int, str, bool, float, type(None)})
+
 
 def spec_hash(protocol: Protocol) -> str:
     """SHA-256 in hex of everything that changes bytes or what they mean."""
@@ -36,17 +38,15 @@ def spec_hash(protocol: Protocol) -> str:
 
 def _plain(value: Any) -> Any:
     """Data classes as mappings tagged with their kind, without what is left out."""
-    match value:
-        case None | int() | str() | float():
-            return value
-        case tuple():
-            return [_plain(item) for item in value]
-        case Fraction():
-            return str(value)
-        case bytes():
-            return value.hex()
     kind = type(value)
-    assert is_dataclass(kind), kind
+    if kind in _LEAVES:
+        return value
+    if kind is tuple:
+        return [_plain(item) for item in value]
+    if kind is Fraction:
+        return str(value)
+    if kind is bytes:
+        return value.hex()
     return {"kind": kind.__name__} | {name: _plain(getattr(value, name)) for name in _kept(kind)}
 
 

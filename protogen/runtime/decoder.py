@@ -124,7 +124,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
         if self._failure is None:
             self._give_up(self._done)
+            self._share_end()
         return True
+
+    def _share_end(self) -> None:
+        """Where one literal starts and ends frames, that of a valid frame may do both."""
+        if self._sender.layout.shares_delimiter:
+            self._pushed = self._scan
+            self._candidate = Candidate(self._sender, shares_start=True)
 
     def _read(self, cut: Cut) -> Failure | None:
         """Deliver the frame, unless its payload is not that of its message."""
@@ -140,6 +147,10 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if self._is_anywhere:
             self._give_up(self._scan + 1)
             self._noise(self._scan, complete=False)
+            return True
+        if not failure.size:
+            # An end followed an end: the second one is a start of its own.
+            self._give_up(self._scan)
             return True
         low, high = self._scan + 1, self._scan + failure.size
         start = self._starts.find(self._data, low, high)

@@ -60,6 +60,8 @@ class Layout:
         self.has_wire_checksum = any(part.over_wire for part in self.checksums)
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
         self.end = b"" if spec.end is None else spec.end.value
+        self.shares_delimiter = bool(self.start) and self.start == self.end
+        """Whether the end of a frame may be the start of the next as well, as with SLIP's flag."""
         self.start_bytes = self._start_bytes()
         """Bytes that complete a start. None where start and end are the same literal."""
         self.empty_frame = self._empty_frame()

@@ -38,10 +38,12 @@ class Failure:
 class Candidate:
     """A possible frame of one sender. Of no use after its verdict."""
 
-    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+    def __init__(self, sender: SenderSpec[Any, Any], *, shares_start: bool = False) -> None:
+        """With `shares_start`, the end of the frame before is also this one's start."""
         self._spec = sender.frame
         self._layout = sender.layout
         self._wire = bytearray()
+        self._shared = 0  # How many of these bytes, in front, are those of the frame before.
         self._behind = 0  # How many of these bytes, at the end, are not the candidate's own.
         self._content = Content(sender)
         self._cut: Cut | None = None
@@ -58,6 +60,13 @@ class Candidate:
         self._passed = 0  # Wire bytes that were taken as content or stuffing.
         self._wire_ends: list[int] = []  # As many as were passed, for each byte of content.
         self._cross()
+        if shares_start:
+            self._take_over(self._layout.start)
+
+    def _take_over(self, start: bytes) -> None:
+        for byte in start:
+            self.push(byte)
+        self._shared = len(start)
 
     @property
     def content_size(self) -> int:
@@ -85,7 +94,10 @@ class Candidate:
         return self._cut
 
     def _failure(self, why: Rejected) -> Failure:
-        return Failure(len(self._wire) - self._behind, why.reason, why.problem)
+        return Failure(self._own_size(), why.reason, why.problem)
+
+    def _own_size(self) -> int:
+        return len(self._wire) - self._shared - self._behind
 
     # --- where the frame ends -------------------------------------------------------------------
 
@@ -270,7 +282,7 @@ class Candidate:
                 self._check(part, slices)
         start = self._layout.head_size
         payload = bytes(content.bytes[start : start + content.payload_size])
-        self._cut = Cut(len(self._wire) - self._behind, content.numbers, payload)
+        self._cut = Cut(self._own_size(), content.numbers, payload)
 
     def _check(self, part: ChecksumPart, slices: dict[str, Slice]) -> None:
         data = self._wire if part.over_wire else self._content.bytes
