@@ -321,9 +321,12 @@ _PAGE = """\
 <!-- Written by benchmarks/bench_generate.py, do not edit. -->
 
 Made by `python benchmarks/bench_generate.py --runs {runs}`: medians of {runs} runs. Each run is a
-process of its own, so start-up is included. CPU is the process's user and system time; wall time
-also holds what other processes on the machine took. A first run, which fills caches of bytecode,
-does not count.
+process of its own, so start-up is included. One more run, which fills caches of bytecode, does
+not count. CPU is the process's user and system time. Wall time also holds what other processes on
+the machine took.
+
+The aims: `--help` in under 0.2 s, all schemas of the project in under 1 s, 1,000 messages in under
+2 s, and each further message at the same cost.
 
 {versions}
 
@@ -339,7 +342,7 @@ does not count.
 
 The script makes the same messages for each tool: five numbers with unit and text, an enum of four
 names, and an array of four bytes. Mind what each of them makes: mavgen and Kaitai Struct print
-Python only, and Kaitai Struct's Python reads but does not write.
+Python only, and Kaitai Struct's Python, as made here, reads and does not write.
 
 | tool | makes | messages | CPU s | wall s | CPU ms for one more message |
 | --- | --- | ---: | ---: | ---: | ---: |

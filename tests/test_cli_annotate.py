@@ -262,3 +262,72 @@ def test_any_bytes_are_shown_once_each(name: str, sender: str, data: bytes) -> N
 def test_any_bytes_behind_a_start_are_shown_once_each(data: bytes, start: str) -> None:
     for sender in ("pc", "board"):
         rows(compiled(SINK), sender, start + data.hex())
+
+
+CHECKED = """\
+protocol: checked
+endpoints: {{pc: Computer}}
+byte_order: big
+frame:
+  id: {{type: uint8, id: true, range: [1, 1]}}
+  payload: {{}}
+  check: {{type: {type}, algorithm: {algorithm}, covers: id..payload}}
+messages:
+  one: {{id: 1, from: pc, fields: {{x: uint8}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("type", "algorithm", "right"),
+    [
+        ("uint8", "xor-8", "03"),
+        ("uint8", "sum-8", "03"),
+        ("uint8", "sum-8/negated", "FD"),
+        ("uint16", "fletcher-16", "0403"),  # running sums 1 and 3; 1 + 3 = 4
+        ("uint8", "CRC-8/SMBUS", "1B"),
+    ],
+)
+def test_checksums(type: str, algorithm: str, right: str) -> None:
+    protocol = compiled(CHECKED.format(type=type, algorithm=algorithm))
+    assert rows(protocol, "pc", f"01 02 {right}")[-1].fault == ""
+    wrong = rows(protocol, "pc", f"01 02 {'00' * (len(right) // 2)}")[-1]
+    assert wrong.fault == f"must be 0x{right.lower()}"
+
+
+def test_checksum_of_parts_that_are_not_shown() -> None:
+    protocol = compiled(SINK)
+    found = annotate(protocol, "pc", b"\x01\x02", covers=("payload", "check"))
+    assert [row.path for row in found] == ["payload", "check"]
+    assert found[1].meaning == "xor-8 of kind, number, length, payload"
+
+
+def test_overloads_are_told_apart_by_size() -> None:
+    # dagny: P with one byte is `power`, without any it is `power_down`.
+    assert "power_down" in lines(rows(schema("dagny"), "host", "500A"))[0]
+    found = rows(schema("dagny"), "host", "50 01 51 0A")
+    assert found[1].path != "payload"
+
+
+CONSTANTS = """\
+protocol: constants
+endpoints: {pc: Computer}
+frame:
+  id: {type: uint8, id: true, range: [1, 1]}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: payload}
+messages:
+  one:
+    id: 1
+    from: pc
+    fields:
+      word: {type: ascii, size: 2, const: ab}
+      mark: {type: bytes, size: 2, const: {hex: 01FF}}
+      pair: {type: uint8, count: 2, const: [3, 4]}
+"""
+
+
+def test_constants() -> None:
+    good = rows(compiled(CONSTANTS), "pc", "01 6162 01FF 0304 FA")
+    assert [row.fault for row in good] == [""] * 6
+    bad = rows(compiled(CONSTANTS), "pc", "01 6163 01FE 0305 FA")
+    assert [row.fault for row in bad][1:5] == ['must be "ab"', "must be 01 FF", "", "must be 4"]

@@ -74,6 +74,12 @@ def test_bytes_from_standard_input() -> None:
     assert result.output.startswith("offset 0, 5 bytes from pc: message stop\n")
 
 
+def test_bytes_that_are_no_text() -> None:
+    result = run("explain", MATTY, "--sender", "pc", input=b"55 \xff")
+    assert result.exit_code == 2
+    assert "line 1, column 4" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -125,6 +125,38 @@ def test_ranges_of_floats_and_constants() -> None:
         assert (values["word"], values["mark"], values["pair"]) == ("ab", "01ff", [3, 4])
 
 
+COUNTED = """\
+protocol: counted
+endpoints: {pc: Computer}
+frame: {id: {type: uint8, id: true, range: [1, 1]}, payload: {}, check: {type: uint8,
+  algorithm: xor-8, covers: payload}}
+types:
+  pair: {fields: {x: uint8, levels: {type: uint8, count: outer}}}
+messages:
+  one:
+    id: 1
+    from: pc
+    fields:
+      few: {type: uint8, values: {none_at_all: 0, two: 2}, closed: true}
+      names: {type: ascii, size: few}
+      outer: {type: uint8, range: [1, 5]}
+      first: {type: uint8, count: outer}
+      pair: {type: pair}
+      raw: {type: bytes, size: outer}
+"""
+
+
+def test_one_count_for_several_and_a_count_that_is_an_enum() -> None:
+    protocol = compiled(COUNTED)
+    frame = protocol.sender("pc").frame
+    for values, _ in islice(samples(protocol.message("one"), frame, Random(1)), 80):
+        assert len(values["names"]) == values["few"]
+        assert values["few"] in {0, 2}
+        lengths = {len(values["first"]), len(values["pair"]["levels"]), len(values["raw"]) // 2}
+        assert lengths == {values["outer"]}
+        assert 1 <= values["outer"] <= 5
+
+
 # --- cases ----------------------------------------------------------------------------------------
 
 
@@ -225,6 +257,16 @@ def test_a_good_engine_passes() -> None:
 )
 def test_mistakes_are_found(broken: type[Broken], problem: str) -> None:
     assert {found[: len(problem)] for found in problems(broken())} == {problem}
+
+
+def test_what_an_engine_refuses_is_a_finding() -> None:
+    case = next(cases(matty(), 1, 1, "go"))
+    engine = PythonEngine(handwritten_matty.PROTOCOL)
+    too_much = replace(case, values={"speed": 99999, "steer": 0})
+    problem = "refused: speed: 99999 is not in -32768..32767"
+    assert try_case(engine, matty(), too_much).problem.startswith(problem)
+    no_part = replace(case, parts={"counter": 256})
+    assert try_case(engine, matty(), no_part).problem.startswith("refused: counter: 256")
 
 
 def test_a_failure_is_made_smaller() -> None:

@@ -18,6 +18,8 @@ from protogen.cli.exits import guarded
 from protogen.version import VERSION
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
+GPS = "55 03 00 50 E9 C4"
+"""A sentence of one character, an e with an acute accent: 03 50 E9 add up to 3C."""
 COMMANDS = ("check", "generate", "decode", "encode", "explain", "fuzz", "schema-json")
 
 
@@ -27,6 +29,7 @@ COMMANDS = ("check", "generate", "decode", "encode", "explain", "fuzz", "schema-
 def test_version() -> None:
     result = start("--version")
     assert (result.returncode, result.stdout.decode()) == (0, f"protogen {VERSION}\n")
+    assert run("--version").output == f"protogen {VERSION}\n"
 
 
 def test_help_names_every_command() -> None:
@@ -95,6 +98,13 @@ def test_start_takes_less_than_200_ms() -> None:
             - before.children_system
         )
     assert min(usages) < 0.2
+
+
+def test_characters_that_the_terminal_lacks() -> None:
+    result = start("decode", MATTY, "--sender", "esp", "--hex", GPS, PYTHONIOENCODING="ascii")
+    assert result.returncode == 0
+    result = start("check", MATTY, PYTHONIOENCODING="ascii")
+    assert result.returncode == 0
 
 
 # --- end ------------------------------------------------------------------------------------------

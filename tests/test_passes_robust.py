@@ -18,8 +18,22 @@ from protogen.problems.sources import split_lines
 from protogen.schema.document import read_document
 from protogen.schema.nodes import to_data
 
+
+def parsed(path: Path) -> Any:
+    document = read_document(path, Problems(), SourceMap())
+    assert document is not None
+    return to_data(document.root)
+
+
 SCHEMAS = Path(__file__).resolve().parent.parent / "schemas"
 FILES = sorted(path.relative_to(SCHEMAS).as_posix() for path in SCHEMAS.glob("**/*.yaml"))
+
+BASES = {
+    name: parsed(SCHEMAS / name)["extends"].removeprefix("../")
+    for name in FILES
+    if name.startswith("dialects/")
+}
+"""Each dialect and the schema that it extends."""
 
 Place = tuple[Any, Any]
 """A mapping or list, and a key or index in it."""
@@ -49,20 +63,14 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @st.composite
-def mutants(draw: st.DrawFn) -> tuple[str, str]:
+def mutants(draw: st.DrawFn, names: list[str] = FILES) -> tuple[str, str]:
     """A schema's file name, and its text after some edits."""
-    name = draw(st.sampled_from(FILES))
+    name = draw(st.sampled_from(names))
     tree = parsed(SCHEMAS / name)
     for _ in range(draw(st.integers(1, 4))):
         edit = draw(st.sampled_from(EDITS))
         edit(draw, tree)
     return name, written(tree) + "\n"
-
-
-def parsed(path: Path) -> Any:
-    document = read_document(path, Problems(), SourceMap())
-    assert document is not None
-    return to_data(document.root)
 
 
 def places(tree: Any) -> list[Place]:
@@ -167,7 +175,20 @@ def test_edits_of_a_valid_schema_give_problems_and_no_traceback(
     name, text = mutant
     path = (project / name).with_name("mutant.yaml")
     path.write_text(text, encoding="utf-8")
-    check(compile_file(path))
+    check(compile_file(path, examples=True))
+
+
+@given(mutant=mutants(sorted(BASES.values())))
+def test_edits_of_a_base_give_problems_in_its_dialect(
+    project: Path, mutant: tuple[str, str]
+) -> None:
+    base, text = mutant
+    (project / base).write_text(text, encoding="utf-8")
+    try:
+        for dialect in (name for name, extended in BASES.items() if extended == base):
+            check(compile_file(project / dialect))
+    finally:
+        shutil.copy(SCHEMAS / base, project / base)
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -298,7 +298,7 @@ class TestConsole:
         for block in section.blocks:
             if block.language == "console":
                 for command, expected in _commands(block.text):
-                    done = run(["bash", "-c", command], workspace)
+                    done = run(["sh", "-c", command], workspace)
                     assert agrees(expected, done.stdout), f"$ {command}\n{done.stdout}"
 
 

@@ -34,7 +34,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from owed import Fate, fates, has_one_delimiter, is_protected
 
-from protogen.runtime.frame import AfterEnd, Anywhere, FrameSpec
+from protogen.runtime.frame import AfterEnd, Anywhere, FrameSpec, StartLiteral, StartSet
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))
@@ -255,6 +255,18 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
     # 18,000 bytes went through; what stays is less than a few frames with what Python needs.
     assert held < 6_000
     assert peak < 60_000
+
+
+@EVERY_SENDER
+def test_noise_is_delivered_when_it_is_as_long_as_a_greatest_frame(path: Path, sender: str) -> None:
+    spec = spec_of(path, sender)
+    if not isinstance(spec.start, StartLiteral | StartSet):
+        pytest.skip("with such frames the first bytes are no noise yet")
+    decoder = module_at(path).Decoder(sender)
+    assert decoder.feed(b"\x41" * (spec.greatest - 1)) == []
+    (event,) = decoder.feed(b"\x41")
+    assert (event.reason, event.size) == ("noise", spec.greatest)
+    assert decoder.pending == 0
 
 
 NEITHER_LENGTH_NOR_END = [

@@ -58,14 +58,21 @@ def _print_properties(out: Console, framing: Framing) -> None:
 
 
 def _properties(framing: Framing) -> Iterator[tuple[str, str]]:
+    from protogen.model.sizes import SizeSet
+
     yield "start", framing.finds_start
     yield "end", framing.finds_end
     synchronising = "yes" if framing.self_synchronising else "no"
     yield "self-synchronising", f"{synchronising}: {framing.why_synchronising}"
-    yield "frame", f"{framing.least} to {framing.greatest} bytes"
-    yield "overhead", f"{framing.overhead} bytes, before any stuffing"
+    sizes = SizeSet.between(framing.least, framing.greatest)
+    yield "frame", _bytes(str(sizes).replace("..", " to "))
+    yield "overhead", f"{_bytes(str(framing.overhead))}, before any stuffing"
     for index, sentence in enumerate(framing.undetected or ("none",)):
         yield ("undetected errors" if index == 0 else ""), sentence
+
+
+def _bytes(count: str) -> str:
+    return "1 byte" if count == "1" else f"{count} bytes"
 
 
 def _print_messages(out: Console, sender: Sender) -> None:

@@ -85,6 +85,14 @@ def raw_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     return (Piece(sender, piece) for piece in pieces)
 
 
+def hex_bytes(text: str) -> bytes:
+    """What the text says in hex. Raises UsageError with line and column."""
+    try:
+        return parse_hex(text)
+    except HexError as error:
+        raise UsageError(str(error)) from None
+
+
 def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     """What the pieces say in hex. Raises UsageError with line and column."""
     decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode

@@ -15,6 +15,7 @@ from protogen.cli.capture import (
     STANDARD_INPUT,
     InputFormat,
     Piece,
+    hex_bytes,
     hex_pieces,
     opened,
     raw_pieces,
@@ -129,11 +130,13 @@ def _pieces_of(
     faults: Faults,
 ) -> Iterator[Iterable[Piece]]:
     senders = tuple(item.name for item in codec.protocol.senders)
-    if kind is not InputFormat.TAGGED and sender is None:
+    if sender is None and (text is not None or kind is not InputFormat.TAGGED):
         names = " or ".join(senders)
         raise UsageError("nothing says who sent the bytes", f"give --sender {names}")
+    if text is not None and file != STANDARD_INPUT:
+        raise UsageError(f"there are two captures: {file} and --hex")
     if text is not None:
-        yield hex_pieces(iter([text.encode()]), str(sender))
+        yield [Piece(str(sender), hex_bytes(text))]
         return
     with opened(file) as pieces:
         match kind:
@@ -168,8 +171,10 @@ def _printer(codec: Codec, format: EventFormat, *, tagged: bool) -> Show:
 
     if format is EventFormat.JSONL:
         return lambda event: typer.echo(json_line(event))
+    from rich.text import Text
+
     out = console()
     lines = EventLines(codec.protocol, show_sender=tagged)
     if out.is_terminal:
-        return lambda event: out.print(lines.line(event))
-    return lambda event: typer.echo(lines.line(event).plain)
+        return lambda event: out.print(Text.assemble(*lines.segments(event)))
+    return lambda event: typer.echo("".join(text for text, _ in lines.segments(event)).rstrip())

@@ -182,7 +182,7 @@ def _json_lines(lines: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:
             continue
         try:
             line = json.loads(text)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise UsageError(f"line {number}: not JSON: {error}") from None
         if not isinstance(line, dict):
             raise UsageError(f"line {number}: must be a JSON object")

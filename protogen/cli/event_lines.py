@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from protogen.model.readings import readings
 
 if TYPE_CHECKING:
-    from rich.text import Text
-
     from protogen.model.protocol import Protocol
+
+Segment = tuple[str, str]
+"""Text and its rich style."""
 
 _MOST_BYTES = 32
 """Bytes of a span without meaning that are shown."""
@@ -38,50 +40,47 @@ class EventLines:
         self._name_width = max(map(len, names))
         self._sender_width = max(map(len, self._caller_parts)) if show_sender else 0
 
-    def line(self, event: Any) -> Text:
-        """Return the line of an event: offset, name, values."""
-        from rich.text import Text
-
-        line = Text()
-        line.append(f"{event.offset:>8}  ", style="dim")
+    def segments(self, event: Any) -> list[Segment]:
+        """Return the line of an event, in pieces with their styles: offset, name, values."""
+        line = [(f"{event.offset:>8}  ", "dim")]
         if self._sender_width:
-            line.append(f"{event.sender:<{self._sender_width}}  ")
+            line.append((f"{event.sender:<{self._sender_width}}  ", ""))
         match event.kind:
             case "message":
-                self._message(line, event)
+                line += self._message(event)
             case "unknown":
-                self._unknown(line, event)
+                line += self._unknown(event)
             case _:
-                self._invalid(line, event)
-        line.rstrip()
+                line += self._invalid(event)
         return line
 
-    def _name(self, line: Text, name: str, style: str) -> None:
-        line.append(f"{name:<{self._name_width}}  ", style=style)
+    def _name(self, name: str, style: str) -> Segment:
+        return f"{name:<{self._name_width}} ", style
 
-    def _message(self, line: Text, event: Any) -> None:
+    def _message(self, event: Any) -> Iterator[Segment]:
         name = event.message.NAME
-        self._name(line, name, "bold cyan")
+        yield self._name(name, "bold cyan")
         for part in self._caller_parts[event.sender]:
-            self._value(line, f"@{part}", str(getattr(event.parts, part)))
+            yield from _value(f"@{part}", str(getattr(event.parts, part)))
         for field, text in readings(self._fields[name], event.message.to_dict()):
-            self._value(line, field, text)
+            yield from _value(field, text)
 
-    def _unknown(self, line: Text, event: Any) -> None:
-        self._name(line, "unknown", "bold yellow")
+    def _unknown(self, event: Any) -> Iterator[Segment]:
+        yield self._name("unknown", "bold yellow")
         for part, value in asdict(event.parts).items():
-            self._value(line, f"@{part}", str(value))
-        self._value(line, "payload", f"hex:{event.payload.hex().upper()}")
+            yield from _value(f"@{part}", str(value))
+        yield from _value("payload", f"hex:{event.payload.hex().upper()}")
 
-    def _value(self, line: Text, name: str, text: str) -> None:
-        line.append(f"{name}=")
-        line.append(f"{text} ", style="bold")
-
-    def _invalid(self, line: Text, event: Any) -> None:
-        self._name(line, "invalid", "bold red")
+    def _invalid(self, event: Any) -> Iterator[Segment]:
+        yield self._name("invalid", "bold red")
         why = f"{event.reason}: {event.problem}" if event.problem else event.reason
-        line.append(f"{why}  ", style="red")
-        line.append(_shortened(event.raw))
+        yield f" {why}", "red"
+        yield f"  {_shortened(event.raw)}", ""
+
+
+def _value(name: str, text: str) -> Iterator[Segment]:
+    yield f" {name}=", ""
+    yield text, "bold"
 
 
 def _shortened(data: bytes) -> str:

@@ -7,7 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from functools import wraps
-from typing import NoReturn, ParamSpec
+from typing import ParamSpec
 
 import typer
 
@@ -73,11 +73,6 @@ def report_bug(error: Exception) -> int:
     if os.environ.get(DEBUG_VARIABLE) == "1":
         traceback.print_exception(error, file=sys.stderr)
     return BUG
-
-
-def leave(code: int) -> NoReturn:
-    """End the process with ``code``."""
-    raise SystemExit(code)
 
 
 def _complain(message: str, hint: str | None = None) -> int:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.hexinput import HexError, parse_hex
+from protogen.cli.capture import hex_bytes
+from protogen.cli.exits import CLEAN
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -46,18 +46,15 @@ def explain(
 
     codec = open_codec(schema)
     decoder = codec.decoder(sender)
-    data = _bytes(sys.stdin.read() if hex is None else hex)
+    data = hex_bytes(_standard_input() if hex is None else hex)
     out = console()
     for event in (*decoder.feed(data), *decoder.flush()):
         _print_event(out, codec.protocol, event)
     return CLEAN
 
 
-def _bytes(text: str) -> bytes:
-    try:
-        return parse_hex(text)
-    except HexError as error:
-        raise UsageError(str(error)) from None
+def _standard_input() -> str:
+    return sys.stdin.buffer.read().decode("utf-8-sig", "replace")
 
 
 def _print_event(out: Console, protocol: Protocol, event: Any) -> None:

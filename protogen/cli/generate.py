@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -62,19 +64,41 @@ def generate(
 ) -> int:
     """Write a codec and a reference for each schema.
 
-    Files that are current are not touched. Files that were generated once and no longer are get
-    removed, if whole folders of schemas were given.
+    Files that are current are not touched. Where only folders of schemas are given, files that were
+    generated once and no longer are get removed; where single schemas are given, other files stay.
     """
     paths = schemas or [SCHEMAS]
     targets = _targets(target, standalone=standalone)
+    with _without_garbage_collection():
+        return _run(paths, targets, output, _Mode(check=check, diff=diff, quiet=quiet))
+
+
+@dataclass(frozen=True, slots=True)
+class _Mode:
+    check: bool
+    diff: bool
+    quiet: bool
+
+
+@contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """The model only grows and holds no cycles: looking for garbage would find none."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
+def _run(paths: Sequence[Path], targets: Sequence[Target], output: Path, mode: _Mode) -> int:
     protocols = _compile(schema_files(paths))
     if protocols is None:
         return FINDINGS
-    prune = any(path.is_dir() for path in paths)
+    prune = all(path.is_dir() for path in paths)
     jobs = [Job(item.emit(protocols), output / item.folder, prune) for item in targets]
-    if diff:
+    if mode.diff:
         return _print_diff(jobs)
-    return _check(jobs, quiet=quiet) if check else _write(jobs, quiet=quiet)
+    return _check(jobs, quiet=mode.quiet) if mode.check else _write(jobs, quiet=mode.quiet)
 
 
 def _targets(names: Sequence[str] | None, *, standalone: bool) -> list[Target]:

@@ -182,15 +182,17 @@ def refusal(path: str, written: Any, kinds: str) -> UsageError:
 
 
 def text_value(written: Any, path: str) -> str:
-    """Return a text. Raises UsageError."""
-    if isinstance(written, str):
-        return written
-    raise refusal(path, written, "a text")
+    """Return a text; one in double quotes has the escapes of JSON. Raises UsageError."""
+    if not isinstance(written, str):
+        raise refusal(path, written, "a text")
+    if len(written) > 1 and written[0] == written[-1] == '"':
+        return str(from_json(written, path))
+    return written
 
 
 def from_json(text: str, path: str) -> Any:
     """Return what the JSON text stands for. Raises UsageError."""
     try:
         return json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: `{text}` is not JSON: {error}") from None

@@ -1,9 +1,9 @@
 """Field values as people write them on a command line, made into the raw values of JSON lines.
 
 A number stands for the raw value (`5`, `0x1F`), a number with the field's unit for the physical
-value (`90deg`). Enums and special values have names, flags are joined by `|`, a character is
-quoted, bytes are `hex:1B02` or `text:abc`, lists and structs are JSON. A dotted name is a member
-of a struct, a flag or a run of bits.
+value (`90deg`). Enums and special values have names, flags are joined by `|`, a character may
+stand in single quotes and a text in double ones, bytes are `hex:1B02` or `text:abc`, lists and
+structs are JSON. A dotted name is a member of a struct, a flag or a run of bits.
 """
 
 from __future__ import annotations

@@ -219,10 +219,6 @@ class _Need:
     others: bool = True
     """Whether it may be none of the cases."""
 
-    def allows(self, value: int) -> bool:
-        """Whether it may be `value`."""
-        return self.least <= value <= self.greatest and (self.others or value in self.cases)
-
     def also(self, other: _Need) -> _Need:
         """What it has to be for both reasons."""
         return _Need(
@@ -282,28 +278,27 @@ def _scalar_choices(
 def _integer_choices(field: Field, type: Integer, need: _Need | None) -> Choices:
     if isinstance(field.const, int):
         return _only(field.const)
-    known = _known(field, type)
+    values = _known(field, type)
     least, greatest = _bounds(field, type)
-    if type.enum is not None and type.enum.closed:
-        values = known
-    else:
+    closed = type.enum is not None and type.enum.closed
+    if not closed:
         near = [value for value in (0, 1, -1) if least <= value <= greatest]
-        values = _distinct([*known, least, greatest, *near])
+        values = _distinct([*values, least, greatest, *near])
+    if need is not None and need.cases:
+        return _selecting(values, need)
     if need is not None:
-        return _needed_choices(values, least, greatest, need)
-    if type.enum is not None and type.enum.closed:
+        least, greatest = max(least, need.least), min(greatest, need.greatest)
+        values = [value for value in values if least <= value <= greatest]
+        greatest = min(greatest, least + _USUAL_COUNT)
+    if closed:
         return Choices(values, lambda random: random.choice(values))
     return Choices(values, lambda random: _any_integer(least, greatest, random))
 
 
-def _needed_choices(values: Sequence[int], least: int, greatest: int, need: _Need) -> Choices:
-    if need.cases:
-        others = [value for value in values if need.others and value not in need.cases]
-        choices = [*need.cases, *others[-1:]]
-        return Choices(choices, lambda random: random.choice([*choices, *others]))
-    low, high = max(least, need.least), min(greatest, need.greatest)
-    usual = min(high, low + _USUAL_COUNT)
-    return Choices(_distinct((low, high, usual)), lambda random: random.randint(low, usual))
+def _selecting(values: Sequence[int], need: _Need) -> Choices:
+    others = [value for value in values if need.others and value not in need.cases]
+    choices = [*need.cases, *others[-1:]]
+    return Choices(choices, lambda random: random.choice([*choices, *others]))
 
 
 def _known(field: Field, type: Integer) -> list[int]:

@@ -110,16 +110,15 @@ class _Frame:
         piece = self._cursor.take(fixed_size(part))
         if piece.missing:
             return piece.row(part.name, _part_type(part))
-        match part:
-            case LiteralPart(bytes=literal):
-                fault = "" if piece.bytes == literal else f"must be {_hex(literal)}"
-                return piece.row(part.name, "literal", fault=fault)
-            case ChecksumPart():
-                return self._checksum(part, piece.bytes, piece.row(part.name, type_name(part.type)))
-            case NumberPart():
-                value = int.from_bytes(piece.bytes, part.type.byte_order)
-                return self._number(part, value, piece.row(part.name, type_name(part.type)))
-        return piece.row(part.name, "")
+        if isinstance(part, LiteralPart):
+            fault = "" if piece.bytes == part.bytes else f"must be {_hex(part.bytes)}"
+            return piece.row(part.name, "literal", fault=fault)
+        assert isinstance(part, NumberPart | ChecksumPart)
+        row = piece.row(part.name, type_name(part.type))
+        value = int.from_bytes(piece.bytes, part.type.byte_order)
+        if isinstance(part, ChecksumPart):
+            return self._checksum(part, value, row)
+        return self._number(part, value, row)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
         self._numbers[part.name] = value
@@ -128,19 +127,17 @@ class _Frame:
         if isinstance(part, LengthPart):
             meaning = f"bytes of {', '.join(part.counts)}"
         elif isinstance(part, IdentityPart):
-            meaning = " ".join(filter(None, (meaning, self._names_of(part, value))))
+            meaning = " ".join(filter(None, (meaning, self._names_of(part))))
         return row.reads(value, meaning, fault)
 
-    def _names_of(self, part: IdentityPart, value: int) -> str:
-        """The messages that the identity parts up to this one leave."""
-        index = [item.name for item in self._sender.frame.identity].index(part.name)
-        if index + 1 < len(self._sender.frame.identity):
+    def _names_of(self, part: IdentityPart) -> str:
+        """The messages of the identity, beside its last part."""
+        if part.name != self._sender.frame.identity[-1].name:
             return ""
         names = [message.name for message in self._candidates()]
         return " or ".join(names) or "no message has this identity"
 
-    def _checksum(self, part: ChecksumPart, data: bytes, row: Row) -> Row:
-        value = int.from_bytes(data, part.type.byte_order)
+    def _checksum(self, part: ChecksumPart, value: int, row: Row) -> Row:
         if any(name not in self._found for name in self._covered(part)):
             return row.reads(value, part.algorithm.name)
         pieces = [self._found[name] for name in self._covered(part)]
@@ -175,8 +172,6 @@ class _Frame:
             return here
         others = [name for name in length.counts if name != part.name]
         counted = sum(fixed_size(self._sender.frame.part(name)) for name in others)
-        if part.name not in length.counts:
-            return here
         return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
 
     def _message(self, size: int) -> Message | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import ChainMap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -85,7 +86,7 @@ def readings(
     """Yield the name of each field and its value in one short text without line breaks.
 
     The values are those of a JSON line: raw numbers, texts, bytes as hex digits, lists, mappings.
-    What a text says is also what `protogen encode` takes, unless a long list was cut short.
+    The text of a single value is also what `protogen encode` takes for it.
     """
     scope = ChainMap({}, *(around.maps if around is not None else ()))
     for field in fields:
@@ -134,9 +135,8 @@ def _case(type: Switch, value: Any, scope: Scope) -> str:
 
 
 def quoted(text: str) -> str:
-    """The text in double quotes, with escapes for what can't be printed."""
-    escaped = text.encode("unicode_escape").decode("ascii").replace('"', '\\"')
-    return f'"{escaped}"'
+    """The text in double quotes, with the escapes of JSON for what can't be printed."""
+    return json.dumps(text)
 
 
 def flag_names(flags: Flags, value: int) -> str:

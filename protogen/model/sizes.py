@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import gcd
 
 
@@ -21,7 +22,7 @@ class SizeSet:
     @classmethod
     def exactly(cls, size: int) -> SizeSet:
         """One size."""
-        return cls(size, size)
+        return _exactly(size)
 
     @classmethod
     def between(cls, least: int, greatest: int, step: int = 1) -> SizeSet:
@@ -89,3 +90,9 @@ class SizeSet:
             return str(self.least)
         text = f"{self.least}..{self.greatest}"
         return text if self.step == 1 else f"{text} in steps of {self.step}"
+
+
+@lru_cache(maxsize=4096)
+def _exactly(size: int) -> SizeSet:
+    # A large schema asks for the same few sizes some hundred thousand times.
+    return SizeSet(size, size)

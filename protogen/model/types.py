@@ -254,6 +254,8 @@ class Switch:
     selector: str
     cases: tuple[Case, ...]
     rest: int | None
+    byte_bits: Literal[7, 8] = 8
+    """Bits that each byte of the rest carries."""
 
     @property
     def sizes(self) -> SizeSet:

@@ -59,7 +59,7 @@ def unstuff(frame: Frame, data: bytes) -> Wire:
     first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
     start = min(len(data), sum(map(fixed_size, frame.parts[:first])))
     end = max(start, len(data) - _closing(frame, frame.parts[last + 1 :], data))
-    unstuffer = _unstuffer(frame.transparency.encoding, frame.transparency.lenient)
+    unstuffer = _transparency(frame.transparency.encoding, frame.transparency.lenient).decoder()
     units, rest, fault = _region(unstuffer, data[start:end])
     before, behind = _plain(data[:start]), _plain(data[end:])
     if rest or fault:
@@ -102,10 +102,6 @@ def _units(released: bytes, held: bytes) -> Iterator[Unit]:
     for index, byte in enumerate(released):
         last = index == len(released) - 1
         yield Unit(byte, held[index:] if last else held[index : index + 1])
-
-
-def _unstuffer(encoding: Encoding, lenient: bool) -> stuffing.Unstuffer:
-    return _transparency(encoding, lenient).decoder()
 
 
 def _transparency(encoding: Encoding, lenient: bool) -> stuffing.Transparency:

@@ -87,6 +87,8 @@ class Declarations:
         self._types = context.syntax.types
         self.followed: set[str] = set()
         """The declared types that were asked for."""
+        self.too_deep: set[Loc] = set()
+        """The fields whose types were not followed, because they are nested too deep."""
 
     def effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         """What a field comes to; a plain byte where its types lead nowhere."""
@@ -105,11 +107,13 @@ class Declarations:
             text = f"the types go in a circle: {' -> '.join(path)}"
             self._context.error("PG119", (*loc, "type"), text)
             return True
-        if setting.depth >= GREATEST_DEPTH:
+        if setting.depth < GREATEST_DEPTH:
+            return False
+        if loc not in self.too_deep:
             text = f"the types from `{path[0]}` on are nested more than {GREATEST_DEPTH} deep"
             self._context.error("PG122", (*loc, "type"), text)
-            return True
-        return False
+            self.too_deep.add(loc)
+        return True
 
     def _stated_twice(self, name: str, use: Effective) -> None:
         for key in _LAYOUT_KEYS:

@@ -13,7 +13,7 @@ from protogen.passes.declared import Effective
 from protogen.passes.setting import Setting
 from protogen.passes.type_names import Layout
 
-GREATEST_NUMBER = 100_000
+GREATEST_NUMBER = 50_000
 """So many fields may come of the declared types."""
 
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from protogen.model.fields import Field
+from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Extent,
@@ -29,7 +30,6 @@ from protogen.passes.expansion import Expansion
 from protogen.passes.extents import Extents, Written
 from protogen.passes.field_keys import check_keys, has_one_form
 from protogen.passes.named_types import NamedTypes
-from protogen.passes.positions import placed
 from protogen.passes.setting import Setting
 from protogen.passes.switches import SwitchBuilder
 from protogen.passes.type_names import (
@@ -63,27 +63,32 @@ class FieldBuilder:
         """The declared types that were used so far."""
         return frozenset(self._declarations.followed)
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether all declared types could be followed to their end."""
+        return not (self._expansion.is_spent or self._declarations.too_deep)
+
     def fields(
         self, syntax: Mapping[str, FieldSyntax], loc: Loc, setting: Setting
     ) -> tuple[Field, ...]:
         """The fields of one struct or message, with their positions."""
         built: dict[str, Field] = {}
         scope = setting.outer.new_child(built)
-        used = 0
+        behind = SizeSet.exactly(0)
         filler = ""
         final = list(syntax)[-1:]
         for name, item in syntax.items():
             if filler:
                 self._behind(filler, (*loc, name))
-            inner = setting.inside(name, used, scope, [name] == final)
+            inner = setting.inside(name, behind, scope, [name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
-            used += built[name].type.sizes.least
+            behind += built[name].type.sizes
             filler = filler or (name if fills(built[name].type) else "")
-        return placed(built.values())
+        return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
-        """One field; its position is not known here."""
-        unknown = Field(name=name, type=UNKNOWN_TYPE, position=None)
+        """One field."""
+        unknown = Field(name=name, type=UNKNOWN_TYPE, position=setting.position)
         if not has_one_form(self._context, item, loc) or not self._expansion.enter(loc, setting):
             return unknown
         effective = self.effective(item, loc, setting)

@@ -25,7 +25,7 @@ def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
     return Field(
         name=name,
         type=type_,
-        position=None,
+        position=item.setting.position,
         const=const,
         default=default,
         least=least,

@@ -6,6 +6,7 @@ from collections import ChainMap
 from dataclasses import dataclass, field, replace
 
 from protogen.model.fields import Field
+from protogen.model.sizes import SizeSet
 from protogen.passes.capacity import GREATEST_FRAME
 from protogen.passes.type_names import Layout
 
@@ -27,7 +28,9 @@ class Setting:
     last: bool = True
     """Whether nothing of the payload follows."""
     used: int = 0
-    """The least number of bytes in front."""
+    """The least number of bytes of the payload in front."""
+    position: int | None = 0
+    """The number of bytes of the struct or message in front, where it is always the same."""
     outer: Scope = field(default_factory=ChainMap)
     """Fields that counts and switches may name, from the structs around."""
     stack: tuple[str, ...] = ()
@@ -42,11 +45,12 @@ class Setting:
         """The greatest number of bytes that are left, where the frame bounds them."""
         return None if self.capacity is None else max(0, self.capacity - self.used)
 
-    def inside(self, name: str, used: int, outer: Scope, last: bool) -> Setting:
+    def inside(self, name: str, behind: SizeSet, outer: Scope, last: bool) -> Setting:
         """The setting of the field `name`, behind so many bytes of earlier fields."""
         return replace(
             self,
-            used=self.used + used,
+            used=self.used + behind.least,
+            position=behind.fixed,
             owner=f"{self.owner}_{name}",
             outer=outer,
             last=self.last and last,

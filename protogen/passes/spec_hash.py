@@ -14,6 +14,7 @@ from functools import cache
 from typing import Any
 
 from protogen.model.protocol import Protocol
+from protogen.model.types import Enum, Flags, Struct
 
 _LEFT_OUT = frozenset(
     {
@@ -24,33 +25,42 @@ _LEFT_OUT = frozenset(
 )  # fmt: skip
 """What people read, and what follows from the rest."""
 
-_IN_OTHER_PLACES = frozenset({"enums", "flags", "structs", "messages"})
-"""What a protocol lists once more: it is found where it is used."""
+_LISTED = frozenset({"messages", "enums", "flags", "structs"})
+"""What a protocol lists that stands in other places, too: messages under their senders."""
 
-_LEAVES = frozenset({int, str, bool, float, type(None)})
+_NAMED: tuple[type[Any], ...] = (Enum, Flags, Struct)
+"""Types that count once; where they are used their names stand for them."""
 
 
 def spec_hash(protocol: Protocol) -> str:
     """SHA-256 in hex of everything that changes bytes or what they mean."""
-    text = json.dumps(_plain(protocol), separators=(",", ":"), ensure_ascii=True)
+    listed: list[Enum | Flags | Struct] = [*protocol.enums, *protocol.flags, *protocol.structs]
+    listed.sort(key=lambda item: item.name)
+    plain = [_whole(protocol), *map(_whole, listed)]
+    text = json.dumps(plain, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _plain(value: Any) -> Any:
-    """Data classes as mappings tagged with their kind, without what is left out."""
-    kind = type(value)
-    if kind in _LEAVES:
-        return value
-    if kind is tuple:
-        return [_plain(item) for item in value]
-    if kind is Fraction:
-        return str(value)
-    if kind is bytes:
-        return value.hex()
+def _whole(value: Any) -> dict[str, Any]:
+    """A data class as a mapping tagged with its kind, without what is left out."""
+    kind: Any = type(value)
     return {"kind": kind.__name__} | {name: _plain(getattr(value, name)) for name in _kept(kind)}
 
 
 @cache
-def _kept(kind: type[Any]) -> tuple[str, ...]:
-    left_out = _LEFT_OUT | _IN_OTHER_PLACES if kind is Protocol else _LEFT_OUT
+def _kept(kind: Any) -> tuple[str, ...]:
+    left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
     return tuple(sorted({field.name for field in fields(kind)} - left_out))
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON has it; a named type as its name."""
+    if value is None or isinstance(value, int | str | float):
+        return value
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, Fraction):
+        return str(value)
+    if isinstance(value, bytes):
+        return value.hex()
+    return value.name if isinstance(value, _NAMED) else _whole(value)

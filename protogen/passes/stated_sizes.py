@@ -14,8 +14,6 @@ from protogen.model.types import (
     Counted,
     Extent,
     Fixed,
-    Float,
-    Integer,
     Octets,
     Struct,
     Switch,
@@ -54,9 +52,10 @@ def _is_stated(extent: Extent) -> bool:
 
 
 def _size(type_: Type, count: _Count, choose: _Choose) -> int:
+    fixed = type_.sizes.fixed
+    if fixed is not None:
+        return fixed
     match type_:
-        case Integer() | Float():
-            return type_.size
         case Text() | Octets():
             return count(type_.extent)
         case Array():
@@ -65,3 +64,4 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
             return sum(_size(field.type, count, choose) for field in type_.fields)
         case Switch():
             return choose(_size(case.type, count, choose) for case in type_.cases)
+    raise TypeError(f"{type(type_).__name__} has one size")

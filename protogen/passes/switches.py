@@ -53,7 +53,12 @@ class SwitchBuilder:
         self._distinct(known, places)
         if not known:
             return None
-        return Switch(selector=selector.name, cases=known, rest=self._rest(known, item))
+        return Switch(
+            selector=selector.name,
+            cases=known,
+            rest=self._rest(known, item),
+            byte_bits=item.setting.layout.byte_bits,
+        )
 
     def _selector(self, item: Effective) -> Field | None:
         name, outer = item.syntax.switch or "", item.setting.outer
@@ -110,9 +115,9 @@ class SwitchBuilder:
         """A case that is no struct becomes one of a single field."""
         effective = self._fields.effective(item, loc, setting).syntax
         if effective.fields is None or effective.count is not None:
-            inner = replace(setting, owner=f"{setting.owner}_value")
+            inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self._fields.field("value", item, loc, inner)
-            struct = Struct(name=setting.owner, fields=(replace(field, position=0),))
+            struct = Struct(name=setting.owner, fields=(field,))
             self._named.register(struct, loc)
             return struct
         type_ = self._fields.field("value", item, loc, setting).type

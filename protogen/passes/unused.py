@@ -26,7 +26,7 @@ def check_unused(context: Context, draft: Draft) -> None:
             setting = nowhere(_layout(context, message), name)
             builder.fields(message.fields, ("messages", name, "fields"), setting)
     for name in context.syntax.types:
-        if name not in draft.used_types | builder.followed:
+        if builder.is_whole and name not in draft.used_types | builder.followed:
             setting = nowhere(_layout(context, None), name)
             builder.field(name, FieldSyntax(type=name), ("types", name), setting)
 

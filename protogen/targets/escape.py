@@ -26,6 +26,8 @@ _BLANK_LINE = re.compile(r"\n[^\S\n]*\n\s*")
 
 def visible(text: str) -> str:
     """Write each character that can't be seen as its escape; spaces stay."""
+    if text.isprintable():
+        return text
     return "".join(_shown(character) for character in text)
 
 

@@ -33,12 +33,14 @@ class File:
     r"""A file to be generated, at a path relative to its folder.
 
     `banner` is the first line, without its line break; None where the format has no comments.
-    `text` is the rest. Lines end in ``\n``.
+    `text` is the rest. Lines end in ``\n``. A `shared` file tells of all schemas of the folder, so
+    it is left as it is where only some of them are generated.
     """
 
     path: PurePosixPath
     text: str
     banner: str | None
+    shared: bool = False
 
     @property
     def content(self) -> str:
@@ -90,7 +92,7 @@ def write_files(files: Sequence[File], folder: Path, *, prune: bool = True) -> R
     Files that are right already are not touched. An existing file that is not ours, and what the
     operating system refuses, is in the report's `refused`; nothing is raised.
     """
-    wanted = _with_manifest(files, folder, prune)
+    wanted = _wanted(files, folder, prune)
     found = check_files(files, folder, prune=prune)
     refused = tuple(item for item in found if item.state is State.REFUSED)
     if refused:
@@ -111,7 +113,7 @@ def check_files(
     files: Sequence[File], folder: Path, *, prune: bool = True
 ) -> tuple[Difference, ...]:
     """Return what `write_files` would change, in order of path; empty: the folder is current."""
-    wanted = _with_manifest(files, folder, prune)
+    wanted = _wanted(files, folder, prune)
     listed = _read_manifest(folder)
     found = [_difference(file, folder, listed) for file in wanted]
     found += _twice(files)
@@ -122,7 +124,7 @@ def check_files(
 
 def diff_files(files: Sequence[File], folder: Path, *, prune: bool = True) -> str:
     """Return what `write_files` would change, as a unified diff; empty: the folder is current."""
-    contents = {file.path: file.content for file in _with_manifest(files, folder, prune)}
+    contents = {file.path: file.content for file in _wanted(files, folder, prune)}
     found = check_files(files, folder, prune=prune)
     return "".join(
         _diff(item.path, _read_text(folder / item.path), contents.get(item.path))
@@ -227,13 +229,19 @@ def _head(path: Path, whole: bool) -> bytes:
 # --- the manifest -------------------------------------------------------------------------------
 
 
-def _with_manifest(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...]:
-    """Add the manifest if one of them has no banner."""
+def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...]:
+    """The files that the folder should hold, with the manifest if one of them has no banner."""
+    due = tuple(file for file in files if prune or not _stays(file, folder))
     kept = {} if prune else _read_manifest(folder)
     hashes = kept | {
-        str(file.path): sha256(file.bytes).hexdigest() for file in files if file.banner is None
+        str(file.path): sha256(file.bytes).hexdigest() for file in due if file.banner is None
     }
-    return (*files, _manifest(hashes)) if hashes else tuple(files)
+    return (*due, _manifest(hashes)) if hashes else due
+
+
+def _stays(file: File, folder: Path) -> bool:
+    """Whether the file tells of schemas that are not generated now."""
+    return file.shared and (folder / file.path).is_file()
 
 
 def _manifest(hashes: Mapping[str, str]) -> File:

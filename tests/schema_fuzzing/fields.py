@@ -17,6 +17,9 @@ GREATEST_DEPTH = 2
 _USUAL_BYTES = 12
 """Most fixed sizes and counts stay below this, so that payloads stay small."""
 
+_FOR_OTHERS = 2
+"""Bytes that are kept for the fields behind."""
+
 Fields = dict[str, Any]
 Item = Callable[[st.DrawFn, Setting, Fields], Built]
 
@@ -25,9 +28,8 @@ Item = Callable[[st.DrawFn, Setting, Fields], Built]
 def structs(draw: st.DrawFn, setting: Setting, *, greatest: int = 4) -> Built:
     """The fields of a struct or message; `data` is the mapping of names to fields."""
     scope = _Scope(draw, setting)
-    count = draw(st.integers(0, greatest))
-    for index in range(count):
-        if not scope.add(last=index == count - 1):
+    for left in reversed(range(draw(st.integers(0, greatest)))):
+        if not scope.add(last=left == 0):
             break
     return scope.built()
 
@@ -40,16 +42,19 @@ class _Scope:
         self._setting = setting
         self._fields: Fields = {}
         self._size = NOTHING
+        self._last = False
         self._fills = False
 
     def built(self) -> Built:
         return Built(self._fields, self._size, fills=self._fills)
 
     def add(self, *, last: bool) -> bool:
-        """Add a field, with those that count or choose it; False where there is no room."""
-        here = replace(self._setting, last=self._setting.last and last)
-        if here.budget < 2:
+        """Add a field, with those that count or choose it; False: nothing can follow."""
+        if self._setting.budget < 1:
             return False
+        # Whether a field is the last is known before it is drawn: what follows keeps its room.
+        self._last = last or self._setting.budget < _FOR_OTHERS + 3
+        here = self._here()
         kind = self._draw(st.sampled_from(_kinds(here)))
         if kind == "counted":
             self._add_counted(here)
@@ -57,7 +62,15 @@ class _Scope:
             self._add_switch(here)
         else:
             self._put(self._draw(_ITEMS[kind](here)))
-        return not self._fills
+        return not self._last
+
+    def _here(self) -> Setting:
+        """The setting of what comes next."""
+        kept = 0 if self._last else _FOR_OTHERS
+        setting = self._setting
+        return replace(
+            setting, last=setting.last and self._last, budget=setting.budget - kept
+        )
 
     def _put(self, built: Built) -> str:
         """Add a field that was drawn, and note what it can count or choose."""
@@ -65,7 +78,7 @@ class _Scope:
         self._fields[name] = built.data
         self._size += built.size
         self._fills = built.fills
-        behind = self._setting.behind(built.size)
+        behind = _hiding(self._setting.behind(built.size), name)
         if built.counts is not None:
             behind = replace(behind, counters={**behind.counters, name: built.counts})
         if built.keys:
@@ -79,6 +92,9 @@ class _Scope:
     def _add_counted(self, here: Setting) -> None:
         widest = self._draw(st.sampled_from([1, 1, 2, 4])) if here.budget > 8 else 1
         left = here.budget - widest
+        if left < 1:
+            self._put(self._draw(number(here)))
+            return
         element = self._draw(_elements(replace(here, last=False, budget=left)))
         most = min(_USUAL_BYTES, left // max(1, element.size.greatest))
         if most < 1:
@@ -106,18 +122,25 @@ class _Scope:
 
     def _add_switch(self, here: Setting) -> None:
         if not here.selectors or self._draw(st.booleans()):
-            self._put(self._draw(_selector(replace(here, budget=min(2, here.budget - 1)))))
+            self._put(self._draw(_selector(replace(here, budget=max(1, min(2, here.budget - 1))))))
         chosen = self._draw(st.sampled_from(self._setting.selectors))
-        here = replace(self._setting, last=here.last)
-        if here.budget < 1:
-            return
+        here = self._here()
         # What no case takes could be more than is left where something in front varies.
         closed = here.may_fill and here.room is not None and not here.exact
+        if here.budget < 1 + closed:
+            return
         if closed:
             here = replace(here, last=False, budget=here.budget - 1)
         self._put(self._draw(_switch(here, chosen)))
         if closed:
             self._put(Built("uint1", Size(1, 1)))
+
+
+def _hiding(setting: Setting, name: str) -> Setting:
+    """The setting behind a field of this name, which hides one of the structs around."""
+    counters = {other: bounds for other, bounds in setting.counters.items() if other != name}
+    selectors = tuple(item for item in setting.selectors if item.name != name)
+    return replace(setting, counters=counters, selectors=selectors)
 
 
 def _kinds(setting: Setting) -> list[str]:

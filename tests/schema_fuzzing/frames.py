@@ -205,8 +205,10 @@ class _Drawing:
         opening = [self._literal() for _ in range(_literals(self._start))]
         closing = [self._literal() for _ in range(_literals(self._end))]
         alike = len(opening) == len(closing) == 1 and self._draw(forms.one_in(3))
-        if alike and self._is_never_empty():
+        if alike:
             closing = [self._maker.literal(opening[0].literal)]
+        if _joined(opening) == _joined(closing) and not self._is_never_empty():
+            return opening, []  # Nothing could stand between them, and that is no frame.
         return opening, closing
 
     def _literal(self) -> PartPlan:
@@ -354,7 +356,7 @@ class _Drawing:
             covered = self._covered(allowed, every, index)
             keys = {"covers": self._draw(forms.run(covered, every))}
             places = {every.index(name) for name in covered}
-            if self._may_be_over_wire(places, index, region) and self._draw(forms.one_in(4)):
+            if self._may_be_over_wire(places, region) and self._draw(forms.one_in(4)):
                 keys["over"] = "wire"
             elif self._draw(forms.one_in(4)):
                 keys["over"] = "content"
@@ -373,14 +375,15 @@ class _Drawing:
         chosen = self._draw(st.sets(st.sampled_from(allowed), min_size=1))
         return [name for name in every if name in chosen]
 
-    def _may_be_over_wire(self, places: set[int], index: int, region: Region | None) -> bool:
-        """COBS bytes belong to no part: only the whole region can be covered, from outside."""
+    def _may_be_over_wire(self, places: set[int], region: Region | None) -> bool:
+        """COBS bytes belong to no part, so that none can be covered."""
         if region is None or self._code is None or self._code.codewords is not None:
             return True
-        inside = set(range(region.first, region.last + 1))
-        return not places & inside or (inside <= places and index not in inside)
+        return places.isdisjoint(range(region.first, region.last + 1))
 
 
+def _joined(literals: Sequence[PartPlan]) -> bytes:
+    return b"".join(part.literal for part in literals)
 
 
 def _literals(shape: str) -> int:

@@ -139,13 +139,13 @@ class _Message:
 
     def _setting(self, *, ordered: bool) -> Setting:
         rooms = [frame.room for frame in self._frames if frame.room is not None]
-        room = min(rooms, default=None)
+        bounded = len(rooms) == len(self._frames)
         return Setting(
             byte_bits=self._plan.byte_bits,
             ordered=ordered or self._plan.orders.get(self._senders[0]) is not None,
             whole_bytes=self._plan.whole_bytes,
-            budget=self._plan.budget if room is None else min(room, self._plan.budget),
-            room=room,
+            budget=min([*rooms, self._plan.budget]),
+            room=max(rooms) if bounded else None,
             delimited=all(frame.delimited for frame in self._frames),
             last=True,
             types=self._plan.types,

@@ -9,8 +9,8 @@ from typing import Any
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]*(?:(?:\.\.|[-./ ])[A-Za-z0-9_]+)*|[0-9]+\.\.[0-9]+")
 _WORDS = frozenset({"true", "false", "null", "True", "False", "Null", "TRUE", "FALSE", "NULL"})
-_EXACT = frozenset({"range", "scale", "offset"})
-"""Keys whose numbers are exact: they are written in decimal."""
+_AS_WRITTEN = frozenset({"source", "lines"})
+"""Keys of texts that may look like numbers, whose notation counts."""
 
 
 def to_yaml(data: dict[str, Any]) -> str:
@@ -81,7 +81,7 @@ class Writer:
         if isinstance(value, bool):
             return "true" if value else "false"
         if isinstance(value, int):
-            return str(value) if key in _EXACT else self._integer(value)
+            return str(value) if key in _AS_WRITTEN else self._integer(value)
         if isinstance(value, float):
             return _float(value)
         return self._word(value)

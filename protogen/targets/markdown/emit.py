@@ -48,7 +48,9 @@ def _decision_link(match: re.Match[str]) -> str:
 
 
 def _file(name: str, protocols: Sequence[Protocol], view: object) -> File:
-    return File(PurePosixPath(f"{name}.md"), _render(name, view), banner(MARKDOWN, protocols))
+    return File(
+        PurePosixPath(f"{name}.md"), _render(name, view), banner(MARKDOWN, protocols), shared=True
+    )
 
 
 def _render(template: str, view: object) -> str:

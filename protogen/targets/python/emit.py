@@ -26,6 +26,7 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
         PurePosixPath("__init__.py"),
         '# SPDX-License-Identifier: 0BSD\n"""Codecs of serial protocols, one module each."""\n',
         banner(PYTHON, protocols),
+        shared=True,
     )
     return (package, *modules)
 

@@ -115,7 +115,8 @@ def _checked_element(type_: Type) -> str:
 
 def _switch(type_: Switch) -> str:
     cases = mapping({str(case.value): _case(case) for case in type_.cases})
-    rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest))
+    seven = "True" if type_.byte_bits == 7 else None
+    rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest), seven_bit=seven)
     return call("_c.Cases", text(type_.selector), cases, rest=rest)
 
 
