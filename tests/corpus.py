@@ -11,11 +11,11 @@ from functools import cache
 from itertools import islice
 from pathlib import Path
 from random import Random
-from typing import Any
 
 from compiled import module_at, protocol_of
 
 from protogen.fuzzing.samples import boundary_rounds, samples
+from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.errors import EncodeError
@@ -236,7 +236,7 @@ def unknown_frames(path: Path, sender: Sender) -> Iterator[bytes]:
             continue  # The identity is known, or no frame has so many bytes.
 
 
-def _any_value(part: Any, dice: Random) -> int:
+def _any_value(part: NumberPart, dice: Random) -> int:
     return dice.choice([part.least, part.greatest, dice.randint(part.least, part.greatest)])
 
 

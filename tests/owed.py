@@ -3,8 +3,8 @@
 The design promises that every frame that was not itself damaged is found. Exactly:
 
 * Where the start of a frame is protected (it occurs nowhere else in a valid frame), every one.
-* Where the same protected literal starts and ends frames, every one but those whose start was taken
-  for the end of valid bytes in front: then a frame that lost its end was found instead.
+  Where the same literal ends frames, too, the frame may be found without its start: that was the
+  end of valid bytes in front, of a frame that lost its own end.
 * Where frames have no start and a protected end, every one at the start of the stream or behind an
   end. In front of any other, damage reaches up to it: nothing tells where it begins.
 * Where nothing protects the delimiters, or there are none, every one (behind an end, if that is
@@ -37,21 +37,19 @@ class Fate(StrEnum):
 
 def fates(spec: FrameSpec, stream: Stream, events: Sequence[Any]) -> list[Fate]:
     """What became of each undamaged frame of a stream."""
-    accepted = [event for event in events if event.kind != "invalid"]
-    found = {(event.offset, event.raw) for event in accepted}
-    return [
-        Fate.FOUND if frame in found else _missing(spec, stream, accepted, *frame)
-        for frame in stream.frames
-    ]
+    accepted = {(event.offset, event.raw) for event in events if event.kind != "invalid"}
+    return [_fate(spec, stream, accepted, *frame) for frame in stream.frames]
 
 
-def _missing(
-    spec: FrameSpec, stream: Stream, accepted: Iterable[Any], offset: int, raw: bytes
+def _fate(
+    spec: FrameSpec, stream: Stream, accepted: set[tuple[int, bytes]], offset: int, raw: bytes
 ) -> Fate:
+    shared = len(shared_start(spec))
+    if (offset, raw) in accepted or (offset + shared, raw[shared:]) in accepted:
+        return Fate.FOUND
     if not is_due(spec, stream.data[:offset]):
         return Fate.NOT_DUE
-    spans = ((event.offset, event.offset + event.size) for event in accepted)
-    if any(start < offset < end <= offset + reach(spec, raw) for start, end in spans):
+    if any(start < offset < start + len(other) for start, other in accepted):
         return Fate.COVERED
     return Fate.LOST
 
@@ -64,13 +62,6 @@ def is_due(spec: FrameSpec, before: bytes) -> bool:
     return not before or before.endswith(spec.end.value)
 
 
-def reach(spec: FrameSpec, raw: bytes) -> int:
-    """How far an accepted frame that begins in front of this one may reach into it, in bytes."""
-    if has_one_delimiter(spec):
-        return len(spec.start.value)
-    return 0 if is_protected(spec) else len(raw) + spec.greatest
-
-
 def is_protected(spec: FrameSpec) -> bool:
     """Whether what a frame begins behind or with occurs nowhere inside of a valid frame."""
     if isinstance(spec.start, StartLiteral | StartSet):
@@ -78,16 +69,18 @@ def is_protected(spec: FrameSpec) -> bool:
     return isinstance(spec.start, AfterEnd) and spec.end is not None and spec.end.protected
 
 
-def has_one_delimiter(spec: FrameSpec) -> bool:
-    """Whether one protected literal both starts and ends frames."""
-    return (
-        isinstance(spec.start, StartLiteral)
-        and spec.start.protected
-        and spec.end is not None
-        and spec.start.value == spec.end.value
-    )
+def shared_start(spec: FrameSpec) -> bytes:
+    """The start, where it can also be the end of the frame in front."""
+    if isinstance(spec.start, StartLiteral) and spec.end is not None:
+        return spec.start.value if spec.start.value == spec.end.value else b""
+    return b""
 
 
-def false_frames(sent: Container[bytes], events: Iterable[Any]) -> list[Any]:
+def false_frames(spec: FrameSpec, sent: Container[bytes], events: Iterable[Any]) -> list[Any]:
     """Accepted frames that nobody sent. Damage and noise may make up one of those that were."""
-    return [event for event in events if event.kind != "invalid" and event.raw not in sent]
+    start = shared_start(spec)
+    return [
+        event
+        for event in events
+        if event.kind != "invalid" and event.raw not in sent and start + event.raw not in sent
+    ]

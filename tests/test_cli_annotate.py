@@ -213,6 +213,29 @@ def test_only_some_parts() -> None:
     assert not any(row.fault for row in found)
 
 
+def test_payload_of_a_given_message() -> None:
+    protocol = compiled(COBS)
+    found = annotate(protocol, "pc", b"\7\1", covers=("payload",), message=protocol.message("two"))
+    assert lines(list(found)) == ["07 x 7", "01 y 1"]
+    found = annotate(protocol, "pc", bytes.fromhex("0409070100"), message=protocol.message("two"))
+    assert lines(list(found))[1:3] == ["07 x 7", "01 y 1"]
+
+
+def test_rows_know_what_they_show() -> None:
+    protocol = compiled(COBS)
+    sender = protocol.sender("pc")
+    found = rows(protocol, "pc", "0401070900")
+    x, y = sender.messages[0].fields
+    kind, _, end = sender.frame.parts
+    assert [row.subject for row in found] == [kind, x, y, end]
+    assert [row.value_type for row in found] == [
+        sender.frame.identity[0].type,
+        x.type,
+        y.type,
+        None,
+    ]
+
+
 def test_unknown_sender() -> None:
     with pytest.raises(KeyError):
         annotate(schema("rn1"), "nobody", b"")
@@ -299,6 +322,7 @@ def test_checksum_of_parts_that_are_not_shown() -> None:
     found = annotate(protocol, "pc", b"\x01\x02", covers=("payload", "check"))
     assert [row.path for row in found] == ["payload", "check"]
     assert found[1].meaning == "xor-8 of kind, number, length, payload"
+    assert not found[1].fault
 
 
 def test_overloads_are_told_apart_by_size() -> None:
@@ -331,3 +355,28 @@ def test_constants() -> None:
     assert [row.fault for row in good] == [""] * 6
     bad = rows(compiled(CONSTANTS), "pc", "01 6163 01FE 0305 FA")
     assert [row.fault for row in bad][1:5] == ['must be "ab"', "must be 01 FF", "", "must be 4"]
+
+
+SEVEN_BIT_LENGTH = """\
+protocol: seven
+endpoints: {pc: Computer}
+byte_bits: 7
+frame:
+  id: {type: uint8, id: true, range: [1, 1]}
+  length: {type: uint14, counts: [payload]}
+  payload: {}
+messages:
+  one: {id: 1, from: pc, fields: {x: uint7}}
+"""
+
+
+def test_part_of_seven_bit_bytes() -> None:
+    protocol = compiled(SEVEN_BIT_LENGTH)
+    assert lines(rows(protocol, "pc", "01 0100 05")) == [
+        "01 id 1 one",
+        "0100 length 1 bytes of payload",
+        "05 x 5",
+    ]
+    bad = rows(protocol, "pc", "01 0180 05")
+    assert bad[1].fault == "80 has its most significant bit set"
+    assert bad[1].value is None

@@ -99,6 +99,22 @@ def test_strict_fails_if_any_byte_is_in_no_frame() -> None:
     assert run(*arguments[:-2], "--hex", f"00 {GO}").exit_code == 0
 
 
+def test_the_only_sender_need_not_be_named(tmp_path: Path) -> None:
+    schema = tmp_path / "one.yaml"
+    schema.write_text("""\
+protocol: one
+endpoints: {pc: Computer}
+frame:
+  id: {type: uint8, id: true, range: [1, 1]}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id}
+messages:
+  ping: {id: 1, from: pc}
+""")
+    result = run("decode", str(schema), "--hex", "01 01")
+    assert result.output == "       0  ping\n"
+
+
 # --- logs of both directions ----------------------------------------------------------------------
 
 LOG = """\
@@ -121,7 +137,9 @@ def test_tagged_log() -> None:
 
 def test_tagged_log_of_one_sender() -> None:
     result = run("decode", RFLEX, "--input", "tagged", "--sender", "flex", input=LOG)
-    assert [line.split()[1] for line in result.output.splitlines()] == ["flex"]
+    assert [line.split()[1] for line in result.output.splitlines()] == [
+        "confirm_initialize_digital_io"
+    ]
 
 
 def test_lines_that_can_not_be_used_are_reported() -> None:

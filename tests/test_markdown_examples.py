@@ -230,18 +230,84 @@ def test_examples_say_what_numbers_mean():
 
 def test_bytes_that_do_not_fit_are_shown_as_such():
     rows = payload_rows("01 02", ("a", UINT16), ("b", UINT16))
-    assert rows == [("`01 02`", "`a`", "`513`")]
-    rows = payload_rows("01 02 03", ("a", UINT16), ("b", UINT16))
-    assert rows[-1] == ("`03`", "", "", "Does not fit the message.")
+    assert rows == [
+        ("`01 02`", "`a`", "`513`", ""),
+        ("", "`b`", "", "**Missing bytes: 2.**"),
+    ]
+    rows = payload_rows("01 02 03", ("a", UINT16), ("b", UINT16, {"about": about("B.")}))
+    assert rows[-1] == ("`03`", "`b`", "", "B. **Missing bytes: 1.**")
+    rows = payload_rows("01 02", ("a", UINT8))
+    assert rows[-1] == ("`02`", "`payload`", "", "Payload. **Nothing is due here.**")
     rows = payload_rows("FF FF", ("a", SINT14))
-    assert rows == [("`FF FF`", "Does not fit the message.")]
+    assert rows == [("`FF FF`", "`a`", "**Has a byte of more than 7 bits.**")]
 
 
-@pytest.mark.parametrize("data", ["AA", "", "55 04 01 47 56 00 5F"])
-def test_bytes_that_cannot_be_cut_are_only_listed(data):
+def test_values_that_do_not_fit_are_shown_in_their_list():
+    made = Array(element=SINT14, extent=Fixed(count=3))
+    assert payload_rows("01 00 80 80 02 00", ("a", made)) == [
+        ("`01 00 80 80 02 00`", "`a`", "`1`, ?, `2`", "**Has a byte of more than 7 bits.**")
+    ]
+
+
+def test_arrays_in_arrays():
+    row = Struct(name="r", fields=fields(("v", Array(element=UINT8, extent=Fixed(count=2)))))
+    rows = payload_rows(
+        "01 02 03 04 41 42",
+        ("r", Array(element=row, extent=Fixed(count=2))),
+        (
+            "s",
+            Array(
+                element=Struct(
+                    name="t", fields=fields(("u", UINT8), ("t", Text(extent=Fixed(count=1))))
+                ),
+                extent=Fixed(count=1),
+            ),
+        ),
+    )
+    assert rows == [
+        ("`01 02`", "`r[0].v`", "`1`, `2`"),
+        ("`03 04`", "`r[1].v`", "`3`, `4`"),
+        ("`41`", "`s[0].u`", "`65`"),
+        ("`42`", "`s[0].t`", "'B'"),
+    ]
+
+
+def test_physical_values_of_floats():
+    rows = payload_rows(
+        "3F C0 00 00 3F C0 00 00",
+        ("a", Float(bits=32, byte_order="big"), {"unit": "V", "scale": Fraction(1, 2)}),
+        ("b", Float(bits=32, byte_order="big"), {"about": about("A ratio.")}),
+    )
+    assert [row[2:] for row in rows] == [("`1.5`", "0.75 V"), ("`1.5`", "A ratio.")]
+
+
+def bad_robbus_rows(data: str) -> list[tuple[str, ...]]:
     shown = example("e", data)
     made = protocol(message("m", 0x47, ("a", UINT8), examples=(shown,)), frame=robbus_frame())
+    return example_rows(made)
+
+
+def test_frames_that_are_none_are_shown_as_far_as_they_look_like_one():
+    assert bad_robbus_rows("AA") == [
+        ("0", "`AA`", "`sync`", "Fixed. **Must be 55.**"),
+        ("", "", "`length`", "Length. **Missing bytes: 1.**"),
+    ]
+    assert bad_robbus_rows("55 03 01 47 09 5F")[-1][-1] == "Checksum. **Must be 0xac.**"
+    stuffed = bad_robbus_rows("55 04 01 47 56 00 5F")
+    assert stuffed[3][:3] == ("3", "`47`", "`command`")
+    assert stuffed[-1][1] == "`56 00 5F`"
+    assert stuffed[-1][-1].startswith("**56 00 is ")
+
+
+def test_example_without_bytes_has_no_table():
+    made = protocol(message("m", 1, examples=(example("e", "", covers=("payload",)),)))
     assert not [rows for rows in tables(page(made)) if rows[0][0] == "Byte"]
+
+
+def test_example_of_another_identity_is_read_as_its_message():
+    shown = example("e", "AA 09 05 0D 0A")
+    made = protocol(message("go", 7, ("speed", UINT8), examples=(shown,)))
+    assert [row[2] for row in example_rows(made)] == ["`start`", "`id`", "`speed`", "`end`"]
 
 
 def test_long_examples_are_cut():

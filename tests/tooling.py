@@ -16,7 +16,7 @@ def require_tool(name: str) -> str:
     """Return the path of a program on the PATH; without it, skip the test or fail."""
     found = shutil.which(name)
     if found is None:
-        _missing(f"the program {name} is not installed")
+        unavailable(f"the program {name} is not installed")
         raise AssertionError
     return found
 
@@ -24,10 +24,11 @@ def require_tool(name: str) -> str:
 def require_module(name: str) -> None:
     """Skip the test, or fail, unless the Python module can be imported."""
     if importlib.util.find_spec(name) is None:
-        _missing(f"the Python module {name} is not installed")
+        unavailable(f"the Python module {name} is not installed")
 
 
-def _missing(reason: str) -> None:
+def unavailable(reason: str) -> None:
+    """Skip the test, or fail where no tool may be missing."""
     if os.environ.get(STRICT):
         pytest.fail(f"{reason}, and {STRICT} is set")
     pytest.skip(reason)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import Quiet
 from protogen.cli.schemas import schema_files
 
 if TYPE_CHECKING:
@@ -33,9 +34,7 @@ def check(
     format: Annotated[
         ProblemFormat, typer.Option(help="How to print: for people, programs, or GitHub Actions.")
     ] = ProblemFormat.TEXT,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print problems only, no analysis.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Report problems, verify examples, analyse framing.
 

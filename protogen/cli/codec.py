@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from protogen.cli.exits import UsageError
 from protogen.cli.schemas import find_sender, open_protocol
 
 if TYPE_CHECKING:
@@ -21,11 +22,28 @@ class Codec:
     protocol: Protocol
     runtime: RuntimeProtocol[Any, Any]
 
+    @property
+    def senders(self) -> tuple[str, ...]:
+        """The endpoints that send something."""
+        return tuple(sender.name for sender in self.protocol.senders)
+
+    def sender_of_bytes(self, name: str | None) -> str:
+        """Return who sent the bytes: the endpoint of that name, or the only one that sends.
+
+        Raises UsageError if that is not clear.
+        """
+        if name is not None:
+            return find_sender(self.protocol, name).name
+        if len(self.senders) == 1:
+            return self.senders[0]
+        hint = f"give --sender {' or '.join(self.senders)}"
+        raise UsageError("nothing says who sent the bytes", hint)
+
     def decoder(self, sender: str) -> Decoder[Any, Any]:
-        """Return a new decoder of what ``sender`` sends. Raises UsageError if it sends nothing."""
+        """Return a new decoder of what ``sender`` sends."""
         from protogen.runtime.decoder import Decoder
 
-        return Decoder(self.runtime.sender(find_sender(self.protocol, sender).name))
+        return Decoder(self.runtime.sender(sender))
 
 
 def open_codec(schema: Path) -> Codec:

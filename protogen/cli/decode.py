@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -22,12 +22,20 @@ from protogen.cli.capture import (
     tagged_pieces,
 )
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
 
 if TYPE_CHECKING:
     from protogen.cli.codec import Codec
     from protogen.runtime.decoder import Decoder
 
 EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 55020141BC"
+
+Tagged = Annotated[
+    bool,
+    typer.Option(
+        "--tagged", help="The same as --input tagged: lines such as `linux: 1B 02`, both ways."
+    ),
+]
 
 Show = Callable[[Any], None]
 """Print an event."""
@@ -41,25 +49,14 @@ class EventFormat(StrEnum):
 
 
 def decode(  # noqa: PLR0913 - each option is one argument
-    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE|-", help="The capture; - is standard input.")
-    ] = STANDARD_INPUT,
-    sender: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The endpoint that sent the bytes.")
-    ] = None,
-    hex: Annotated[
-        str | None, typer.Option("--hex", metavar="TEXT", help="Bytes in hex, instead of a file.")
-    ] = None,
+    schema: SchemaFile,
+    file: CaptureFile = STANDARD_INPUT,
+    sender: SenderOfBytes = None,
+    hex: HexText = None,
     input: Annotated[
         InputFormat, typer.Option("--input", help="What the file is written in.")
     ] = InputFormat.RAW,
-    tagged: Annotated[
-        bool,
-        typer.Option(
-            "--tagged", help="The same as --input tagged: lines such as `linux: 1B 02`, both ways."
-        ),
-    ] = False,
+    tagged: Tagged = False,
     format: Annotated[
         EventFormat, typer.Option(help="One readable line for each event, or one of JSON.")
     ] = EventFormat.TEXT,
@@ -76,10 +73,12 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
     codec = open_codec(schema)
     kind = InputFormat.TAGGED if tagged else input
+    both_ways = kind is InputFormat.TAGGED and hex is None and sender is None
+    senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
     faults = Faults()
-    show = _printer(codec, format, tagged=kind is InputFormat.TAGGED)
-    with _pieces_of(file, hex, kind, codec, sender, faults) as pieces:
-        for events in _batches(codec, sender, pieces):
+    show = _printer(codec, format, show_sender=both_ways)
+    with _capture(file, hex, kind, codec, senders[0], faults) as pieces:
+        for events in _batches(codec, senders, pieces):
             for event in events:
                 faults.see(event)
                 show(event)
@@ -121,43 +120,36 @@ class Faults:
 
 
 @contextmanager
-def _pieces_of(
-    file: Path,
-    text: str | None,
-    kind: InputFormat,
-    codec: Codec,
-    sender: str | None,
-    faults: Faults,
+def _capture(
+    file: Path, text: str | None, kind: InputFormat, codec: Codec, sender: str, faults: Faults
 ) -> Iterator[Iterable[Piece]]:
-    senders = tuple(item.name for item in codec.protocol.senders)
-    if sender is None and (text is not None or kind is not InputFormat.TAGGED):
-        names = " or ".join(senders)
-        raise UsageError("nothing says who sent the bytes", f"give --sender {names}")
+    """Open what is to be decoded. It is from `sender`, unless its lines are tagged."""
     if text is not None and file != STANDARD_INPUT:
         raise UsageError(f"there are two captures: {file} and --hex")
     if text is not None:
-        yield [Piece(str(sender), hex_bytes(text))]
+        yield [Piece(sender, hex_bytes(text))]
         return
     with opened(file) as pieces:
         match kind:
             case InputFormat.RAW:
-                yield raw_pieces(pieces, str(sender))
+                yield raw_pieces(pieces, sender)
             case InputFormat.HEX:
-                yield hex_pieces(pieces, str(sender))
+                yield hex_pieces(pieces, sender)
             case InputFormat.TAGGED:
-                yield tagged_pieces(pieces, senders, faults.complain)
+                yield tagged_pieces(pieces, codec.senders, faults.complain)
 
 
-def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Iterator[list[Any]]:
-    """Yield the events of each piece. With a sender given, only what it sent is looked at."""
+def _batches(
+    codec: Codec, senders: Collection[str], pieces: Iterable[Piece]
+) -> Iterator[list[Any]]:
+    """Yield the events of each piece that is from one of the ``senders``."""
     decoders: dict[str, Decoder[Any, Any]] = {}
-    if sender is not None:
-        decoders[sender] = codec.decoder(sender)
     for piece in pieces:
-        if piece.sender not in decoders and sender is None:
+        if piece.sender not in senders:
+            continue
+        if piece.sender not in decoders:
             decoders[piece.sender] = codec.decoder(piece.sender)
-        if piece.sender in decoders:
-            yield decoders[piece.sender].feed(piece.data)
+        yield decoders[piece.sender].feed(piece.data)
     for decoder in decoders.values():
         yield decoder.flush()
 
@@ -165,7 +157,7 @@ def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Itera
 # --- out ------------------------------------------------------------------------------------------
 
 
-def _printer(codec: Codec, format: EventFormat, *, tagged: bool) -> Show:
+def _printer(codec: Codec, format: EventFormat, *, show_sender: bool) -> Show:
     from protogen.cli.console import console
     from protogen.cli.event_lines import EventLines, json_line
 
@@ -174,7 +166,7 @@ def _printer(codec: Codec, format: EventFormat, *, tagged: bool) -> Show:
     from rich.text import Text
 
     out = console()
-    lines = EventLines(codec.protocol, show_sender=tagged)
+    lines = EventLines(codec.protocol, show_sender=show_sender)
     if out.is_terminal:
         return lambda event: out.print(Text.assemble(*lines.segments(event)))
     return lambda event: typer.echo("".join(text for text, _ in lines.segments(event)).rstrip())

@@ -6,12 +6,12 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import StrEnum
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
+from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
     from protogen.cli.codec import Codec
@@ -20,6 +20,15 @@ if TYPE_CHECKING:
     from protogen.runtime.errors import EncodeError
 
 EXAMPLE = "Example: protogen encode schemas/matty.yaml go speed=500 steer=-2.5deg"
+
+Assignments = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="FIELD=VALUE|@PART=VALUE",
+        help="Numbers (0x1F), names (ready|hot), values with a unit (90deg), bytes (hex:1B02),"
+        " JSON for lists and structs.",
+    ),
+]
 
 Write = Callable[[bytes], None]
 """Print the bytes of a frame or of another span."""
@@ -33,7 +42,7 @@ class BytesFormat(StrEnum):
 
 
 def encode(
-    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
+    schema: SchemaFile,
     message: Annotated[
         str | None,
         typer.Argument(
@@ -41,14 +50,7 @@ def encode(
             help="The message; without it, lines of JSON come from standard input.",
         ),
     ] = None,
-    values: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="FIELD=VALUE|@PART=VALUE",
-            help="Numbers (0x1F), names (ready|hot), values with a unit (90deg), bytes (hex:1B02),"
-            " JSON for lists and structs.",
-        ),
-    ] = None,
+    values: Assignments = None,
     format: Annotated[
         BytesFormat, typer.Option(help="Hex digits, one line for each frame, or the bytes.")
     ] = BytesFormat.HEX,

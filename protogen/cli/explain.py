@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from protogen.cli.capture import hex_bytes
 from protogen.cli.exits import CLEAN
+from protogen.cli.options import HexText, SchemaFile, SenderOfBytes
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,14 +25,9 @@ _UNSTUFFED = _HEADS.index("unstuffed")
 
 
 def explain(
-    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
-    sender: Annotated[str, typer.Option(metavar="NAME", help="The endpoint that sent the bytes.")],
-    hex: Annotated[
-        str | None,
-        typer.Option(
-            "--hex", metavar="TEXT", help="The bytes in hex; without it, standard input is read."
-        ),
-    ] = None,
+    schema: SchemaFile,
+    sender: SenderOfBytes = None,
+    hex: HexText = None,
 ) -> int:
     """Show what each byte stands for.
 
@@ -45,7 +38,7 @@ def explain(
     from protogen.cli.console import console
 
     codec = open_codec(schema)
-    decoder = codec.decoder(sender)
+    decoder = codec.decoder(codec.sender_of_bytes(sender))
     data = hex_bytes(_standard_input() if hex is None else hex)
     out = console()
     for event in (*decoder.feed(data), *decoder.flush()):

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
     from protogen.cli.codec import Codec
@@ -23,7 +23,7 @@ _GREATEST_SEED = 1 << 32
 
 
 def fuzz(
-    schema: Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")],
+    schema: SchemaFile,
     examples: Annotated[
         int,
         typer.Option(min=1, metavar="N", help="Samples of each message; boundaries come first."),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
+from protogen.cli.options import Quiet
 from protogen.cli.schemas import print_problems, schema_files
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def generate(
         bool,
         typer.Option("--standalone", help="Python that carries its runtime along."),
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Write a codec and a reference for each schema.
 

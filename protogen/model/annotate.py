@@ -7,9 +7,9 @@ decoder says.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from protogen.model.dissect import Cursor, Row, dissect
+from protogen.model.dissect import Cursor, Row, decoded, dissect
 from protogen.model.frame import (
     ChecksumPart,
     IdentityPart,
@@ -24,6 +24,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character, type_name
 from protogen.model.wire import Unit, Wire, fixed_size, unstuff
 from protogen.runtime import checksum as sums
+from protogen.runtime.errors import ByteError
 
 __all__ = ["Row", "annotate"]
 
@@ -31,20 +32,26 @@ _SURPLUS = "nothing is due here"
 
 
 def annotate(
-    protocol: Protocol, sender: str, data: bytes, *, covers: Sequence[str] | None = None
+    protocol: Protocol,
+    sender: str,
+    data: bytes,
+    *,
+    covers: Sequence[str] | None = None,
+    message: Message | None = None,
 ) -> tuple[Row, ...]:
     """Return what each byte of `data`, which `sender` is said to have sent, stands for.
 
     The `wire` of all rows, joined, is `data`. Bytes that are no frame are taken apart as far as
     they look like one. With `covers`, `data` holds only those parts, without transparency, as a
-    document prints them. Raises KeyError if there is no such sender.
+    document prints them. The payload is that of `message`, if given, whatever the identity says.
+    Raises KeyError if there is no such sender.
     """
     known = protocol.sender(sender)
     if covers is None:
-        return _Frame(known, known.frame.parts, unstuff(known.frame, data)).rows()
+        return _Frame(known, known.frame.parts, unstuff(known.frame, data), message).rows()
     parts = [part for part in known.frame.parts if part.name in covers]
     plain = Wire(tuple(Unit(byte, bytes((byte,))) for byte in data))
-    return _Frame(known, parts, plain).rows()
+    return _Frame(known, parts, plain, message).rows()
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +65,13 @@ class _Found:
 class _Frame:
     """Reads the parts of one frame."""
 
-    def __init__(self, sender: Sender, parts: Sequence[Part], wire: Wire) -> None:
+    def __init__(
+        self, sender: Sender, parts: Sequence[Part], wire: Wire, message: Message | None
+    ) -> None:
         self._sender = sender
         self._parts = parts
         self._wire = wire
+        self._given = message
         self._cursor = Cursor(wire.units, 0)
         self._rows: list[Row] = []
         self._found: dict[str, _Found] = {}
@@ -81,6 +91,7 @@ class _Frame:
         if isinstance(part, PayloadPart):
             self._rows += self._payload(part)
         elif self._is_absent(part):
+            self._found[part.name] = _Found(b"", b"")
             return
         else:
             self._rows.append(self._fixed(part))
@@ -108,14 +119,17 @@ class _Frame:
 
     def _fixed(self, part: Part) -> Row:
         piece = self._cursor.take(fixed_size(part))
-        if piece.missing:
-            return piece.row(part.name, _part_type(part))
         if isinstance(part, LiteralPart):
             fault = "" if piece.bytes == part.bytes else f"must be {_hex(part.bytes)}"
-            return piece.row(part.name, "literal", fault=fault)
+            return piece.row(part.name, "literal", fault=fault, subject=part)
         assert isinstance(part, NumberPart | ChecksumPart)
-        row = piece.row(part.name, type_name(part.type))
-        value = int.from_bytes(piece.bytes, part.type.byte_order)
+        row = piece.row(part.name, type_name(part.type), subject=part, value_type=part.type)
+        if piece.missing:
+            return row
+        try:
+            value = decoded(part.type, piece.bytes)
+        except ByteError as error:
+            return replace(row, fault=str(error))
         if isinstance(part, ChecksumPart):
             return self._checksum(part, value, row)
         return self._number(part, value, row)
@@ -138,16 +152,14 @@ class _Frame:
         return " or ".join(names) or "no message has this identity"
 
     def _checksum(self, part: ChecksumPart, value: int, row: Row) -> Row:
-        if any(name not in self._found for name in self._covered(part)):
-            return row.reads(value, part.algorithm.name)
-        pieces = [self._found[name] for name in self._covered(part)]
+        meaning = f"{part.algorithm.name} of {', '.join(part.covers)}"
+        if any(name not in self._found for name in part.covers):
+            return row.reads(value, meaning)
+        pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
         due = _checksum_of(part).compute(covered)
         fault = "" if value == due else f"must be {due:#0{2 * part.type.size + 2}x}"
-        return row.reads(value, f"{part.algorithm.name} of {', '.join(part.covers)}", fault)
-
-    def _covered(self, part: ChecksumPart) -> list[str]:
-        return [name for name in part.covers if name in {item.name for item in self._parts}]
+        return row.reads(value, meaning, fault)
 
     # --- the payload ------------------------------------------------------------------------
 
@@ -156,12 +168,13 @@ class _Frame:
         inside = self._cursor.part(size)
         message = self._message(size)
         if message is None:
-            rows = [inside.take(size).row(part.name, "bytes")] if size else []
+            rows = [inside.take(size).row(part.name, "bytes", subject=part)] if size else []
         else:
             rows = dissect(message.fields, inside)
         if inside.left:
-            rows.append(inside.take(inside.left).row(part.name, "bytes", fault=_SURPLUS))
-        return rows or [inside.take(0).row(part.name, "", meaning="empty")]
+            surplus = inside.take(inside.left)
+            rows.append(surplus.row(part.name, "bytes", fault=_SURPLUS, subject=part))
+        return rows or [inside.take(0).row(part.name, "", meaning="empty", subject=part)]
 
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""
@@ -175,7 +188,9 @@ class _Frame:
         return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
 
     def _message(self, size: int) -> Message | None:
-        """The message with this identity and payload size, else the one that is closest."""
+        """The given message, else that of this identity and size, else the one that is closest."""
+        if self._given is not None:
+            return self._given
         candidates = self._candidates()
         fitting = [message for message in candidates if size in message.sizes]
         yielded = self._yielded()
@@ -214,13 +229,6 @@ class _Frame:
         return Row(
             offset=offset, wire=wire, bytes=b"", path="", type="", meaning=meaning, fault=fault
         )
-
-
-def _part_type(part: Part) -> str:
-    match part:
-        case NumberPart(type=type) | ChecksumPart(type=type):
-            return type_name(type)
-    return "literal"
 
 
 def _outside(part: NumberPart) -> str:

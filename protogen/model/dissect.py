@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from protogen.model.fields import Field
+from protogen.model.frame import Part
 from protogen.model.readings import (
     integer_reading,
     physical,
@@ -58,6 +59,10 @@ class Row:
     """Why these bytes can't stand here; empty where they can."""
     cut: bool = False
     """Whether more bytes belong here, but the frame has no more."""
+    subject: Part | Field | None = None
+    """The part or the field that the bytes belong to; None where they belong to none."""
+    value_type: Integer | Float | Text | Octets | None = None
+    """The type of a part's or a field's value; None for a literal, or bytes that none fits."""
 
     def reads(self, value: int | float | str, meaning: str, fault: str = "") -> Row:
         """The row with what its bytes turned out to be."""
@@ -77,7 +82,16 @@ class Piece:
         """Without transparency."""
         return bytes(unit.byte for unit in self.units)
 
-    def row(self, path: str, type: str, *, meaning: str = "", fault: str = "") -> Row:
+    def row(
+        self,
+        path: str,
+        type: str,
+        *,
+        meaning: str = "",
+        fault: str = "",
+        subject: Part | Field | None = None,
+        value_type: Integer | Float | Text | Octets | None = None,
+    ) -> Row:
         """These bytes as a row without a value."""
         wire = b"".join(unit.wire for unit in self.units)
         if self.missing:
@@ -91,6 +105,8 @@ class Piece:
             meaning=meaning,
             fault=fault,
             cut=bool(self.missing),
+            subject=subject,
+            value_type=value_type,
         )
 
 
@@ -169,14 +185,14 @@ class _Reader:
         fault = f"`{type.selector}` has no case {chosen}" if type.rest is None else ""
         if self._cursor.left:
             piece = self._cursor.take(self._cursor.left)
-            self.rows.append(piece.row(path, "bytes", fault=fault))
+            self.rows.append(piece.row(path, "bytes", fault=fault, subject=field))
 
     def _scalar(
         self, field: Field, type: Integer | Float | Text | Octets, path: str, scope: Scope
     ) -> None:
         size = _size(type, scope)
         piece = self._cursor.take(self._cursor.left if size is None else size)
-        row = piece.row(path, type_name(type))
+        row = piece.row(path, type_name(type), subject=field, value_type=type)
         self._short = bool(piece.missing)
         if not piece.missing:
             row = _read(field, type, row)
@@ -219,16 +235,21 @@ def _read(field: Field, type: Integer | Float | Text | Octets, row: Row) -> Row:
 
 
 def _number(field: Field, type: Integer | Float, row: Row) -> Row:
-    signed = isinstance(type, Integer) and type.signed
-    number = Number(type.bits, signed, type.byte_order, seven_bit=type.byte_bits == 7)
     try:
-        value = number.decode(row.bytes)
+        value = decoded(type, row.bytes)
     except ByteError as error:
         return replace(row, fault=str(error))
     if isinstance(type, Float):
         real = _float(type, value)
         return row.reads(real, physical(field, real, gap=" "))
     return row.reads(value, _meaning(field, type, value), _fault(field, type, value))
+
+
+def decoded(type: Integer | Float, data: bytes) -> int:
+    """Read an integer, or the bits of a float. Raises ByteError if there is none like that."""
+    signed = isinstance(type, Integer) and type.signed
+    number = Number(type.bits, signed, type.byte_order, seven_bit=type.byte_bits == 7)
+    return number.decode(data)
 
 
 def _float(type: Float, pattern: int) -> float:

@@ -34,7 +34,7 @@ class ChecksumReader:
             self._error("PG135", name, "type", text)
         if item.when is not None and self._is_in_front(name):
             text = "in front of the payload, a receiver can't know yet whether it is empty"
-            self._error("PG131", name, "when", text)
+            self._error("PG131", name, "when", text, "put the checksum behind the payload")
         return ChecksumPart(
             name=name,
             type=type_,

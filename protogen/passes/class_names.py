@@ -10,9 +10,15 @@ from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 
 ROOT_NAMES = frozenset(
-    {"protocol", "encode", "decode", "decoder", "encoder", "messages", "message"}
-)
+    {
+        "protocol", "encode", "decode", "decoder", "encoder", "messages", "message", "parts",
+        "sender",
+    }
+)  # fmt: skip
 """Names that generated modules use themselves, which a type or message would hide."""
+
+
+_RENAME = "rename one of them; types inside of fields are called after message and field"
 
 
 def check_class_names(context: Context, draft: Draft) -> None:
@@ -21,9 +27,9 @@ def check_class_names(context: Context, draft: Draft) -> None:
     types = draft.named.places | {name: ("types", name) for name in context.syntax.types}
     for name, loc in messages.items():
         if name in types:
-            context.error_at_key("PG107", loc, f"a type is called `{name}` too")
-    own = ROOT_NAMES | {f"{sender}_parts" for sender in draft.senders}
-    generated = {_pascal(name) for name in own}
+            context.error_at_key("PG107", loc, f"a type is called `{name}` too", _RENAME)
+    own = (f"{sender}_{word}" for sender in draft.senders for word in ("parts", "message"))
+    generated = {_pascal(name) for name in (*ROOT_NAMES, *own)}
     classes: dict[str, str] = {}
     for name, loc in (types | messages).items():
         other = classes.setdefault(_pascal(name), name)
@@ -32,7 +38,7 @@ def check_class_names(context: Context, draft: Draft) -> None:
             context.error_at_key("PG106", loc, text)
         elif other != name:
             text = f"`{name}` and `{other}` are both `{_pascal(name)}` in generated code"
-            context.error_at_key("PG107", loc, text, "rename one of them")
+            context.error_at_key("PG107", loc, text, _RENAME)
 
 
 def _pascal(name: str) -> str:

@@ -20,6 +20,7 @@ from protogen.schema.syntax.messages import Step as StepSyntax
 
 def attach_examples(context: Context, draft: Draft) -> None:
     """Add its examples to each message."""
+    _content_known(context)
     for name, message in draft.messages.items():
         written = context.syntax.messages[name].examples or {}
         built = [
@@ -28,6 +29,16 @@ def attach_examples(context: Context, draft: Draft) -> None:
         ]
         known = tuple(example for example in built if example is not None)
         draft.messages[name] = replace(message, examples=known)
+
+
+def _content_known(context: Context) -> None:
+    """What `content` holds by default are parts of some frame at least."""
+    names = dict.fromkeys(name for frame in context.syntax.frame.values() for name in frame)
+    for item in context.syntax.content_covers or ():
+        for name in item.split(".."):
+            if name not in names:
+                text = f"no frame has a part called `{name}`"
+                context.error("PG132", ("content_covers",), text, hint_for(name, names))
 
 
 def _example(
@@ -83,7 +94,7 @@ def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tu
         text = "nothing says which parts `content` holds"
         context.error_at_key("PG162", (*loc, "content"), text, "add `covers`, or `content_covers`")
         return ()
-    place: Loc = (*loc, "covers") if item.covers else ("content_covers",)
+    place: Loc = (*loc, "covers") if item.covers else (*loc, "content")
     return Runs(context, (part.name for part in frame.parts)).run(written, place)
 
 

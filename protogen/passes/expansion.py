@@ -54,10 +54,10 @@ class Expansion:
         """What was counted so far."""
         return Mark(self._fields, self._varying)
 
-    def keep(self, struct: Struct, layout: Layout, begun: Mark) -> None:
+    def keep(self, item: Effective, struct: Struct, layout: Layout, begun: Mark) -> None:
         """Keep a declared struct, unless something in it depends on where it stands."""
-        if self._varying == begun.varying:
-            self._fixed[(struct.name, layout)] = (struct, self._fields - begun.fields)
+        if item.declared is not None and self._varying == begun.varying:
+            self._fixed[(item.declared, layout)] = (struct, self._fields - begun.fields)
 
     def known(self, item: Effective, layout: Layout) -> Struct | None:
         """A declared struct that was kept; its fields count again."""

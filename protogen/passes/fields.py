@@ -60,13 +60,9 @@ class FieldBuilder:
 
     @property
     def followed(self) -> frozenset[str]:
-        """The declared types that were used so far."""
-        return frozenset(self._declarations.followed)
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all declared types could be followed to their end."""
-        return not (self._expansion.is_spent or self._declarations.too_deep)
+        """The declared types that were used so far; all where there were too many to follow."""
+        is_cut = self._expansion.is_spent or self._declarations.too_deep
+        return frozenset(self._context.syntax.types if is_cut else self._declarations.followed)
 
     def fields(
         self, syntax: Mapping[str, FieldSyntax], loc: Loc, setting: Setting
@@ -143,7 +139,7 @@ class FieldBuilder:
         struct = Struct(name=item.owner, fields=built, about=about(origin.doc, origin.source))
         if not self._expansion.is_spent:
             self._named.register(struct, item.chain[0][1])
-            self._expansion.keep(struct, setting.layout, begun)
+            self._expansion.keep(item, struct, setting.layout, begun)
         return struct
 
     def _array(self, item: Effective) -> Array:

@@ -48,9 +48,10 @@ def resolve_frames(context: Context, draft: Draft) -> None:
         frame = _frame_of(context, sender)
         if frame is not None:
             draft.frames[sender] = frame
-    for key in written:
-        idle = key not in draft.senders if key else not draft.senders
-        if idle and (not key or key in context.syntax.endpoints):
+    known = {*context.syntax.endpoints, *(() if draft.senders else (ALL_SENDERS,))}
+    for key in dict.fromkeys((*written, *context.syntax.transparency)):
+        idle = key in known and key not in draft.senders
+        if idle and (key in written or ALL_SENDERS in written):
             FrameBuilder(context, key).frame()
 
 
@@ -101,7 +102,8 @@ class FrameBuilder:
         length = frame.length
         if length is not None and stated_range(frame, length) is None:
             around = counted_size(frame, length, empty=True)
-            text = f"`{length.name}` counts {around} bytes besides the payload"
+            besides = "1 byte" if around == 1 else f"{around} bytes"
+            text = f"`{length.name}` counts {besides} besides the payload"
             text = f"{text}, and can't say more than {length.greatest}"
             self._context.error_at_key("PG137", (*self._loc, length.name), text)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.frame import Frame, PayloadPart
+from protogen.model.frame import Cobs, Frame, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -24,7 +24,13 @@ from protogen.model.protocol import Link
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Integer, Struct, Switch, Type
 from protogen.passes import framing_words, wire_sizes
-from protogen.passes.capacity import GREATEST_FRAME, amount, part_size, payload_range
+from protogen.passes.capacity import (
+    GREATEST_FRAME,
+    amount,
+    is_optional,
+    part_size,
+    payload_range,
+)
 from protogen.passes.context import Context
 from protogen.passes.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.draft import Draft
@@ -70,6 +76,7 @@ class _Analysis:
         start = self._start(end)
         if start is None or not self._ends_known(end):
             return None
+        self._only_end()
         if self._region_unclear():
             return None
         return self._describe(start, end)
@@ -156,6 +163,24 @@ class _Analysis:
                 text = "a receiver can't tell where these messages end: they differ in size"
                 hint = "give the frame a length or an end literal"
                 self._context.error_at_key("PG145", ("overloads", overload.name), text, hint)
+
+    def _only_end(self) -> None:
+        """A frame that holds nothing is no frame to a receiver, but a line that is idle."""
+        head, tail = self.delimiters.head, self.delimiters.tail
+        transparency = self.frame.transparency
+        if tail is None or (head is not None and head.bytes != tail.bytes):
+            return
+        if transparency is not None and isinstance(transparency.encoding, Cobs):
+            return  # It makes a byte of nothing.
+        names = {part.name for part in (*(head.parts if head else ()), *tail.parts)}
+        others = (part for part in self.frame.parts if part.name not in names)
+        if any(part_size(part) and not is_optional(part) for part in others):
+            return
+        for message in self._messages:
+            if message.sizes.least == 0:
+                text = f"a frame of `{message.name}` can be its end alone, which says nothing"
+                hint = "give the frame an identity or another part, or the message a field"
+                self._context.error_at_key("PG146", ("messages", message.name), text, hint)
 
     def _identity_first(self) -> bool:
         names = [part.name for part in self.frame.parts]

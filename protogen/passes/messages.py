@@ -39,7 +39,7 @@ def resolve_messages(context: Context, draft: Draft) -> None:
     ]
     for resolution in begun:
         resolution.resolve_fields(builder)
-    draft.used_types = builder.followed if builder.is_whole else frozenset(context.syntax.types)
+    draft.used_types = builder.followed
     for resolution in begun:
         resolution.add_to(draft)
 

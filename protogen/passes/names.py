@@ -6,10 +6,15 @@ from collections.abc import Mapping
 
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
-from protogen.passes.reserved_words import languages_reserving
+from protogen.passes.reserved_words import (
+    OWN_ARGUMENTS,
+    OWN_ATTRIBUTES,
+    languages_reserving,
+)
 from protogen.passes.type_names import is_builtin
 from protogen.problems import hint_for
 from protogen.schema.syntax.fields import FieldSyntax
+from protogen.schema.syntax.protocol import Frame
 
 _NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
 _VALUE_KEYS = ("values", "flags", "bits", "special")
@@ -24,8 +29,7 @@ def check_names(context: Context, draft: Draft) -> None:
         for name in getattr(syntax, key):
             _usable(context, name, (key, name))
     for sender, frame in syntax.frame.items():
-        for name in frame:
-            _usable(context, name, ("frame", sender, name))
+        _parts(context, frame, ("frame", sender))
     for name, declared in syntax.types.items():
         if is_builtin(name):
             context.error_at_key("PG107", ("types", name), f"`{name}` is a built-in type")
@@ -47,9 +51,23 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
         report("PG106", loc, text, f"another name, such as `{name}_` with a word behind it")
 
 
+def _free(context: Context, name: str, own: frozenset[str], loc: Loc) -> None:
+    if name in own:
+        text = f"`{name}` is a name that generated code uses itself"
+        context.error_at_key("PG106", loc, text)
+
+
+def _parts(context: Context, frame: Frame, loc: Loc) -> None:
+    for name, part in frame.items():
+        _usable(context, name, (*loc, name))
+        if part.literal is None and part.id is None:
+            _free(context, name, OWN_ARGUMENTS, (*loc, name))
+
+
 def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:
     for name, item in fields.items():
         _usable(context, name, (*loc, name))
+        _free(context, name, OWN_ATTRIBUTES, (*loc, name))
         _inside_field(context, item, (*loc, name))
 
 

@@ -29,6 +29,14 @@ var void while with yield
 DIRECTIVES = frozenset({"rename", "remove", "replace", "after", "before"})
 """Words of `extends`, which would be taken for directives where a name stands."""
 
+OWN_ATTRIBUTES = frozenset(
+    {"violations", "to_dict", "from_dict", "to_payload", "from_payload", "parse_payload"}
+)
+"""What generated messages and structs do, which a field of the name would hide."""
+
+OWN_ARGUMENTS = frozenset({"message", "sender", "strict"})
+"""What a generated encoder takes beside the parts whose values the caller gives."""
+
 _LANGUAGES: dict[str, frozenset[str]] = {
     "C": frozenset(_C.split()),
     "C++": frozenset(_CPP.split()),

@@ -18,6 +18,7 @@ from protogen.passes.framing import analyse_framing
 from protogen.passes.identities import check_identities
 from protogen.passes.messages import resolve_messages
 from protogen.passes.names import check_names
+from protogen.passes.reserved import check_reserved
 from protogen.passes.spec_hash import spec_hash
 from protogen.passes.unused import check_unused
 
@@ -32,6 +33,7 @@ PASSES: tuple[Pass, ...] = (
     check_unused,
     check_class_names,
     check_identities,
+    check_reserved,
     attach_examples,
     resolve_exchanges,
     analyse_framing,

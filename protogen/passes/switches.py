@@ -34,8 +34,8 @@ class SwitchBuilder:
         self._context = context
         self._named = named
         self._fields = fields
-        self._ends: dict[Loc, bool] = {}
-        """Where a switch was written: whether it ended the payload."""
+        self._ends: dict[tuple[Loc, str], bool] = {}
+        """Where a switch was written, and in which type: whether it ended the payload."""
 
     def switch(self, item: Effective) -> Switch | None:
         """The switch, or None where nothing can choose."""
@@ -85,14 +85,16 @@ class SwitchBuilder:
     def _same_everywhere(self, ends: bool, item: Effective) -> None:
         """A declared type is one type: its switch has a rest wherever it is used, or nowhere."""
         loc = item.at("switch")
-        if self._ends.setdefault(loc, ends) == ends:
+        if self._ends.setdefault((loc, item.setting.owner), ends) == ends:
             return
-        name = item.setting.stack[-1]
+        types = self._context.syntax.types
+        structs = [name for name in item.setting.stack if types[name].fields]
+        around = structs[-1] if structs else item.setting.owner
         self._context.error(
             "PG107",
             loc,
-            f"two different types would be called `{name}`: where it ends a payload, this switch "
-            "keeps the bytes of a value without a case, and elsewhere it can't",
+            f"two different types would be called `{around}`: where it ends a payload, this "
+            "switch keeps the bytes of a value without a case, and elsewhere it can't",
             "declare a type for each of the two uses",
         )
 

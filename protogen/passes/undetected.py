@@ -87,13 +87,13 @@ def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[
 
 
 def _early_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
-    """An end that is made of a wrong byte cuts a message that has no other size."""
-    if end is None or end.protected or frame.length is not None or not frame.checksums:
+    """A wrong byte can end a frame early, or join two, where nothing else tells the size."""
+    if end is None or frame.length is not None or not frame.checksums:
         return ""
     if all(message.sizes.fixed is not None for message in messages):
         return ""
     what = end.bytes.hex(" ").upper()
-    return f"a wrong byte that makes {what}, the end, where what stands before it happens to check"
+    return f"a wrong byte that makes or breaks {what}, the end, where what is read happens to check"
 
 
 def _share_a_size(messages: list[Message]) -> bool:

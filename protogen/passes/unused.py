@@ -20,15 +20,19 @@ from protogen.schema.syntax.protocol import ALL_SENDERS
 
 def check_unused(context: Context, draft: Draft) -> None:
     """Resolve what is left over, for its problems only."""
-    builder = FieldBuilder(context, NamedTypes(context))
+    used = set(draft.used_types)
     for name, message in context.syntax.messages.items():
         if name not in draft.messages and not isinstance(message.fields, str):
+            builder = FieldBuilder(context, NamedTypes(context))
             setting = nowhere(_layout(context, message), name)
             builder.fields(message.fields, ("messages", name, "fields"), setting)
+            used |= builder.followed
     for name in context.syntax.types:
-        if builder.is_whole and name not in draft.used_types | builder.followed:
+        if name not in used:
+            builder = FieldBuilder(context, NamedTypes(context))
             setting = nowhere(_layout(context, None), name)
             builder.field(name, FieldSyntax(type=name), ("types", name), setting)
+            used |= builder.followed
 
 
 def _layout(context: Context, message: MessageSyntax | None) -> Layout:

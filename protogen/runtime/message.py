@@ -55,9 +55,13 @@ class Message(Record):
         """
         values = record_to_wire(self, outermost(), strict)
         try:
-            return bytes(type(self).FORMAT.build(values))
+            payload = bytes(type(self).FORMAT.build(values))
         except PayloadError as error:
             raise EncodeError(error.path, error.problem) from None
+        if len(payload) not in self.SIZES:
+            problem = f"makes {len(payload)} bytes of payload; {self.NAME} has {self.SIZES}"
+            raise EncodeError("", problem)
+        return payload
 
     @classmethod
     def from_payload(cls, payload: bytes) -> Self:

@@ -111,6 +111,7 @@ def _key_hint(word: str, known: Sequence[str]) -> str | None:
 
 _YAML_WORDS = (
     (r"^Value error, ", ""),
+    (r"^Dictionary should have at least 1 item.*", "there is nothing in it"),
     (r" or instance of \w+", ""),
     (r"^(Input|String) should", "this should"),
     (r"\ba valid boolean", "true or false"),

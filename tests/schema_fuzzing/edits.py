@@ -86,6 +86,25 @@ def _nudge(draw: st.DrawFn, places: list[Place]) -> None:
         container[key] = copy.deepcopy(draw(st.sampled_from(JUNK)))
 
 
+def _exchange(draw: st.DrawFn, places: list[Place]) -> None:
+    """A value becomes another one of its kind, from elsewhere in the schema."""
+    container, key = _pick(draw, places)
+    kind = type(container[key])
+    others = [other[index] for other, index in places if type(other[index]) is kind]
+    container[key] = copy.deepcopy(draw(st.sampled_from(others)))
+
+
+def _reorder(draw: st.DrawFn, places: list[Place]) -> None:
+    """The keys of a mapping, or the items of a list, in another order."""
+    container, _ = _pick(draw, places)
+    if isinstance(container, list):
+        container[:] = draw(st.permutations(container))
+        return
+    items = draw(st.permutations(list(container.items())))
+    container.clear()
+    container.update(items)
+
+
 def _swap(draw: st.DrawFn, places: list[Place]) -> None:
     """Two values change places, unless one would come to lie inside of itself."""
     first, second = _pick(draw, places), _pick(draw, places)
@@ -126,7 +145,8 @@ def _repeat(draw: st.DrawFn, places: list[Place]) -> None:
 
 
 _EDITS: tuple[Callable[[st.DrawFn, list[Place]], None], ...] = (
-    _delete, _replace, _replace, _nudge, _swap, _rename, _insert, _repeat,
+    _delete, _replace, _nudge, _nudge, _exchange, _exchange, _exchange, _reorder, _swap, _rename,
+    _insert, _repeat,
 )  # fmt: skip
 
 

@@ -67,13 +67,23 @@ def lost(framing: Framing, stream: Stream, events: Sequence[Any]) -> list[tuple[
     """
     valid = [event for event in events if event.kind != "invalid"]
     found = {(event.offset, event.raw) for event in valid}
+    shared = _shared(framing)
     return [
         (offset, frame)
         for offset, frame in stream.frames
         if (offset, frame) not in found
+        and (not shared or (offset + shared, frame[shared:]) not in found)
         and _is_due(framing, stream.data[:offset])
         and not _is_hidden(framing, offset, valid)
     ]
+
+
+def _shared(framing: Framing) -> int:
+    """The size of a start that can also be the end of the frame before; 0: it never is."""
+    start, end = framing.start, framing.end
+    if isinstance(start, StartLiteral) and end is not None and start.bytes == end.bytes:
+        return len(start.bytes)
+    return 0
 
 
 def _is_due(framing: Framing, before: bytes) -> bool:

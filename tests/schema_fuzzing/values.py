@@ -204,9 +204,11 @@ def _count(least: int, greatest: int) -> st.SearchStrategy[int]:
     return few | st.just(min(greatest, max(least, _GREATEST_COUNT)))
 
 
-def _float(type_: Float, field: Field | None) -> st.SearchStrategy[float]:
+def _float(type_: Float, field: Field | None) -> st.SearchStrategy[float | str]:
+    """Numbers; the infinities as texts."""
     if field is None or field.least is None or field.greatest is None:
-        return st.floats(width=type_.bits, allow_nan=False)
+        usual = st.floats(width=type_.bits, allow_nan=False, allow_infinity=False)
+        return usual | st.sampled_from(["inf", "-inf"])
     least, greatest = field.least, field.greatest
     steps = (least + (greatest - least) * Fraction(step, 8) for step in range(9))
     points = [_rounded(point, type_.bits) for point in (*steps, ceil(least), floor(greatest))]

@@ -81,7 +81,7 @@ def vector_files() -> tuple[Path, ...]:
 
 
 def read_vectors(path: Path) -> VectorFile:
-    """Read one file. Raises ValueError or KeyError, with a name in it, where it is badly written."""
+    """Read one file. Raises ValueError or KeyError where it is badly written."""
     data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     _check_keys(path.name, data, {"schema", "vectors", "streams"})
     vectors = tuple(_vector(item) for item in data["vectors"])

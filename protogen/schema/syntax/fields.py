@@ -48,11 +48,15 @@ NamedBitRef = Annotated[
 ]
 
 
+ValueNames = Annotated[dict[Name, NamedValueRef], Field(min_length=1)]
+"""Names of raw values, one at least."""
+
+
 class NamedBits(Syntax):
     """A named run of bits of one integer."""
 
     bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
-    values: dict[Name, NamedValueRef] | None = Field(None, description="Names of its values.")
+    values: ValueNames | None = Field(None, description="Names of its values.")
     doc: Text | None = Field(None, description="What the bits mean.")
     source: SourceRef | None = Field(None, description="Where it is written down.")
 
@@ -154,13 +158,15 @@ class FieldSyntax(Syntax):
         description="Bytes of an ascii or bytes field: a number, the earlier field that gives it, "
         "or fill (to the end of the payload).",
     )
-    values: dict[Name, NamedValueRef] | None = Field(
+    values: ValueNames | None = Field(
         None,
         description="Enum: names of raw values. Unknown values are kept unless closed.",
     )
     closed: bool = Field(False, description="Values without a name are invalid.")
-    flags: dict[Name, NamedBitRef] | None = Field(None, description="Names of single bits.")
-    bits: dict[Name, NamedBitsRef] | None = Field(
+    flags: Annotated[dict[Name, NamedBitRef], Field(min_length=1)] | None = Field(
+        None, description="Names of single bits."
+    )
+    bits: Annotated[dict[Name, NamedBitsRef], Field(min_length=1)] | None = Field(
         None, description="Named bit ranges of one integer."
     )
     const: Constant | None = Field(None, description="The only valid value.")
@@ -175,7 +181,7 @@ class FieldSyntax(Syntax):
         description="physical value = raw value x scale + offset, in the field's unit.",
     )
     unit: Text | None = Field(None, description="Unit of the physical value.")
-    special: dict[Name, NamedValueRef] | None = Field(
+    special: ValueNames | None = Field(
         None, description="Raw values that mean that there is no reading."
     )
     byte_order: ByteOrder | None = Field(None, description="Byte order of this field.")

@@ -8,7 +8,7 @@ from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.anchors import example_anchor
-from protogen.targets.markdown.annotate import annotated
+from protogen.targets.markdown.example_bytes import bytes_table
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.table import Table
 from protogen.targets.markdown.words import code, hex_bytes, sentence
@@ -36,13 +36,12 @@ class ExampleView:
 
 def example_view(protocol: Protocol, message: Message, example: Example) -> ExampleView:
     """Return an example with its bytes cut into what they mean."""
-    frame = protocol.sender(example.sender).frame
     return ExampleView(
         anchor=example_anchor(message.name, example.name),
         title=example.name,
         about=about_line(example.about, _coverage(example)),
         dump=_dump(example.bytes),
-        table=annotated(frame, message, example),
+        table=bytes_table(protocol, message, example),
         contradiction=_contradiction(example.contradicts),
     )
 

@@ -1,0 +1,25 @@
+"""Arguments and options that several commands have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+SchemaFile = Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")]
+
+CaptureFile = Annotated[
+    Path, typer.Argument(metavar="FILE|-", help="The capture; - is standard input.")
+]
+
+SenderOfBytes = Annotated[
+    str | None, typer.Option(metavar="NAME", help="The endpoint that sent the bytes.")
+]
+
+HexText = Annotated[
+    str | None,
+    typer.Option("--hex", metavar="TEXT", help="The bytes in hex, instead of other input."),
+]
+
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but what is wrong.")]

@@ -1,0 +1,191 @@
+"""The table of an example's bytes: what they stand for, each value with its meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from protogen.model.annotate import Row, annotate
+from protogen.model.fields import Field
+from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
+from protogen.model.messages import Example, Message
+from protogen.model.protocol import Protocol
+from protogen.model.types import Float, Integer
+from protogen.targets.escape import markdown
+from protogen.targets.markdown.parts import identity_value, role
+from protogen.targets.markdown.table import Table, table
+from protogen.targets.markdown.values import raw_text, value_meaning
+from protogen.targets.markdown.words import capital, code, hex_bytes, hex_number, sentence, span
+
+_HEADER = ("Byte", "Bytes", "Decoded", "Name", "Value", "Meaning")
+_MOST_BYTES = 16
+"""Bytes of one line that are printed."""
+_MOST_VALUES = 8
+"""Values of one line that are printed."""
+_MOST_ELEMENTS = 32
+"""Elements of an array of structs that get lines of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """A row of the table; it can stand for several rows of the frame."""
+
+    rows: Sequence[Row]
+    name: str
+    value: str = ""
+    meaning: str = ""
+
+    def cells(self) -> tuple[str, ...]:
+        wire = b"".join(row.wire for row in self.rows)
+        data = b"".join(row.bytes for row in self.rows)
+        return (
+            span(self.rows[0].offset, len(wire)) if wire else "",
+            _bytes_text(wire),
+            "" if wire == data else _bytes_text(data),
+            code(self.name) if self.name else "",
+            self.value,
+            " ".join(filter(None, (self.meaning, *self._faults()))),
+        )
+
+    def _faults(self) -> Iterator[str]:
+        for fault in dict.fromkeys(row.fault for row in self.rows if row.fault):
+            yield f"**{capital(sentence(markdown(fault)))}**"
+
+
+def bytes_table(protocol: Protocol, message: Message, example: Example) -> Table | None:
+    """Return the table of an example's bytes; None if there are none to show."""
+    rows = annotate(protocol, example.sender, example.bytes, covers=example.covers, message=message)
+    shown = [row for row in rows if row.wire or not isinstance(row.subject, PayloadPart)]
+    cells = [line.cells() for line in _parts_and_fields(shown, message)]
+    return table(_HEADER, cells) if example.bytes else None
+
+
+def _parts_and_fields(rows: Sequence[Row], message: Message) -> Iterator[_Line]:
+    for fields, group in groupby(rows, lambda row: isinstance(row.subject, Field)):
+        if fields:
+            yield from _lines([*group])
+        else:
+            yield from (_part_line(row, message) for row in group)
+
+
+def _bytes_text(data: bytes) -> str:
+    if len(data) <= _MOST_BYTES:
+        return code(hex_bytes(data)) if data else ""
+    return f"{code(hex_bytes(data[: _MOST_BYTES - 4]))} ... {code(hex_bytes(data[-2:]))}"
+
+
+# --- rows that share a line ---------------------------------------------------------------------
+
+
+def _lines(rows: Sequence[Row], start: int = 0) -> Iterator[_Line]:
+    """Yield the lines of rows whose paths are the same up to `start`."""
+    for array, group in groupby(rows, lambda row: _array(row.path, start)):
+        if array:
+            yield from _array_lines(array, [*group])
+        else:
+            yield from map(_line, group)
+
+
+def _array(path: str, start: int) -> str:
+    """The path of the outermost array behind `start`; empty if there is none."""
+    return path[: max(0, path.find("[", start))]
+
+
+def _array_lines(array: str, rows: Sequence[Row]) -> Iterator[_Line]:
+    elements = [
+        (path, [*group])
+        for path, group in groupby(rows, lambda row: _element(row.path, len(array)))
+    ]
+    if all(row.path == path and _is_number(row) for path, group in elements for row in group):
+        yield _list_line(array, rows)
+    elif len(elements) > _MOST_ELEMENTS:
+        yield _Line(rows, array, "", f"{len(elements)} elements.")
+    else:
+        for path, group in elements:
+            yield from _element_lines(path, group)
+
+
+def _element(path: str, start: int) -> str:
+    """The path of the element of an array whose own path ends at `start`."""
+    return path[: path.index("]", start) + 1]
+
+
+def _list_line(array: str, rows: Sequence[Row]) -> _Line:
+    values = ["?" if row.value is None else code(row.value) for row in rows[:_MOST_VALUES]]
+    more = ["..."] if len(rows) > _MOST_VALUES else []
+    return _Line(rows, array, ", ".join(values + more), _doc(rows[0]))
+
+
+def _element_lines(path: str, rows: Sequence[Row]) -> Iterator[_Line]:
+    """Yield the lines of one element of an array; a struct of numbers takes one."""
+    names = [row.path.removeprefix(f"{path}.") for row in rows]
+    if all(map(_is_number, rows)) and all(map(str.isidentifier, names)):
+        pairs = zip(names, rows, strict=True)
+        yield _Line(rows, path, ", ".join(f"{name} {_member(row)}" for name, row in pairs))
+    else:
+        yield from _lines(rows, len(path))
+
+
+def _member(row: Row) -> str:
+    """The value, and its meaning in brackets, unless that is only what its field is."""
+    line = _line(row)
+    return line.value if line.meaning in ("", _doc(row)) else f"{line.value} ({line.meaning})"
+
+
+def _is_number(row: Row) -> bool:
+    return isinstance(row.value_type, Integer | Float)
+
+
+def _doc(row: Row) -> str:
+    return markdown(row.subject.about.doc) if row.subject is not None else ""
+
+
+# --- values and meanings ------------------------------------------------------------------------
+
+
+def _part_line(row: Row, message: Message) -> _Line:
+    value, meaning = "", ""
+    if isinstance(row.subject, Part):
+        value, meaning = _part_value(row), role(row.subject)
+    if isinstance(row.subject, IdentityPart):
+        meaning = code(message.name)
+    return _Line((row,), row.path, value, meaning or sentence(markdown(row.meaning)))
+
+
+def _part_value(row: Row) -> str:
+    part = row.subject
+    if not isinstance(row.value, int):
+        return ""
+    if isinstance(part, IdentityPart):
+        return identity_value(part, row.value)
+    if isinstance(part, ChecksumPart):
+        return code(hex_number(row.value, part.type.bits))
+    return code(row.value)
+
+
+def _line(row: Row) -> _Line:
+    """Return the line of a field, or of a part of one."""
+    assert isinstance(row.subject, Field)
+    return _Line((row,), row.path, _value(row), _meaning(row, row.subject))
+
+
+def _value(row: Row) -> str:
+    if isinstance(row.value, str):
+        text = row.value.rstrip("\0")
+        return markdown(f"'{text}'") if text else ""
+    if row.value is None:
+        return ""
+    if isinstance(row.value_type, Integer) and row.value_type.role == "char":
+        return raw_text(int(row.value), row.value_type)
+    return code(row.value)
+
+
+def _meaning(row: Row, field: Field) -> str:
+    if isinstance(row.value, int) and isinstance(row.value_type, Integer):
+        return value_meaning(row.value, field, row.value_type)
+    if isinstance(row.value, float):
+        return markdown((row.meaning if field.scaled else field.unit) or field.about.doc)
+    if row.value_type is None and not row.fault:
+        return "Raw bytes, as no case has this value."
+    return markdown(field.about.doc)
