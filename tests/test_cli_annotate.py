@@ -361,8 +361,9 @@ SEVEN_BIT_LENGTH = """\
 protocol: seven
 endpoints: {pc: Computer}
 byte_bits: 7
+byte_order: big
 frame:
-  id: {type: uint8, id: true, range: [1, 1]}
+  id: {type: uint7, id: true, range: [1, 1]}
   length: {type: uint14, counts: [payload]}
   payload: {}
 messages:
@@ -372,11 +373,11 @@ messages:
 
 def test_part_of_seven_bit_bytes() -> None:
     protocol = compiled(SEVEN_BIT_LENGTH)
-    assert lines(rows(protocol, "pc", "01 0100 05")) == [
+    assert lines(rows(protocol, "pc", "01 0001 05")) == [
         "01 id 1 one",
-        "0100 length 1 bytes of payload",
+        "0001 length 1 bytes of payload",
         "05 x 5",
     ]
-    bad = rows(protocol, "pc", "01 0180 05")
-    assert bad[1].fault == "80 has its most significant bit set"
+    bad = rows(protocol, "pc", "01 0081 05")
+    assert bad[1].fault == "81 has its most significant bit set"
     assert bad[1].value is None
