@@ -91,14 +91,17 @@ class _Input:
                 done = start
             outcome = self.judge(start, shared)
             end = start + outcome.size - len(shared)
+            if anywhere and end - done >= self.spec.greatest:
+                yield from self.noise(done, start)
+                done = start
             if isinstance(outcome, Frames):
                 yield from self.noise(done, start)
                 yield self.frame(start, end, outcome)
                 done = place = end
                 shared = self.shared_delimiter()
                 continue
-            shared = b""
-            if end == start:
+            had_shared, shared = shared, b""
+            if had_shared and self.is_start(start):
                 continue
             if anywhere:
                 place = start + 1

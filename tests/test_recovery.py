@@ -34,7 +34,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from owed import Fate, fates, is_protected
 
-from protogen.runtime.frame import AfterEnd, Anywhere, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))
@@ -68,12 +68,8 @@ def is_input(events: Iterable[Any], data: bytes) -> bool:
 
 
 def most_pending(spec: FrameSpec) -> int:
-    """The most bytes that a decoder may hold back.
-
-    One greatest frame. Where a frame may start at any byte, noise is one event that is less than a
-    greatest frame long, and the bytes behind it may be a frame, so that it is twice as much.
-    """
-    return 2 * spec.greatest if isinstance(spec.start, Anywhere) else spec.greatest
+    """The most bytes that a decoder may hold back: one greatest frame."""
+    return spec.greatest
 
 
 # --- seeded corpora -------------------------------------------------------------------------------

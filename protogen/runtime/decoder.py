@@ -34,6 +34,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._pushed = 0  # The candidate has taken all in front of it.
         self._candidate: Candidate | None = None
         self._failure: Failure | None = None  # The candidate's, until the next start is known.
+        self._shares_start = False  # Whether the candidate starts with the end before it.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
 
     @property
@@ -109,6 +110,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         data = self._data
         for place in range(self._pushed, len(data)):
             verdict = candidate.push(data[place])
+            if self._is_anywhere and place + 1 - self._done >= self._greatest:
+                self._noise(self._scan, complete=True)
             if verdict is not None:
                 return self._judge(verdict)
         self._pushed = len(data)
@@ -131,6 +134,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Where one literal starts and ends frames, that of a valid frame may do both."""
         if self._sender.layout.shares_delimiter:
             self._pushed = self._scan
+            self._shares_start = True
             self._candidate = Candidate(self._sender, shares_start=True)
 
     def _read(self, cut: Cut) -> Failure | None:
@@ -148,14 +152,15 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             self._give_up(self._scan + 1)
             self._noise(self._scan, complete=False)
             return True
-        if not failure.size:
-            # An end followed an end: the second one is a start of its own.
-            self._give_up(self._scan)
-            return True
-        low, high = self._scan + 1, self._scan + failure.size
+        # Behind an end that was taken for a start, the frame's own start may stand.
+        low = self._scan + (not self._shares_start)
+        high = self._scan + (failure.size or 1)
         start = self._starts.find(self._data, low, high)
         if start < 0 and not final and self._starts.undecided(self._data, low) < high:
             return False
+        if start == self._scan:
+            self._give_up(start)
+            return True
         self._invalid(start if start >= 0 else high, failure.reason, failure.problem)
         self._give_up(self._done)
         return True
@@ -163,6 +168,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def _give_up(self, scan: int) -> None:
         self._candidate = None
         self._failure = None
+        self._shares_start = False
         self._scan = scan
 
     # --- events -----------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, BinaryIO
 
-from protogen.runtime.assembly import encode_frame
+from protogen.runtime.assembly import check_cut, encode_frame
 from protogen.runtime.constructs import Container, PayloadError, Piece
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.lines import split_parts
@@ -59,4 +59,6 @@ class FrameFormat(Piece):
         parts = {name: value for name, value in obj.items() if not name.startswith("_")}
         payload = parts.pop("payload", b"")
         identity, given = split_parts(self._sender, parts)
-        return encode_frame(self._sender, identity, payload, given, strict=False)
+        wire = encode_frame(self._sender, identity, payload, given, strict=False)
+        check_cut(self._sender, wire, payload)  # The payload may be of any size here.
+        return wire

@@ -74,8 +74,8 @@ def record_from_wire(cls: type[RecordT], raw: Mapping[str, Any], scope: Scope) -
     inner = scope.new_child()
     values = {}
     for name, rule in cls.RULES:
-        inner[name] = raw[name]
         values[name] = rule.from_wire(raw[name], inner)
+        inner[name] = raw[name]
     return cls(**values)
 
 
@@ -86,11 +86,12 @@ def record_violations(record: Record, scope: Scope) -> list[Violation]:
     for name, rule in record.RULES:
         value = getattr(record, name)
         try:
-            inner[name] = rule.to_wire(value, inner, strict=False)
+            raw = rule.to_wire(value, inner, strict=False)
         except EncodeError as error:
             unfit = error.inside(name)
             return [*found, Violation(unfit.path, unfit.problem)]
         found += [violation.inside(name) for violation in rule.violations(value, inner)]
+        inner[name] = raw
     return found
 
 
@@ -100,8 +101,8 @@ def record_to_json(record: Record, scope: Scope) -> dict[str, Any]:
     shown = {}
     for name, rule in record.RULES:
         value = getattr(record, name)
-        inner[name] = value
         shown[name] = rule.to_json(value, inner)
+        inner[name] = value
     return shown
 
 

@@ -27,7 +27,8 @@ def text(value: str) -> str:
 
 
 def _quoted(value: str) -> str:
-    return '"' + repr("'" + value)[2:-1].replace("\\'", "'").replace('"', '\\"') + '"'
+    escaped = value.encode("unicode_escape").decode("ascii")
+    return '"' + escaped.replace('"', '\\"') + '"'
 
 
 def tuple_of(items: Iterable[str]) -> str:
