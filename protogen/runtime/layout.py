@@ -41,6 +41,12 @@ class Layout:
         self.spec = spec
         self.parts = _without_end(spec)
         """All parts but the end literals."""
+        self.end_literals = {
+            part.name: part.value
+            for part in spec.parts
+            if part not in self.parts and isinstance(part, LiteralPart)
+        }
+        """The literals that make up the end."""
         self.payload_index = next(
             index for index, part in enumerate(self.parts) if isinstance(part, PayloadPart)
         )

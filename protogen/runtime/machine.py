@@ -291,6 +291,8 @@ class Candidate:
             if name in slices:
                 start, end = self._span(slices[name], part.over_wire)
                 covered += data[start:end]
+            else:
+                covered += self._layout.end_literals.get(name, b"")
         due = part.number.encode(part.algorithm.compute(bytes(covered)))
         found = self._content.bytes[slices[part.name].start : slices[part.name].end]
         if found != due:
