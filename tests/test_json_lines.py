@@ -11,7 +11,7 @@ import pytest
 from cli_support import run, start
 from compiled import DOCUMENTS, ROOT, SCHEMAS, module_at, name_of, protocol_of, senders
 from corpus import material_of, stream_of
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -48,6 +48,7 @@ def test_the_lines_of_a_capture_give_it_back(path: Path, sender: str) -> None:
 
 
 @EVERY_SENDER
+@settings(max_examples=max(20, settings().max_examples // 3))
 @given(data=st.data())
 def test_any_bytes_come_back(path: Path, sender: str, data: st.DataObject) -> None:
     material = material_of(path, sender)

@@ -136,8 +136,8 @@ class TestStandalone:
     def test_it_needs_only_construct(self, tmp_path):
         """In an environment where protogen is not installed."""
         subprocess.run(
-            [sys.executable, "-m", "protogen", "generate", str(SAMPLER), "-o", str(tmp_path / "out"),
-             "--standalone", "--target", "python", "--quiet"],
+            [sys.executable, "-m", "protogen", "generate", str(SAMPLER), "--quiet",
+             "-o", str(tmp_path / "out"), "--standalone", "--target", "python"],
             check=True,
             cwd=ROOT,
         )  # fmt: skip

@@ -51,7 +51,7 @@ def compile_text(tmp_path_factory: pytest.TempPathFactory) -> Compile:
 
 def valid(compile_text: Compile, schema: Schema) -> Protocol:
     compilation = compile_text(to_yaml(schema.data))
-    problems = [f"{problem.code} {problem.span}: {problem.message}" for problem in compilation.problems]
+    problems = [f"{item.code} {item.span}: {item.message}" for item in compilation.problems]
     assert not problems, "\n".join([*problems, to_yaml(schema.data)])
     assert compilation.protocol is not None
     return compilation.protocol
@@ -69,9 +69,7 @@ def test_valid_schema_compiles_always_to_the_same(compile_text: Compile, schema:
 
 
 @given(schemas(), STYLES)
-def test_style_does_not_change_the_model(
-    compile_text: Compile, schema: Schema, style: int
-) -> None:
+def test_style_does_not_change_the_model(compile_text: Compile, schema: Schema, style: int) -> None:
     plain = valid(compile_text, schema)
     styled = compile_text(to_styled_yaml(schema.data, style))
     assert not styled.problems
@@ -119,13 +117,15 @@ def fixed_draws() -> list[Schema]:
 
 
 def test_nearly_every_draw_is_valid(compile_text: Compile, fixed_draws: list[Schema]) -> None:
-    compiled = sum(compile_text(to_yaml(schema.data)).protocol is not None for schema in fixed_draws)
+    compilations = [compile_text(to_yaml(schema.data)) for schema in fixed_draws]
+    compiled = sum(compilation.protocol is not None for compilation in compilations)
     assert compiled >= 0.9 * FIXED_DRAWS
 
 
 def test_every_shape_is_drawn(fixed_draws: list[Schema]) -> None:
     found = Counter(shape for schema in fixed_draws for shape in set(schema.shapes))
-    print(*(f"{count:6} {shape}" for shape, count in sorted(found.items())), sep="\n")
+    for shape, count in sorted(found.items()):
+        sys.stdout.write(f"{count:6} {shape}\n")
     expected = {*COMMON, *PAIRS} if THOROUGH else set(COMMON)
     assert not sorted(expected - set(found))
 
@@ -193,7 +193,7 @@ def _frames(
     data: st.DataObject, module: ModuleType, protocol: Protocol, sender: Sender
 ) -> list[bytes]:
     """Some frames of the sender."""
-    own = [message for message in protocol.messages if sender in codec.senders_of(protocol, message)]
+    own = [item for item in protocol.messages if sender in codec.senders_of(protocol, item)]
     found: list[bytes] = []
     for message in data.draw(st.lists(st.sampled_from(own), max_size=4)) if own else []:
         made = module.MESSAGES[message.name].from_dict(data.draw(values_of(message)))
@@ -265,4 +265,4 @@ def _check_problems(compilation: Compilation, text: str) -> None:
     event(", ".join(sorted({problem.code for problem in compilation.errors})[:2]) or "no problem")
     if compilation.protocol is not None:
         with imported(compilation.protocol) as module:
-            assert module.SPEC_HASH == compilation.protocol.spec_hash
+            assert compilation.protocol.spec_hash == module.SPEC_HASH

@@ -154,7 +154,8 @@ class Counted:
     least: int
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
-    """Whether the schema bounds the number; else `greatest` is what the field or frame can take."""
+    """Whether the schema bounds the number; else `greatest` is what the field or frame can take,
+    in a declared type wherever it has the most room."""
 
     @property
     def counts(self) -> SizeSet:
@@ -168,7 +169,8 @@ class Fill:
 
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
-    """Whether the schema bounds the number; else `greatest` is what the frame can take."""
+    """Whether the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
 
     @property
     def counts(self) -> SizeSet:

@@ -11,7 +11,10 @@ from protogen.schema.syntax.fields import FieldSyntax
 GREATEST_DEPTH = 64
 """So deep may structs and declared types be nested."""
 
-_NAMING_KEYS = ("fields", "values", "flags", "bits")
+VALUE_NAMES = ("values", "flags", "bits")
+"""Keys that name the values or bits of an integer; a field has one of them."""
+
+_NAMING_KEYS = ("fields", *VALUE_NAMES)
 """Keys that make a named type. It is called after the declaration that has them."""
 
 _LAYOUT_KEYS = (*_NAMING_KEYS, "switch", "cases")

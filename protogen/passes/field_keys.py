@@ -6,13 +6,10 @@ The keys about numbers and constants are asked about where their values are.
 from __future__ import annotations
 
 from protogen.passes.context import Context, Loc
-from protogen.passes.declared import Effective
+from protogen.passes.declared import VALUE_NAMES, Effective
 from protogen.schema.syntax.fields import FieldSyntax
 
 _FORMS = ("type", "fields", "switch")
-NAMING_KEYS = ("values", "flags", "bits")
-"""What gives names to the values or bits of an integer; a field has one of them."""
-
 _STRINGS = ("ascii", "bytes")
 
 
@@ -49,7 +46,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
 def _only_for_integers(context: Context, item: Effective) -> None:
     syntax = item.syntax
     kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
-    for key in NAMING_KEYS:
+    for key in VALUE_NAMES:
         if getattr(syntax, key) is not None:
             text = f"{key} are for integers, not for {kind}"
             context.error_at_key("PG110", item.at(key), text)

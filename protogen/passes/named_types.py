@@ -20,8 +20,7 @@ from protogen.model.types import (
     Type,
 )
 from protogen.passes.context import Context, Loc
-from protogen.passes.declared import Effective
-from protogen.passes.field_keys import NAMING_KEYS
+from protogen.passes.declared import VALUE_NAMES, Effective
 from protogen.passes.joining import joined_struct
 from protogen.passes.positions import placed
 from protogen.passes.value_names import bit_fields_of, enum_of, flags_of
@@ -75,7 +74,7 @@ class NamedTypes:
 
     def dress(self, type_: Integer | Float, item: Effective) -> Integer | Float:
         """Give an integer its enum, flags and bit ranges, as the field says."""
-        kinds = [key for key in NAMING_KEYS if getattr(item.syntax, key) is not None]
+        kinds = [key for key in VALUE_NAMES if getattr(item.syntax, key) is not None]
         if not kinds:
             return type_
         if not isinstance(type_, Integer) or type_.role == "bool":

@@ -6,13 +6,12 @@ from collections.abc import Iterable, Sequence
 from types import ModuleType
 from typing import Any
 
-from schema_fuzzing.reference import frame_bytes, payload_bytes
-from schema_fuzzing.values import all_parts
-
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
+from schema_fuzzing.reference import frame_bytes, payload_bytes
+from schema_fuzzing.values import all_parts
 
 
 def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) -> Any:
@@ -105,9 +104,7 @@ def events_of(module: ModuleType, sender: Sender, data: Iterable[bytes]) -> list
     return events + decoder.flush()
 
 
-def check_lossless(
-    module: ModuleType, sender: Sender, data: bytes, events: Sequence[Any]
-) -> None:
+def check_lossless(module: ModuleType, sender: Sender, data: bytes, events: Sequence[Any]) -> None:
     """The raw bytes of the events are the input, and each can be made again from its line."""
     assert b"".join(event.raw for event in events) == data
     offset = 0

@@ -14,8 +14,9 @@ Place = tuple[Container, Any]
 
 JUNK: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 7, 64, 255, 256, 300, 2**31, 2**64, -(2**63), 10**30, 10**390,
-    0.5, -0.0, 1e308, float("nan"), float("inf"), "", " ", "x", "A", "é", "漢", "\x00", "\n", "fill",
-    "payload", "self", "class", "__init__", "Not A Name", "a" * 5000, "uint0", "uint8", "uint65",
+    0.5, -0.0, 1e308, float("nan"), float("inf"), "", " ", "x", "A", "é", "漢", "\x00", "\n",
+    "fill", "payload", "self", "class", "__init__", "Not A Name", "a" * 5000, "uint0", "uint8",
+    "uint65",
     "uint999999999999", "sint16", "float32", "bool", "byte", "char", "ascii", "bytes", "little",
     "big", "on", "..", "a..b", "payload..payload", "0..3", "5..2", "6..99", "1/0", "1/3", "-1/7",
     "0x10", "1e999", "cobs", "slip", "hdlc", "base16-upper", "xor-8", "CRC-99/NONE", "unspecified",
@@ -81,7 +82,9 @@ def _nudge(draw: st.DrawFn, places: list[Place]) -> None:
         container[key] = value + draw(st.sampled_from([-1, 1, 256, -256]))
     elif isinstance(value, str) and value:
         place = draw(st.integers(0, len(value) - 1))
-        container[key] = value[:place] + draw(st.sampled_from(["", "x", "_", "9"])) + value[place + 1 :]
+        container[key] = (
+            value[:place] + draw(st.sampled_from(["", "x", "_", "9"])) + value[place + 1 :]
+        )
     else:
         container[key] = copy.deepcopy(draw(st.sampled_from(JUNK)))
 
@@ -118,7 +121,9 @@ def _rename(draw: st.DrawFn, places: list[Place]) -> None:
     if not isinstance(container, dict):
         return
     others = [other for _, other in places if isinstance(other, str)]
-    name = draw(st.sampled_from(others) if others and draw(st.booleans()) else st.sampled_from(NEW_KEYS))
+    name = draw(
+        st.sampled_from(others) if others and draw(st.booleans()) else st.sampled_from(NEW_KEYS)
+    )
     items = [(name if item == key else item, value) for item, value in container.items()]
     container.clear()
     container.update(items)

@@ -68,9 +68,7 @@ class _Scope:
         """The setting of what comes next."""
         kept = 0 if self._last else _FOR_OTHERS
         setting = self._setting
-        return replace(
-            setting, last=setting.last and self._last, budget=setting.budget - kept
-        )
+        return replace(setting, last=setting.last and self._last, budget=setting.budget - kept)
 
     def _put(self, built: Built) -> str:
         """Add a field that was drawn, and note what it can count or choose."""
@@ -260,7 +258,12 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
     if element.size.least == 0:
         element = Built({"type": "bytes"}, Size(1, 1))
     each = element.size.greatest
-    if setting.room is None or not setting.exact or element.size.least != each or draw(forms.one_in(4)):
+    if (
+        setting.room is None
+        or not setting.exact
+        or element.size.least != each
+        or draw(forms.one_in(4))
+    ):
         most = draw(st.integers(0, min(_USUAL_BYTES, setting.budget // each)))
         extent: Any = {"fill": True, "max": most}
     else:
@@ -268,8 +271,6 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
         extent = draw(st.sampled_from(["fill", {"fill": True}]))
     built = draw(_extended(element, extent, Size(0, most)))
     return replace(built, fills=True)
-
-
 
 
 # --- switches -----------------------------------------------------------------------------------

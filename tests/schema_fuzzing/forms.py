@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 TEXTS = (
     "Plain words.",
-    'Quotes """ and \'\'\' and a backslash \\',
+    "Quotes \"\"\" and ''' and a backslash \\",
     "*/ // ?? <!-- --> |pipe| `code` </script>",
     "{{ braces }} {% percent %} ${dollar} %s {0}",
     "Zeile mit Umlaut: ä, Grad: °, 漢字, 🙂",

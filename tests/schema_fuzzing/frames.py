@@ -76,9 +76,7 @@ class FramePlan:
 
     def with_least_payload(self, least: int, slack: int) -> FramePlan:
         """The frame whose length says at least what the smallest payload needs, less `slack`."""
-        return replace(
-            self, parts=tuple(_with_least(part, least, slack) for part in self.parts)
-        )
+        return replace(self, parts=tuple(_with_least(part, least, slack) for part in self.parts))
 
     def stretches(self, payload: frozenset[int]) -> Iterator[Stretch]:
         """What the frame can be on the wire, where the payload holds such bytes."""
@@ -244,9 +242,7 @@ class _Drawing:
         told = self._has_length or marks.isdisjoint(used)
         return self._code is None and told and not used <= marks
 
-    def _around_payload(
-        self, identity: list[PartPlan]
-    ) -> tuple[list[PartPlan], list[PartPlan]]:
+    def _around_payload(self, identity: list[PartPlan]) -> tuple[list[PartPlan], list[PartPlan]]:
         draw, maker = self._draw, self._maker
         tail = [maker.number("value")] if draw(forms.one_in(6)) else []
         late = self._has_length or self._end != "none"
@@ -272,9 +268,7 @@ class _Drawing:
         if self._anywhere:
             count = max(1, count)
         return [
-            self._maker.checksum(
-                optional=not self._anywhere and self._draw(forms.one_in(5))
-            )
+            self._maker.checksum(optional=not self._anywhere and self._draw(forms.one_in(5)))
             for _ in range(count)
         ]
 

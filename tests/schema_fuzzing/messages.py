@@ -92,9 +92,7 @@ def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[M
 
 
 @st.composite
-def _written_identity(
-    draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int]
-) -> Any:
+def _written_identity(draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int]) -> Any:
     written = {}
     for part, value in zip(scheme, identity, strict=True):
         assert part.type is not None
@@ -201,7 +199,9 @@ def overload(
     rooms = [frame.room for frame in frames if frame.room is not None]
     delimited = all(frame.delimited for frame in frames)
     size = first.size.greatest + 1
-    by_size = delimited and size <= min(rooms, default=plan.budget + 1) and not draw(forms.one_in(4))
+    by_size = (
+        delimited and size <= min(rooms, default=plan.budget + 1) and not draw(forms.one_in(4))
+    )
     if not by_size and not (first.size.fixed or delimited):
         return None
     if not by_size:

@@ -13,25 +13,28 @@ from hypothesis import strategies as st
 ENDPOINTS = ("host", "brain", "pc", "esp", "linux_box", "flex")
 PROTOCOLS = ("tiny", "robot_link", "serial7", "construct", "json", "typing")
 MESSAGES = (
-    "ping", "gyro", "move", "report", "status_word", "unknown", "event", "any", "final", "int_enum",
-    "literal", "class_var", "fraction", "field", "dataclass", "overload", "mapping",
-    "invalid", "parts", "sender", "host_message", "frame", "format", "exception", "type_error", "sequence", "runtime", "noise",
+    "ping", "gyro", "move", "report", "status_word", "unknown", "event", "any", "final",
+    "int_enum", "literal", "class_var", "fraction", "field", "dataclass", "overload", "mapping",
+    "invalid", "frame", "format", "exception", "type_error", "sequence", "runtime", "noise",
 )  # fmt: skip
 FIELDS = (
-    "speed", "heading", "x", "y", "z1", "mode", "count", "size", "data", "value", "values", "raw",
-    "name", "offset", "payload", "counter", "length", "identity", "property", "bytes", "str", "len",
-    "list", "tuple", "dict", "object", "id", "type", "repr", "hash", "range", "min", "sum", "print",
-    "isinstance", "violations", "sender", "encode", "decode", "fields", "message", "messages",
-    "kind", "annotations", "set_point", "left_motor", "byte_order", "protocol", "mro", "rest",
+    "speed", "heading", "x", "y", "z1", "mode", "count", "size", "data", "value", "values",
+    "raw", "name", "offset", "payload", "counter", "length", "identity", "property", "bytes",
+    "str", "len", "list", "tuple", "dict", "object", "id", "type", "repr", "hash", "range",
+    "min", "sum", "print", "isinstance", "sender", "encode", "decode", "fields", "message",
+    "messages", "kind", "annotations", "set_point", "left_motor", "byte_order", "protocol",
+    "mro", "rest",
 )  # fmt: skip
 TYPES = ("color", "axis", "vector", "words", "gain_table", "leds", "entry", "sample", "protocol_id")
 VALUES = (
     "ok", "off", "on", "yes", "no", "null_value", "red", "idle", "mask", "items", "mro",
-    "bit_length", "from_bytes", "real", "conjugate", "low_power", "unknown_value", "number", "title",
+    "bit_length", "from_bytes", "real", "conjugate", "low_power", "unknown_value", "number",
+    "title",
 )  # fmt: skip
 PARTS = (
-    "start", "sync", "begin", "ident", "subclass", "command", "number", "length", "counter", "flavor",
-    "crc", "checksum", "sender", "message", "strict", "end", "stop", "tail", "marker", "timestamp", "reserved_part", "id", "kind",
+    "start", "sync", "begin", "ident", "subclass", "command", "number", "length", "counter",
+    "flavor", "crc", "checksum", "end", "stop", "tail", "marker", "timestamp", "reserved_part",
+    "id", "kind",
 )  # fmt: skip
 DECISIONS = ("delimiter_in_data", "taken", "choice")
 

@@ -145,9 +145,7 @@ class Maker:
     def identity(self, name: str, keys: dict[str, Any], type_: PartType) -> PartPlan:
         """An identity part of which all but its place is known."""
         bounds = identity_bounds(keys, type_)
-        return PartPlan(
-            name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds
-        )
+        return PartPlan(name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds)
 
     def new_identity(self, *, start: bool = False) -> PartPlan:
         """An identity part; `start`: its range sets it apart from 7-bit bytes."""

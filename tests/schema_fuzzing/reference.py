@@ -50,7 +50,9 @@ def _value(type_: Type, value: Any, scope: Scope) -> bytes:
             return _float_bytes(type_, value)
         case Text():
             data: bytes = value.encode("latin-1")
-            return data.ljust(type_.extent.count, b"\0") if isinstance(type_.extent, Fixed) else data
+            return (
+                data.ljust(type_.extent.count, b"\0") if isinstance(type_.extent, Fixed) else data
+            )
         case Octets():
             return bytes.fromhex(value)
         case Struct():
@@ -86,9 +88,7 @@ def _grouped(raw: int, size: int, bits: int, order: str) -> bytes:
 # --- frames -------------------------------------------------------------------------------------
 
 
-def frame_bytes(
-    frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]
-) -> bytes:
+def frame_bytes(frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]) -> bytes:
     """The frame of a payload; `given` holds all counters and values."""
     return _Assembly(frame, message, payload, given).wire()
 

@@ -124,8 +124,8 @@ class _Drawing:
             sent = [message for message in found if key == _SHARED or key in message.senders]
             least = min(message.size.least for message in sent)
             slack = self._draw(st.sampled_from([0, 0, 1, 1000]))
-            frame = frame.with_least_payload(least, slack)
-            finished[key] = frame.with_unprotected(self._payload, DECISION)
+            bounded = frame.with_least_payload(least, slack)
+            finished[key] = bounded.with_unprotected(self._payload, DECISION)
         return finished
 
     def _overloads(self, plan: Plan, found: list[MessagePlan]) -> dict[str, Any]:

@@ -37,16 +37,14 @@ COMMON = (
 )  # fmt: skip
 """What a few hundred schemas hold."""
 
-PAIRS = tuple(
-    (
-        *(f"start and transparency: {start}, {code}" for start in _STARTS for code in _CODES),
-        *(
-            f"end and transparency: {end}, {code}"
-            for end in ("protected", "unprotected", "none")
-            for code in _CODES
-            if (end, code) != ("protected", "escape-none")
-        ),
-    )
+PAIRS = (
+    *(f"start and transparency: {start}, {code}" for start in _STARTS for code in _CODES),
+    *(
+        f"end and transparency: {end}, {code}"
+        for end in ("protected", "unprotected", "none")
+        for code in _CODES
+        if (end, code) != ("protected", "escape-none")
+    ),
 )
 """What some thousand schemas hold."""
 
@@ -149,7 +147,8 @@ def _field(item: Any) -> Iterator[str]:
             yield f"field with {key}"
     for key in ("count", "size"):
         if key in item:
-            yield f"{kind if kind in ('ascii', 'bytes', 'struct') else 'number'}: {_extent(item[key])}"
+            element = kind if kind in ("ascii", "bytes", "struct") else "number"
+            yield f"{element}: {_extent(item[key])}"
     inner = [*item.get("fields", {}).values(), *item.get("cases", {}).values()]
     for field in inner:
         yield from _field(field)

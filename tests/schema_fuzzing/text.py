@@ -111,7 +111,7 @@ class StyledWriter(Writer):
         return not value or self._choose.random() < 0.1 + depth / 20
 
     def _remark(self, indent: int) -> list[str]:
-        remarks = [[], [], [], [""], ["# a remark: {with} [what] \"marks\" there are"]]
+        remarks = [[], [], [], [""], ['# a remark: {with} [what] "marks" there are']]
         return [" " * indent + line if line else line for line in self._choose.choice(remarks)]
 
     def _trailer(self) -> str:
