@@ -29,6 +29,7 @@ test: check
 	@tail -n 1 $(LOG)
 
 bench: $(INSTALLED)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[bench]'
 	@for benchmark in benchmarks/bench_*.py; do $(BIN)/python $$benchmark || exit 1; done
 
 format: $(INSTALLED)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from protogen.schema.syntax.base import Syntax, Text
 
@@ -61,6 +61,17 @@ def to_octets(value: Any) -> Any:
     if isinstance(value, int):
         return bytes([_from_number(value)])
     raise ValueError("bytes are written {hex: 1B 02}, {text: b}, a number or a list of numbers")
+
+
+def at_most(size: int) -> AfterValidator:
+    """Bound the length of a byte string, in bytes."""
+
+    def check(value: bytes) -> bytes:
+        if len(value) > size:
+            raise ValueError(f"at most {size} bytes can stand here, not {len(value)}")
+        return value
+
+    return AfterValidator(check)
 
 
 Octets = Annotated[

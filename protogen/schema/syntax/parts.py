@@ -19,7 +19,7 @@ from protogen.schema.syntax.base import (
     pair_of,
     short_form,
 )
-from protogen.schema.syntax.octets import Octets, OctetsForm
+from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 
 ByteOrder = Literal["little", "big"]
 
@@ -74,7 +74,9 @@ RawRange = Annotated[
 class Part(Syntax):
     """One item of a frame. Its keys give its role; the part called `payload` holds the fields."""
 
-    literal: Octets | None = Field(None, description="Fixed bytes that open, close or mark.")
+    literal: Annotated[Octets, at_most(64)] | None = Field(
+        None, description="Fixed bytes that open, close or mark."
+    )
     unprotected: Name | None = Field(
         None,
         description="The decision that accepts that this literal can also occur inside a frame.",
@@ -147,7 +149,7 @@ def _table(value: Any) -> Any:
 
 
 Substitutions = Annotated[
-    tuple[tuple[ByteNumber, Octets], ...],
+    tuple[tuple[ByteNumber, Annotated[Octets, at_most(16)]], ...],
     BeforeValidator(_table, json_schema_input_type=dict[str, OctetsForm | list[int] | int]),
 ]
 """Byte to the bytes that stand for it on the wire."""

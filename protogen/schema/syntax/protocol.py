@@ -93,7 +93,7 @@ class Reserved(Syntax):
     )
 
 
-Frame = dict[Name, Part]
+Frame = Annotated[dict[Name, Part], Field(max_length=64)]
 """Parts in wire order."""
 
 ALL_SENDERS = ""
