@@ -15,7 +15,10 @@ from hypothesis import strategies as st
 from schema_fuzzing import forms
 
 BYTE = st.integers(0, 255)
-KINDS = ("none", "none", "substitute", "escape", "base16", "cobs", "slip", "hdlc")
+KINDS = (
+    "none", "none", "none", "substitute", "substitute", "escape-invert", "escape-none",
+    "escape-xor", "base16", "cobs", "slip", "hdlc",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +46,8 @@ def codes(draw: st.DrawFn) -> Code | None:
             return None
         case "substitute":
             return draw(_substitution())
-        case "escape":
-            return draw(_escape())
+        case "escape-invert" | "escape-none" | "escape-xor":
+            return draw(_escape(kind.removeprefix("escape-")))
         case "base16":
             words = {byte: f"{byte:02X}".encode() for byte in range(256)}
             return Code(kind, {"encoding": "base16-upper"}, words, tuple(b"\nbeGZ:"))
@@ -60,11 +63,10 @@ def _preset(kind: str, data: Any) -> Code:
 
 
 @st.composite
-def _escape(draw: st.DrawFn) -> Code:
+def _escape(draw: st.DrawFn, transform: str) -> Code:
     byte = draw(BYTE)
     others = draw(st.lists(BYTE, min_size=1, max_size=3, unique=True))
     of = sorted({byte, *others})
-    transform = draw(st.sampled_from(["invert", "none", "xor", "xor"]))
     mask = {"invert": 0xFF, "none": 0, "xor": 0x20}[transform]
     if transform == "xor" and draw(st.booleans()):
         mask = draw(BYTE)

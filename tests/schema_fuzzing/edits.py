@@ -121,9 +121,8 @@ def _rename(draw: st.DrawFn, places: list[Place]) -> None:
     if not isinstance(container, dict):
         return
     others = [other for _, other in places if isinstance(other, str)]
-    name = draw(
-        st.sampled_from(others) if others and draw(st.booleans()) else st.sampled_from(NEW_KEYS)
-    )
+    names = st.sampled_from(NEW_KEYS)
+    name = draw(names | st.sampled_from(others) if others else names)
     items = [(name if item == key else item, value) for item, value in container.items()]
     container.clear()
     container.update(items)

@@ -99,7 +99,7 @@ class _Scope:
             self._put(self._draw(number(here)))
             return
         fitting = [n for n, bounds in here.counters.items() if bounds.greatest <= most]
-        if fitting and self._draw(st.booleans()):
+        if self._draw(st.booleans()) and fitting:
             name = self._draw(st.sampled_from(sorted(fitting)))
         elif here.last and here.exact and here.room is not None and element.size.fixed:
             self._add_counted_by_room(element)
@@ -171,7 +171,7 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
         built = draw(structs(inner, greatest=3))
         return replace(built, data={"fields": built.data}, counts=None, keys=())
     fitting = [declared for declared in setting.types if _fits(declared, setting)]
-    if fitting and draw(forms.one_in(4)):
+    if draw(forms.one_in(4)) and fitting:
         return draw(_use(setting, draw(st.sampled_from(fitting))))
     if draw(forms.one_in(6)):
         return Built({"type": draw(st.sampled_from(["bytes", "ascii"]))}, Size(1, 1))

@@ -131,7 +131,7 @@ def _with_least(part: PartPlan, least: int, slack: int) -> PartPlan:
     counted, greatest = part.bounds
     low = max(0, counted + least - slack)
     values = part.type.bytes_between(low, greatest)
-    return replace(part.adding(range=[low, greatest]), bytes=values)
+    return replace(part.adding(range=[low, greatest]), values=values)
 
 
 def _stretches_of(
@@ -142,7 +142,7 @@ def _stretches_of(
     elif part.role == "literal":
         yield Stretch(frozenset({b"".join(words[byte] for byte in part.literal)}), own=own)
     else:
-        for values in part.bytes:
+        for values in part.values:
             found = frozenset(words[byte] for byte in values)
             yield Stretch(found, optional=part.optional)
 
@@ -236,9 +236,9 @@ class _Drawing:
 
     def _is_set_apart(self) -> bool:
         """Whether, by its range alone, the first part tells where a frame starts."""
-        others = [values for part in (*self._head[1:], *self._tail) for values in part.bytes]
+        others = [values for part in (*self._head[1:], *self._tail) for values in part.values]
         used = frozenset().union(self._payload, *others)
-        marks = self._head[0].bytes[0]
+        marks = self._head[0].values[0]
         told = self._has_length or marks.isdisjoint(used)
         return self._code is None and told and not used <= marks
 
@@ -282,10 +282,10 @@ class _Drawing:
 
     def _mark(self, head: list[PartPlan], tail: list[PartPlan]) -> None:
         """Put a literal between other parts, sometimes."""
-        if head and self._draw(forms.one_in(8)):
+        if self._draw(forms.one_in(8)) and head:
             place = self._draw(st.integers(1, len(head)))
             head.insert(place, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
-        if tail and self._draw(forms.one_in(10)):
+        if self._draw(forms.one_in(10)) and tail:
             tail.insert(0, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
 
     # -- the region --------------------------------------------------------------------------

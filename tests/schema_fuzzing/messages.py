@@ -63,7 +63,7 @@ def messages(draw: st.DrawFn, plan: Plan) -> list[MessagePlan]:
 
 def _sendings(draw: st.DrawFn, plan: Plan) -> list[tuple[str, ...]]:
     """The senders of each message."""
-    found = [(sender,) for sender in plan.senders]
+    found: list[tuple[str, ...]] = [(sender,) for sender in plan.senders]
     if not all(plan.identity[sender] for sender in plan.senders):
         return found
     for _ in range(draw(st.integers(0, 3))):
@@ -207,8 +207,9 @@ def overload(
     if not by_size:
         size = first.size.least
     name = draw(fresh(MESSAGES, taken))
-    kept = {key: first.data[key] for key in ("id", "from", "byte_order") if key in first.data}
-    data = {**kept, "fields": {"filling": {"type": "bytes", "size": size}}}
+    shared = ("id", "from", "byte_order")
+    kept = {key: value for key, value in first.data.items() if key in shared}
+    data: dict[str, Any] = {**kept, "fields": {"filling": {"type": "bytes", "size": size}}}
     written: dict[str, Any] = {"messages": [first.name, name], "by": "size"}
     if not by_size:
         written = {**written, "by": "undecidable", "yields": first.name}

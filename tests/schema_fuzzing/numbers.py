@@ -258,7 +258,7 @@ def _constant(draw: st.DrawFn, data: dict[str, Any], kind: Kind, least: int, gre
     """A value in range; of an enum often by name, of a closed one always one that has a name."""
     named = {name: _raw_of(entry) for name, entry in data.get("values", {}).items()}
     fitting = [name for name, value in named.items() if least <= value <= greatest]
-    if data.get("closed") or (fitting and draw(st.booleans())):
+    if data.get("closed") or (draw(st.booleans()) and fitting):
         return draw(st.sampled_from(fitting))
     value = draw(st.integers(least, greatest))
     return draw(forms.raw_number(value, character=True)) if kind.role == "char" else value

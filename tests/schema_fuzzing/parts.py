@@ -49,24 +49,24 @@ class PartType:
 
 @dataclass(frozen=True, slots=True)
 class PartPlan:
-    """A part that was drawn. `bytes` is what each of its bytes can be, unstuffed."""
+    """A part that was drawn. `values` is what each of its bytes can be, unstuffed."""
 
     name: str
     role: str
     data: dict[str, Any] = field(default_factory=dict)
-    bytes: tuple[frozenset[int], ...] = ()
+    values: tuple[frozenset[int], ...] = ()
     optional: bool = False
     type: PartType | None = None
     bounds: tuple[int, int] = (0, 0)
 
     @property
     def size(self) -> int:
-        return len(self.bytes)
+        return len(self.values)
 
     @property
     def literal(self) -> bytes:
         """The bytes of a literal."""
-        return bytes(next(iter(values)) for values in self.bytes)
+        return bytes(next(iter(values)) for values in self.values)
 
     def adding(self, **more: Any) -> PartPlan:
         """The part with further keys."""

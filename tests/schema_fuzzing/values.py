@@ -210,12 +210,13 @@ def _float(type_: Float, field: Field | None) -> st.SearchStrategy[float | str]:
         usual = st.floats(width=type_.bits, allow_nan=False, allow_infinity=False)
         return usual | st.sampled_from(["inf", "-inf"])
     least, greatest = field.least, field.greatest
+    whole = (Fraction(ceil(least)), Fraction(floor(greatest)))
     steps = (least + (greatest - least) * Fraction(step, 8) for step in range(9))
-    points = [_rounded(point, type_.bits) for point in (*steps, ceil(least), floor(greatest))]
+    points = [_rounded(point, type_.bits) for point in (*steps, *whole)]
     return st.sampled_from([point for point in points if least <= point <= greatest])
 
 
-def _rounded(value: Fraction | int, bits: int) -> float:
+def _rounded(value: Fraction, bits: int) -> float:
     code = "f" if bits == 32 else "d"
     return float(struct.unpack(code, struct.pack(code, float(value)))[0])
 
