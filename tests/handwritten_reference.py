@@ -91,7 +91,7 @@ class _Input:
                 done = start
             outcome = self.judge(start, shared)
             end = start + outcome.size - len(shared)
-            if anywhere and end - done >= self.spec.greatest:
+            if anywhere and end - done > self.spec.greatest:
                 yield from self.noise(done, start)
                 done = start
             if isinstance(outcome, Frames):

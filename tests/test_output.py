@@ -250,21 +250,22 @@ def test_diff_shows_every_change(tmp_path):
     write_files([file("extra.py", "gone"), file("stale.py", "a\nb\n")], tmp_path)
     (tmp_path / "mine.py").write_text("mine")
     wanted = [file("stale.py", "a\nc\n"), file("new.py", "n\n"), file("mine.py")]
+    folder = tmp_path.as_posix().lstrip("/")
     assert diff_files(wanted, tmp_path) == "\n".join(
         [
-            "--- a/extra.py",
+            f"--- a/{folder}/extra.py",
             "+++ /dev/null",
             "@@ -1,2 +0,0 @@",
             f"-{BANNER}",
             "-gone",
             "\\ No newline at end of file",
             "--- /dev/null",
-            "+++ b/new.py",
+            f"+++ b/{folder}/new.py",
             "@@ -0,0 +1,2 @@",
             f"+{BANNER}",
             "+n",
-            "--- a/stale.py",
-            "+++ b/stale.py",
+            f"--- a/{folder}/stale.py",
+            f"+++ b/{folder}/stale.py",
             "@@ -1,3 +1,3 @@",
             f" {BANNER}",
             " a",

@@ -66,7 +66,9 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
 
     def encode_line(self, line: Mapping[str, Any]) -> bytes:
         """The bytes that a JSON line of a decoder stands for. Raises EncodeError."""
-        name = line.get("sender")
+        if "sender" not in line:
+            raise EncodeError("sender", f"is missing; it is one of {', '.join(self.senders)}")
+        name = line["sender"]
         spec = self.senders.get(str(name))
         if spec is None:
             raise EncodeError("sender", f"{name!r} sends nothing; {', '.join(self.senders)} do")

@@ -110,7 +110,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         data = self._data
         for place in range(self._pushed, len(data)):
             verdict = candidate.push(data[place])
-            if self._is_anywhere and place + 1 - self._done >= self._greatest:
+            if self._is_anywhere and place + 1 - self._done > self._greatest:
                 self._noise(self._scan, complete=True)
             if verdict is not None:
                 return self._judge(verdict)

@@ -9,6 +9,8 @@ from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.sender import Identity, SenderSpec
 
+_EVENTS = ("message", "unknown", "invalid")
+
 
 def encode_line(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> bytes:
     """The bytes that one line of decoder output stands for.
@@ -16,9 +18,11 @@ def encode_line(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> bytes:
     `raw`, where the line has it, is taken as it is. Raises EncodeError with the path of what is
     missing or wrong in the line.
     """
+    event = line.get("event", "message")
+    if event not in _EVENTS:
+        raise EncodeError("event", f"{event!r} is none of {', '.join(_EVENTS)}")
     if "raw" in line:
         return _bytes(line, "raw")
-    event = line.get("event", "message")
     if event == "message":
         return _encode_message(sender, line)
     if event == "unknown":

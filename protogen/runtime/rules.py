@@ -354,6 +354,12 @@ class TextRule(Rule):
             raise EncodeError("", f"must be {self.const!r}")
         return value
 
+    def violations(self, value: str, scope: Scope) -> list[Violation]:
+        """Characters that ASCII does not have: they are kept, and may be sent."""
+        if value.isascii():
+            return []
+        return [Violation("", f"{value!r} is not ASCII", forbidden=False)]
+
     def from_json(self, data: Any, scope: Scope) -> str:
         """The text."""
         if not isinstance(data, str):

@@ -36,7 +36,8 @@ def load_syntax(
     if not isinstance(merged.root, MappingNode):
         problems.add("PG102", merged.root.span, "a schema is a mapping, such as `protocol: name`")
         return None
-    sound = not problems.errors
+    # Of two equal keys the first one counts; with that, the rest can still be looked at.
+    sound = all(problem.code == "PG006" for problem in problems.errors)
     shape = read_shape(to_data(merged.root), merged.find, problems)
     if shape is None or not sound:
         return None

@@ -22,21 +22,24 @@ _APART = frozenset(
     {"messages", "overloads", "exchanges", "decisions", "endpoints", "link", "source", "reserved"}
 )
 """Keys of the root under which an item with an unknown key leaves the rest of the schema clear."""
+_SPARED = frozenset({"messages", "overloads", "exchanges", "reserved", "link", "source"})
+"""Those whose items can be left out as a whole, so that the rest is still looked at."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What was written, without unknown keys."""
+    """What was written, without unknown keys and without items that can't be read."""
 
     syntax: ProtocolSyntax
     doubtful: frozenset[Loc] = frozenset()
-    """The items that had unknown keys."""
+    """The items that something was left out of, and those that may name what is not there."""
 
 
 def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
     """The syntax tree of a schema's data, or None; errors of shape are reported.
 
-    Keys that are unknown are dropped from `data` where that leaves the rest of the schema clear.
+    Unknown keys, and messages that can't be read, are dropped from `data` where that leaves the
+    rest of the schema clear.
     """
     try:
         return Shape(ProtocolSyntax.model_validate(data))
@@ -44,21 +47,26 @@ def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
         details = error.errors(include_url=False)
     for detail in details:
         _report(detail, find, problems)
-    if any(detail["type"] != "extra_forbidden" for detail in details):
-        return None
-    return _without_unknown(data, [detail["loc"] for detail in details])
+    dropped = [_droppable(detail) for detail in details]
+    return _without(data, [loc for loc in dropped if loc]) if all(dropped) else None
 
 
-def _without_unknown(data: Any, unknown: Sequence[Loc]) -> Shape | None:
-    if any(len(loc) < 2 or loc[0] not in _APART for loc in unknown):
-        return None
-    for loc in unknown:
+def _droppable(detail: ErrorDetails) -> Loc:
+    """What to leave out so that the rest can be looked at; nothing where that is not possible."""
+    loc = detail["loc"]
+    if detail["type"] == "extra_forbidden":
+        return loc if len(loc) > 1 and loc[0] in _APART else ()
+    return loc[:2] if len(loc) > 1 and loc[0] in _SPARED else ()
+
+
+def _without(data: Any, dropped: Sequence[Loc]) -> Shape | None:
+    for loc in dropped:
         _drop(data, loc)
     try:
         syntax = ProtocolSyntax.model_validate(data)
     except ValidationError:
         return None
-    return Shape(syntax, _doubtful(syntax, unknown))
+    return Shape(syntax, _doubtful(syntax, dropped)) if syntax.messages else None
 
 
 def _drop(data: Any, loc: Steps) -> None:
@@ -72,11 +80,12 @@ def _drop(data: Any, loc: Steps) -> None:
         data.pop(loc[-1], None)
 
 
-def _doubtful(syntax: ProtocolSyntax, unknown: Sequence[Loc]) -> frozenset[Loc]:
+def _doubtful(syntax: ProtocolSyntax, dropped: Sequence[Loc]) -> frozenset[Loc]:
     """What a dropped key may have changed; sizes of messages also decide about overloads."""
-    items = {loc[:2] for loc in unknown}
+    items = {loc[:2] for loc in dropped}
     if any(loc[0] == "messages" for loc in items):
         items |= {("overloads", name) for name in syntax.overloads}
+        items |= {("exchanges", name) for name in syntax.exchanges}
     return frozenset(items)
 
 

@@ -127,7 +127,7 @@ def diff_files(files: Sequence[File], folder: Path, *, prune: bool = True) -> st
     contents = {file.path: file.content for file in _wanted(files, folder, prune)}
     found = check_files(files, folder, prune=prune)
     return "".join(
-        _diff(item.path, _read_text(folder / item.path), contents.get(item.path))
+        _diff(folder / item.path, _read_text(folder / item.path), contents.get(item.path))
         for item in found
         if item.state is not State.REFUSED
     )
@@ -320,12 +320,14 @@ def _read_text(path: Path) -> str | None:
         return None
 
 
-def _diff(path: PurePosixPath, old: str | None, new: str | None) -> str:
+def _diff(path: Path, old: str | None, new: str | None) -> str:
+    """A patch for the folder that the output folder is named from."""
+    name = path.as_posix().lstrip("/")
     lines = unified_diff(
         _lines(old),
         _lines(new),
-        "/dev/null" if old is None else f"a/{path}",
-        "/dev/null" if new is None else f"b/{path}",
+        "/dev/null" if old is None else f"a/{name}",
+        "/dev/null" if new is None else f"b/{name}",
     )
     return "".join(line if line.endswith("\n") else f"{line}\n{_NO_NEWLINE}\n" for line in lines)
 

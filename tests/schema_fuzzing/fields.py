@@ -93,7 +93,8 @@ class _Scope:
         if left < 1:
             self._put(self._draw(number(here)))
             return
-        element = self._draw(_elements(replace(here, last=False, budget=left)))
+        inner = replace(here, last=False, budget=left)
+        element = self._draw(_STRING if self._draw(forms.one_in(3)) else _elements(inner))
         most = min(_USUAL_BYTES, left // max(1, element.size.greatest))
         if most < 1:
             self._put(self._draw(number(here)))
@@ -174,9 +175,13 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
     if draw(forms.one_in(4)) and fitting:
         return draw(_use(setting, draw(st.sampled_from(fitting))))
     if draw(forms.one_in(6)):
-        return Built({"type": draw(st.sampled_from(["bytes", "ascii"]))}, Size(1, 1))
+        return draw(_STRING)
     built = draw(number(setting))
     return replace(built, data=_without_constants(built.data), counts=None, keys=())
+
+
+_STRING = st.sampled_from(["bytes", "ascii"]).map(lambda kind: Built({"type": kind}, Size(1, 1)))
+"""A text or bytes, whose elements are bytes."""
 
 
 def _without_constants(data: Any) -> dict[str, Any]:

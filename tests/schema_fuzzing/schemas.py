@@ -157,6 +157,8 @@ class _Drawing:
         stuffed = {key: value for key, value in stuffed.items() if value is not None}
         if stuffed:
             data["transparency"] = self._by_sender(stuffed)
+            if _SHARED in stuffed and draw(forms.one_in(4)):
+                data["transparency"] = dict.fromkeys(self._senders, stuffed[_SHARED])
         if types:
             data["types"] = {declared.name: declared.built.data for declared in types}
         data["messages"] = {message.name: message.data for message in found}
