@@ -140,7 +140,7 @@ def test_stale_files(project: Path) -> None:
     assert "generated/python/sink.py: stale" in checked.stdout.splitlines()
     diff = run("generate", "--diff")
     assert diff.exit_code == 1
-    assert "--- a/sink.py" in diff.stdout
+    assert "--- a/generated/python/sink.py" in diff.stdout
     assert "wrote generated/python/sink.py" in run("generate").stdout.splitlines()
 
 
