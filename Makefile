@@ -7,7 +7,7 @@ INSTALLED := $(VENV)/.installed
 CACHE := .cache
 LOG := $(CACHE)/test.log
 
-.PHONY: generate check test bench format clean
+.PHONY: generate check test fuzz bench format clean
 
 # What is made from schemas and from the compiler itself, and is checked in.
 generate: $(INSTALLED)
@@ -25,8 +25,12 @@ check: $(INSTALLED)
 test: check
 	@mkdir -p $(CACHE)
 	@$(BIN)/python -m pytest -n auto --cov --cov-report= >$(LOG) 2>&1 || { cat $(LOG); exit 1; }
-	@$(BIN)/coverage report --fail-under=95 >$(LOG).coverage || { cat $(LOG).coverage; exit 1; }
+	@$(BIN)/coverage report --fail-under=90 >$(LOG).coverage || { cat $(LOG).coverage; exit 1; }
 	@tail -n 1 $(LOG)
+
+# Random schemas, compiled and tried; takes some minutes.
+fuzz: $(INSTALLED)
+	@PROTOGEN_FUZZ=1 $(BIN)/python -m pytest -n auto tests/test_schema_fuzzing.py
 
 bench: $(INSTALLED)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[bench]'

@@ -31,3 +31,7 @@ def project_root() -> Path:
 def require_tool() -> Callable[[str], str]:
     """Return the function that finds a program, or skips the test (see `tooling`)."""
     return tooling.require_tool
+
+
+# Random schemas take minutes; `make fuzz` tries them.
+collect_ignore = [] if os.environ.get("PROTOGEN_FUZZ") else ["test_schema_fuzzing.py"]
