@@ -25,7 +25,7 @@ check: $(INSTALLED)
 test: check
 	@mkdir -p $(CACHE)
 	@$(BIN)/python -m pytest -n auto --cov --cov-report= >$(LOG) 2>&1 || { cat $(LOG); exit 1; }
-	@$(BIN)/coverage report --fail-under=90 >$(LOG).coverage || { cat $(LOG).coverage; exit 1; }
+	@$(BIN)/coverage report --fail-under=95 >$(LOG).coverage || { cat $(LOG).coverage; exit 1; }
 	@tail -n 1 $(LOG)
 
 # Random schemas, compiled and tried; takes some minutes.

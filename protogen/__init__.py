@@ -20,11 +20,13 @@ if TYPE_CHECKING:
     from protogen.api import SchemaError, generate, load, module_of
     from protogen.compiler import Compilation, compile_file
     from protogen.problems import Problem
+    from protogen.schema.files import NoSchemaError
 
 __version__ = VERSION
 
 __all__ = [
     "Compilation",
+    "NoSchemaError",
     "Problem",
     "SchemaError",
     "__version__",
@@ -36,6 +38,7 @@ __all__ = [
 
 _HOMES = {
     "Compilation": "protogen.compiler",
+    "NoSchemaError": "protogen.schema.files",
     "Problem": "protogen.problems",
     "SchemaError": "protogen.api",
     "compile_file": "protogen.compiler",

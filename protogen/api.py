@@ -10,6 +10,7 @@ from types import ModuleType
 from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.problems import Problem, SourceMap, render_text
+from protogen.schema.files import schema_files
 from protogen.targets import TARGETS
 from protogen.targets.output import Report, write_files
 
@@ -38,11 +39,12 @@ def generate(
     output: str | os.PathLike[str] = "generated",
     targets: Iterable[str] | None = None,
 ) -> dict[str, Report]:
-    """Write the files of each target for these schema files; what was done, by target.
+    """Write the files of each target for these schema files, and for those in these folders.
 
-    Raises SchemaError, before anything is written, and KeyError for a target that there is not.
+    Returns what was done, by target. Other files in the output stay. Raises SchemaError or
+    NoSchemaError before anything is written, and KeyError for a target that there is not.
     """
-    protocols = [load(schema) for schema in schemas]
+    protocols = [load(file) for file in schema_files(Path(schema) for schema in schemas)]
     chosen = [TARGETS[name] for name in (TARGETS if targets is None else targets)]
     return {
         target.name: write_files(target.emit(protocols), Path(output) / target.folder, prune=False)

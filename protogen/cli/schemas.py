@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,33 +16,18 @@ if TYPE_CHECKING:
     from protogen.model.protocol import Protocol, Sender
     from protogen.problems import Problem
 
-SUFFIX = ".yaml"
-
 
 def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
     """Return the files among ``paths``, and the schemas in the folders among them.
 
     Raises UsageError if a path is not there, or a folder holds no schema.
     """
-    found: dict[Path, None] = {}
-    for path in paths:
-        found |= dict.fromkeys(_files_at(path))
-    return tuple(found)
+    from protogen.schema import files
 
-
-def _files_at(path: Path) -> Sequence[Path]:
-    if not path.exists():
-        raise UsageError(f"there is no file or folder `{path}`")
-    if not path.is_dir():
-        return (path,)
-    files = sorted(file for file in path.rglob(f"*{SUFFIX}") if not _is_hidden(file, path))
-    if not files:
-        raise UsageError(f"the folder `{path}` holds no {SUFFIX} file")
-    return files
-
-
-def _is_hidden(file: Path, folder: Path) -> bool:
-    return any(name.startswith(".") for name in file.relative_to(folder).parts)
+    try:
+        return files.schema_files(paths)
+    except files.NoSchemaError as error:
+        raise UsageError(str(error)) from None
 
 
 def open_protocol(path: Path) -> Protocol:

@@ -1,0 +1,39 @@
+"""Schema files among files and folders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+SUFFIX = ".yaml"
+
+
+class NoSchemaError(ValueError):
+    """A path where no schema is; the text says what is wrong with it."""
+
+
+def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the files among `paths`, and the schemas in the folders among them, each once.
+
+    Hidden files and folders are passed over. Raises NoSchemaError if a path is not there, or a
+    folder holds no schema.
+    """
+    found: dict[Path, None] = {}
+    for path in paths:
+        found |= dict.fromkeys(_files_at(path))
+    return tuple(found)
+
+
+def _files_at(path: Path) -> Sequence[Path]:
+    if not path.exists():
+        raise NoSchemaError(f"there is no file or folder `{path}`")
+    if not path.is_dir():
+        return (path,)
+    files = sorted(file for file in path.rglob(f"*{SUFFIX}") if not _is_hidden(file, path))
+    if not files:
+        raise NoSchemaError(f"the folder `{path}` holds no {SUFFIX} file")
+    return files
+
+
+def _is_hidden(file: Path, folder: Path) -> bool:
+    return any(name.startswith(".") for name in file.relative_to(folder).parts)
