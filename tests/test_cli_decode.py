@@ -115,6 +115,40 @@ messages:
     assert result.output == "       0  ping\n"
 
 
+MERGED = """\
+protocol: merged
+endpoints: {board: The board}
+byte_order: big
+frame:
+  id: {type: uint8, id: true}
+  payload: {}
+  crc: {type: uint16, algorithm: ALGORITHM, covers: [id, payload]}
+  end: {literal: 0xC0}
+transparency: slip
+messages:
+  text: {id: 1, from: board, fields: {data: {type: bytes, size: {fill: true, max: 40}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "first", "second", "kind"),
+    [
+        ("CRC-16/XMODEM", "01 6F 6E 65 D5 C8", "01 74 77 6F 7E FB C0", "text"),
+        ("CRC-16/IBM-3740", "01 6F 6E 65 51 08", "01 74 77 6F FA 3B C0", "invalid"),
+    ],
+)
+def test_a_crc_without_init_does_not_see_a_lost_end(
+    tmp_path: Path, algorithm: str, first: str, second: str, kind: str
+) -> None:
+    # What docs/decoder.md warns of: two good frames, without the C0 between them.
+    schema = tmp_path / "merged.yaml"
+    schema.write_text(MERGED.replace("ALGORITHM", algorithm))
+    (whole,) = run("decode", str(schema), "--hex", f"{first} {second}").output.splitlines()
+    assert whole.split()[:2] == ["0", kind]
+    parted = run("decode", str(schema), "--hex", f"{first} C0 {second}").output.splitlines()
+    assert [line.split()[1] for line in parted] == ["text", "text"]
+
+
 # --- logs of both directions ----------------------------------------------------------------------
 
 LOG = """\
@@ -220,7 +254,14 @@ def test_each_direction_of_a_log_comes_back() -> None:
             ["`matty` has no sender `esq`; it has pc, esp", "did you mean `esp`?"],
         ),
         (["--sender", "pc", "--hex", "0x"], ["line 1, column 2: `x` is"]),
-        (["--hex", "00", "--tagged"], ["nothing says who sent the bytes"]),
+        (
+            ["--hex", "00", "--tagged"],
+            ["--hex is bytes of one sender, --tagged is for lines", "leave out --tagged and give"],
+        ),
+        (["--sender", "pc", "--hex", "00", "--tagged"], ["--hex is bytes of one sender"]),
+        (["--hex", "00", "--input", "tagged"], ["--hex is bytes of one sender"]),
+        (["--tagged", "--input", "hex"], ["--tagged and --input hex exclude each other"]),
+        (["--sender", "pc", "--format", "xml"], ["'xml' is not one of 'text', 'jsonl'"]),
         (["--sender", "pc", "a.bin", "--hex", "00"], ["there are two captures: a.bin and --hex"]),
         (["--sender", "pc", "--hex", "\udcff"], ["is no hex digit and no separator"]),
         (["--sender", "pc", "missing.bin"], ["missing.bin: No such file or directory"]),

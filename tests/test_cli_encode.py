@@ -76,9 +76,12 @@ messages:
         (["goo"], ["`matty` has no message `goo`", "did you mean `go`?"]),
         (["xyzzy"], ["it has stop, reset"]),
         (["go", "spead=1"], ["there is no field `spead`", "did you mean `speed`?"]),
-        (["go", "speed=1"], ["steer: the value is missing", "`steer` is sint16 little: a number"]),
+        (
+            ["go", "speed=1"],
+            ["steer: the value is missing", "`steer` is sint16 little: a whole number"],
+        ),
         (["go", "speed=99999", "steer=0"], ["speed: 99999 is not in -32768..32767"]),
-        (["go", "speed=fast", "steer=0"], ["speed: `fast` is none of: a number from -32768"]),
+        (["go", "speed=fast", "steer=0"], ["speed: `fast` is none of: a whole number from -32768"]),
         (["go", "speed"], ["`speed` is no assignment"]),
         (["go", "@count=1"], ["there is no part `count` to give", "there are counter"]),
         (["go", "@countr=1"], ["did you mean `counter`?"]),
@@ -87,6 +90,12 @@ messages:
         (["stop", "--sender", "esp"], ["esp does not send `stop`; pc does"]),
         (["stop", "--sender", "pcc"], ["`matty` has no sender `pcc`"]),
         (["gps", "nmea=" + "x" * 130], ["nmea: has 130 characters"]),
+        (
+            ["gps", "nmea=$\xe9"],
+            ["nmea: must be ASCII, characters up to U+007F", "character 2 of 2"],
+        ),
+        (["go", "speed=1", "steer=1.5"], ["a whole number from -32768", "unit behind it: 1.5deg"]),
+        (["stop", "--format", "xml"], ["'xml' is not one of 'hex', 'raw'"]),
     ],
 )
 def test_mistakes(arguments: list[str], messages: list[str]) -> None:
@@ -94,6 +103,51 @@ def test_mistakes(arguments: list[str], messages: list[str]) -> None:
     assert (result.exit_code, result.stdout) == (2, "")
     for message in messages:
         assert message in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "messages"),
+    [
+        (
+            ["what=word"],
+            ["value: the value is missing", "give value.text=... value.more=..."],
+        ),
+        (
+            ["what=word", "value.text=abcd", "value.more=1"],
+            ["value.text: has 4 characters", "`value.text` is ascii[3]"],
+        ),
+        (
+            ["what=word", "value.text=abc", "value.more=256"],
+            ["value.more: 256 is not in 0..255", "`value.more` is uint8: a whole number from 0"],
+        ),
+        (["what=word", "value=3"], ["value: `3` is no struct", "give value.text=... value.more="]),
+        (["what=speed"], ["give value.value=..."]),
+        (["what=9"], ["`value` is switch(what)"]),
+        (["what=word", "value.text=abc"], ["value.more: the value is missing"]),
+    ],
+)
+def test_hints_inside_of_a_switch(sink: str, arguments: list[str], messages: list[str]) -> None:
+    result = run("encode", sink, "choice", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    for message in messages:
+        assert message in result.stderr
+
+
+def test_what_a_hint_says_is_taken(sink: str) -> None:
+    dotted = run("encode", sink, "choice", "what=word", "value.text=abc", "value.more=1")
+    as_json = run("encode", sink, "choice", "what=word", 'value={"text": "abc", "more": 1}')
+    assert dotted.exit_code == 0
+    assert dotted.stdout == as_json.stdout
+    assert run("encode", sink, "choice", "what=speed", "value.value=3").exit_code == 0
+
+
+def test_hints_inside_of_a_list(sink: str) -> None:
+    points = 'points=[{"x": 1, "y": 2}, {"x": 300, "y": 1}]'
+    result = run("encode", sink, "lists", points, "size=0", "levels=", "name=a", "rest=")
+    assert "points[1].x: 300 is not in" in result.stderr
+    assert "`points[1].x` is sint8: a whole number from -128 to 127" in result.stderr
+    result = run("encode", sink, "lists", "points=[1, 2]")
+    assert 'points[0]: `1` is no struct\n  hint: give JSON: {"x": ..., "y": ...}' in result.stderr
 
 
 # --- lines of JSON --------------------------------------------------------------------------------
@@ -119,6 +173,13 @@ def test_lines() -> None:
         "00",
         "55 02 05 5A 9F",
     ]
+
+
+def test_text_that_is_not_ascii_comes_back_from_a_capture() -> None:
+    frame = "55 04 00 50 24 E9 9F"
+    lines = run("decode", MATTY, "--sender", "esp", "--hex", frame, "--format", "jsonl").stdout
+    assert json.loads(lines)["fields"] == {"nmea": "$\xe9"}
+    assert run("encode", MATTY, input=lines).stdout == f"{frame}\n"
 
 
 def test_names_may_stand_for_numbers() -> None:

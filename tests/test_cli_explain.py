@@ -9,6 +9,20 @@ import pytest
 from cli_support import ROOT, run
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
+TWO_BYTES = """\
+protocol: two
+endpoints: {board: The board}
+byte_order: little
+frame:
+  start: {literal: 0xC0}
+  id: {type: uint8, id: true}
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id}
+  end: {literal: 0xC0}
+transparency: slip
+messages:
+  ping: {id: 1, from: board}
+"""
 UHEROBOT = str(ROOT / "schemas" / "uherobot.yaml")
 
 
@@ -36,8 +50,18 @@ def test_what_is_wrong_stands_beside_it() -> None:
     result = run("explain", MATTY, "--sender", "pc", "--hex", "00 55 02 01 53 00")
     lines = result.output.splitlines()
     assert lines[0] == "offset 0, 1 byte from pc: no frame: noise"
-    assert lines[4].startswith("offset 1, 5 bytes from pc: no frame: checksum")
-    assert lines[-2].endswith("! must be 0xaa")
+    # The title and the row say it in one way.
+    assert lines[4].endswith("no frame: checksum, crc is 00, not aa")
+    assert lines[-2].endswith("! crc is 00, not aa")
+
+
+def test_a_checksum_of_two_bytes_is_shown_as_on_the_wire(tmp_path: Path) -> None:
+    schema = tmp_path / "two.yaml"
+    schema.write_text(TWO_BYTES)
+    result = run("explain", str(schema), "--hex", "C0 01 31 EC C0")
+    assert result.output.splitlines()[0].endswith("no frame: checksum, crc is 31 ec, not 89 11")
+    assert "! crc is 31 ec, not 89 11" in result.output
+    assert "0x" not in result.output
 
 
 def test_unknown_identity() -> None:

@@ -79,6 +79,11 @@ def test_texts_and_bytes_are_empty_and_full() -> None:
     assert {len(values["name"]) for values in found} == {0, 4}
 
 
+def test_texts_are_ascii_as_strict_encoding_wants_them() -> None:
+    texts = "".join(values["name"] for values, _ in taken("lists", "pc", more=200))
+    assert max(texts) == "\x7f"
+
+
 def test_every_case_and_none_of_them() -> None:
     found = boundaries("choice", "board")
     whats = {values["what"] for values in found}

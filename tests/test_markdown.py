@@ -185,6 +185,15 @@ def test_unknowns_are_listed():
     assert counts == [["[tiny](tiny.md)", "tiny.txt", "2", "1", "1", "1", "0", "0", "0"]]
 
 
+def test_why_a_schema_has_no_examples_stands_beside_their_count():
+    source = Source(document="tiny.txt", note="It prints no bytes")
+    text = page(replace(protocol(message("m", 1, ("x", UINT8))), source=source), "fidelity.md")
+    assert "| 0 ([why](#without-examples)) | 0 | 0 |" in text
+    assert '## <a id="without-examples"></a>Without examples\n' in text
+    assert "- [tiny](tiny.md): It prints no bytes.\n" in text
+    assert "without-examples" not in page(tiny_protocol(), "fidelity.md")
+
+
 def test_fields_inside_structs_arrays_and_cases_are_counted():
     point = Struct(name="p", fields=fields(("x", UINT8), ("y", UINT8)))
     array = Array(element=point, extent=Fixed(count=3))

@@ -163,7 +163,10 @@ def test_a_payload_is_computed_by_hand() -> None:
         ({"ratio": "1"}, "ratio", "must be a number"),
         ({"name": "abcd"}, "name", "at most 3"),
         ({"name": "a\0"}, "name", "NUL"),
-        ({"name": "\u0151"}, "name", "U+00FF"),
+        ({"name": 5}, "name", "must be text"),
+        ({"name": "\u0151"}, "name", "must be ASCII"),
+        ({"name": "a\xe9"}, "name", "characters up to U+007F; 'é', character 2 of 2, is none"),
+        ({"name": "\x80"}, "name", "must be ASCII"),
         ({"code": b"a"}, "code", "exactly 2 bytes"),
         ({"code": "ab"}, "code", "must be bytes"),
         ({"point": {"x": 1}}, "point", "must be a Point"),
@@ -191,7 +194,14 @@ def test_strict_encoding_names_the_field_and_what_is_allowed(
 
 
 @pytest.mark.parametrize(
-    "values", [{"near": 9}, {"near": 255}, {"ratio": -11.0}, {"point": Point(x=0, y=10)}]
+    "values",
+    [
+        {"near": 9},
+        {"near": 255},
+        {"ratio": -11.0},
+        {"name": "\xe9\xff"},
+        {"point": Point(x=0, y=10)},
+    ],
 )
 def test_lenient_encoding_takes_what_fits_the_wire(values: dict[str, Any]) -> None:
     payload = good(**values).to_payload(strict=False)
@@ -200,7 +210,12 @@ def test_lenient_encoding_takes_what_fits_the_wire(values: dict[str, Any]) -> No
 
 @pytest.mark.parametrize(
     ("values", "path"),
-    [({"fixed": 8}, "fixed"), ({"shade": 3}, "shade"), ({"colour": 256}, "colour")],
+    [
+        ({"fixed": 8}, "fixed"),
+        ({"shade": 3}, "shade"),
+        ({"colour": 256}, "colour"),
+        ({"name": "\u0151"}, "name"),
+    ],
 )
 def test_lenient_encoding_refuses_what_no_decoder_would_accept(
     values: dict[str, Any], path: str
@@ -215,7 +230,7 @@ def test_values_without_a_name_and_special_values_are_sent(values: dict[str, Any
 
 def test_violations_list_what_a_decoder_kept() -> None:
     message = good(
-        colour=77, bits=0xF1, near=9, count=1, points=[Point(x=0, y=10)], label="a", token=b"b",
+        colour=77, bits=0xF1, near=9, count=1, points=[Point(x=0, y=10)], label="\xe9", token=b"b",
         kind=1, choice=Point(x=0, y=11),
     )  # fmt: skip
     kept = Everything.from_payload(message.to_payload(strict=False))
@@ -224,6 +239,7 @@ def test_violations_list_what_a_decoder_kept() -> None:
         ("bits", False),
         ("near", True),
         ("points[0].y", True),
+        ("label", True),
         ("choice.y", True),
     ]
     assert str(kept.violations()[1]) == "bits: bits 0xf0 have no name"
@@ -468,9 +484,10 @@ def points() -> st.SearchStrategy[Point]:
 
 
 @st.composite
-def everything(draw: st.DrawFn) -> Everything:
+def everything(draw: st.DrawFn, last: str = "\x7f") -> Everything:
+    """Values that strict encoding takes; its texts have characters up to `last`."""
     count = draw(st.integers(0, 3))
-    latin1 = st.characters(max_codepoint=255)
+    characters = st.characters(max_codepoint=ord(last))
     kind = draw(st.integers(0, 4))
     choices: dict[int, st.SearchStrategy[Any]] = {
         0: st.none(),
@@ -485,12 +502,12 @@ def everything(draw: st.DrawFn) -> Everything:
         near=draw(st.integers(10, 100) | st.just(255)),
         ratio=draw(st.floats(min_value=-10, width=32, allow_nan=False)),
         wide=draw(st.floats(allow_nan=False)),
-        name=draw(st.text(latin1, max_size=3).filter(lambda text: not text.endswith("\0"))),
+        name=draw(st.text(characters, max_size=3).filter(lambda text: not text.endswith("\0"))),
         code=draw(st.binary(min_size=2, max_size=2)),
         point=draw(points()),
         count=count,
         points=draw(st.lists(points(), min_size=count, max_size=count)),
-        label=draw(st.text(latin1, min_size=count, max_size=count)),
+        label=draw(st.text(characters, min_size=count, max_size=count)),
         token=draw(st.binary(min_size=count, max_size=count)),
         kind=kind,
         choice=draw(choices.get(kind, st.binary(max_size=4))),
@@ -503,6 +520,13 @@ def test_values_survive_the_wire_and_json(message: Everything) -> None:
     assert len(payload) in Everything.SIZES
     assert Everything.from_payload(payload) == message
     assert Everything.from_dict(json.loads(json.dumps(message.to_dict()))) == message
+
+
+@given(everything(last="\xff"))
+def test_texts_of_any_bytes_survive_lenient_encoding(message: Everything) -> None:
+    assert Everything.from_payload(message.to_payload(strict=False)) == message
+    listed = {found.path for found in message.violations() if found.forbidden}
+    assert listed == {name for name in ("name", "label") if not getattr(message, name).isascii()}
 
 
 def test_a_scope_is_made_for_each_struct() -> None:

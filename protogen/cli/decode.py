@@ -71,9 +71,9 @@ def decode(  # noqa: PLR0913 - each option is one argument
     """
     from protogen.cli.codec import open_codec
 
+    kind = _input_format(input, tagged=tagged, has_text=hex is not None)
     codec = open_codec(schema)
-    kind = InputFormat.TAGGED if tagged else input
-    both_ways = kind is InputFormat.TAGGED and hex is None and sender is None
+    both_ways = kind is InputFormat.TAGGED and sender is None
     senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
     faults = Faults()
     show = _printer(codec, format, show_sender=both_ways)
@@ -117,6 +117,16 @@ class Faults:
 
 
 # --- in -------------------------------------------------------------------------------------------
+
+
+def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
+    """Return what the capture is written in. Raises UsageError where two options disagree."""
+    if tagged and given is InputFormat.HEX:
+        raise UsageError("--tagged and --input hex exclude each other", "leave one of them out")
+    if has_text and (tagged or given is InputFormat.TAGGED):
+        hint = "leave out --tagged and give --sender NAME, or give the lines in a file"
+        raise UsageError("--hex is bytes of one sender, --tagged is for lines that name it", hint)
+    return InputFormat.TAGGED if tagged else given
 
 
 @contextmanager

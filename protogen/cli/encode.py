@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from protogen.cli.codec import Codec
     from protogen.model.frame import Frame
     from protogen.model.messages import Message
-    from protogen.runtime.errors import EncodeError
 
 EXAMPLE = "Example: protogen encode schemas/matty.yaml go speed=500 steer=-2.5deg"
 
@@ -89,6 +88,7 @@ def _write_hex(data: bytes) -> None:
 
 
 def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str | None) -> bytes:
+    from protogen.cli.hints import hint_at
     from protogen.cli.schemas import find_message
     from protogen.cli.values import raw_values, split_assignment, tree_of
     from protogen.runtime.codec import Encoder
@@ -105,7 +105,7 @@ def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str
         assert kind is not None
         return Encoder(spec).encode_next(kind.from_dict(fields), strict=True, **parts)
     except EncodeError as error:
-        raise UsageError(str(error), _hint(message, error)) from None
+        raise UsageError(str(error), hint_at(message.fields, fields, error.path)) from None
 
 
 def _sender_of(codec: Codec, message: Message, name: str | None) -> str:
@@ -146,19 +146,6 @@ def _number(name: str, text: str) -> int:
         return int(text, 0)
     except ValueError:
         raise UsageError(f"@{name}: `{text}` is no number") from None
-
-
-def _hint(message: Message, error: EncodeError) -> str | None:
-    """Return what may be written for the field that is wrong."""
-    from protogen.cli.scalars import allowed
-    from protogen.model.readings import type_name
-    from protogen.model.types import Integer
-
-    for field in message.fields:
-        if field.name == error.path:
-            kinds = f": {allowed(field, field.type)}" if isinstance(field.type, Integer) else ""
-            return f"`{field.name}` is {type_name(field.type)}{kinds}"
-    return None
 
 
 # --- lines of JSON --------------------------------------------------------------------------------

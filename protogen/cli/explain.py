@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.cli.capture import hex_bytes
@@ -84,7 +85,16 @@ def _rows(protocol: Protocol, event: Any) -> Sequence[Row]:
 
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
-    return annotate(protocol, event.sender, event.raw)
+    rows = annotate(protocol, event.sender, event.raw)
+    if event.kind == "invalid" and event.reason == "checksum":
+        return [_as_in_title(row, event.problem) for row in rows]
+    return rows
+
+
+def _as_in_title(row: Row, problem: str) -> Row:
+    """Say at a wrong checksum what the title says: bytes in wire order, not their number."""
+    is_meant = row.fault and problem.startswith(f"{row.path} is ")
+    return replace(row, fault=problem) if is_meant else row
 
 
 def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:

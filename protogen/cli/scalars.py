@@ -12,7 +12,7 @@ from protogen.cli.hexinput import HexError, parse_hex
 from protogen.model.fields import Field
 from protogen.model.readings import decimal
 from protogen.model.types import Integer
-from protogen.problems import hint_for
+from protogen.problems import did_you_mean, hint_for
 
 
 def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
@@ -33,9 +33,26 @@ def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
         return named
     physical = _physical(field, written)
     if physical is None:
-        hint = hint_for(written, _names(field, type))
-        raise UsageError(f"{path}: `{written}` is none of: {allowed(field, type)}", hint)
+        raise UsageError(
+            f"{path}: `{written}` is none of: {allowed(field, type)}", _mend(field, type, written)
+        )
     return _raw(field, physical, written, path)
+
+
+def _mend(field: Field, type: Integer, written: str) -> str | None:
+    """Return how to write what was probably meant."""
+    names = _names(field, type)
+    if type.flags is not None and "," in written:
+        flags = "|".join(_closest(name.strip(), names) for name in written.split(","))
+        return f"flags are joined by `|`, in quotes for the shell: '{flags}'"
+    number = _exact(written.strip())
+    if number is not None and field.unit is not None:
+        return f"a value in {field.unit} has its unit behind it: {_nearest(field, number)}"
+    return hint_for(written, names)
+
+
+def _closest(name: str, names: Mapping[str, int]) -> str:
+    return did_you_mean(name, names) or name
 
 
 def _number(text: str) -> int | None:
@@ -99,7 +116,7 @@ def _run(path: str, written: Any, names: Mapping[str, int], greatest: int) -> in
     number = names.get(text, _number(text))
     if number is not None and 0 <= number <= greatest:
         return number
-    kinds = ", ".join((f"a number from 0 to {greatest}", *names))
+    kinds = ", ".join((f"a whole number from 0 to {greatest}", *names))
     raise UsageError(f"{path}: `{text}` is none of: {kinds}", hint_for(text, names))
 
 
@@ -121,12 +138,17 @@ def _raw(field: Field, physical: Fraction, written: str, path: str) -> int:
     raw = (physical - field.offset) / field.scale
     if raw.denominator == 1:
         return raw.numerator
-    near = decimal(round(raw) * field.scale + field.offset)
     step = f"{decimal(field.scale)}{field.unit}"
     raise UsageError(
         f"{path}: `{written}` is no whole number of steps of {step}",
-        f"the nearest that can be sent is {near}{field.unit}",
+        f"the nearest that can be sent is {_nearest(field, physical)}",
     )
+
+
+def _nearest(field: Field, physical: Fraction) -> str:
+    """Return the physical value closest to this one that a raw value stands for."""
+    raw = round((physical - field.offset) / field.scale)
+    return f"{decimal(raw * field.scale + field.offset)}{field.unit}"
 
 
 def float_value(field: Field, written: Any, path: str) -> float:
@@ -167,7 +189,7 @@ def allowed(field: Field, type: Integer) -> str:
     """Return what may be written for an integer, in words."""
     least = type.least if field.least is None else field.least
     greatest = type.greatest if field.greatest is None else field.greatest
-    kinds = [f"a number from {least} to {greatest}"]
+    kinds = [f"a whole number from {least} to {greatest}"]
     if field.unit is not None:
         kinds.append(f"a number with its unit {field.unit}")
     if type.role == "char":

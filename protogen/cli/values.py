@@ -8,12 +8,12 @@ structs are JSON. A dotted name is a member of a struct, a flag or a run of bits
 
 from __future__ import annotations
 
-import json
 from collections import ChainMap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from protogen.cli.exits import UsageError
+from protogen.cli.hints import members
 from protogen.cli.scalars import (
     float_value,
     from_json,
@@ -116,8 +116,8 @@ def _what_is_sent(field: Field) -> Raw:
 def _value(field: Field, type: Type, written: Any, path: str, scope: Scope) -> Raw:
     match type:
         case Struct(fields=fields):
-            members = _mapping(written, fields, path)
-            return _members(fields, members, f"{path}.", scope.new_child())
+            given = _mapping(written, fields, path)
+            return _members(fields, given, f"{path}.", scope.new_child())
         case Array():
             return _elements(field, type, written, path, scope)
         case Switch():
@@ -167,7 +167,7 @@ def _mapping(written: Any, fields: Sequence[Field], path: str) -> Mapping[str, A
         return value
     if len(fields) == 1:
         return {fields[0].name: value}
-    raise UsageError(f"{path}: a struct is written as JSON, such as {{{json.dumps('name')}: 1}}")
+    raise UsageError(f"{path}: `{written}` is no struct", f"give {members(fields, path)}")
 
 
 def _list(written: Any, path: str) -> Sequence[Any]:

@@ -36,6 +36,8 @@ _GREATEST_COUNT = 1 << 16
 """No sample is longer than this."""
 SEVEN_BITS = 0x7F
 """The highest byte that every payload can carry."""
+_LAST_OF_ASCII = 0x7F
+"""Strict encoding, which the samples are for, takes no character above it."""
 _ANY = 1 << 64
 """More than any integer of a schema."""
 
@@ -231,19 +233,18 @@ def _text_choices(field: Field, type: Text, scope: Scope) -> Choices:
     if isinstance(field.const, str):
         return _only(field.const)
     least, greatest = _lengths(type.extent, scope)
-    highest = 0x7F if type.byte_bits == 7 else 0xFF
     if isinstance(type.extent, Fixed):
         least = 0
-    values = [character * greatest for character in ("A", "\n", chr(highest))]
+    values = [character * greatest for character in ("A", "\n", chr(_LAST_OF_ASCII))]
     return Choices(
         _distinct(["A" * least, *values]),
-        lambda random: _any_text(random, _any_length(least, greatest, random), highest),
+        lambda random: _any_text(random, _any_length(least, greatest, random)),
     )
 
 
-def _any_text(random: Random, length: int, highest: int) -> str:
+def _any_text(random: Random, length: int) -> str:
     # NUL pads a text of a fixed size, so no text has it.
-    return "".join(chr(random.randint(1, highest)) for _ in range(length))
+    return "".join(chr(random.randint(1, _LAST_OF_ASCII)) for _ in range(length))
 
 
 def _octets_choices(field: Field, type: Octets, scope: Scope) -> Choices:

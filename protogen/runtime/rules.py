@@ -331,7 +331,7 @@ class OctetsRule(Rule):
 
 @dataclass(frozen=True, slots=True)
 class TextRule(Rule):
-    """Text of one byte a character.
+    """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
     `size` is a number: the text has at most so many characters and does not end with NUL, which
     pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
@@ -343,7 +343,11 @@ class TextRule(Rule):
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""
-        if not isinstance(value, str) or any(character > "\xff" for character in value):
+        if not isinstance(value, str):
+            raise EncodeError("", f"must be text, not {value!r}")
+        if strict:
+            refuse(self.violations(value, scope))
+        if any(character > "\xff" for character in value):
             raise EncodeError("", f"must be text of characters up to U+00FF, not {value!r}")
         if isinstance(self.size, int):
             self._check_padded(value, self.size)
@@ -355,10 +359,12 @@ class TextRule(Rule):
         return value
 
     def violations(self, value: str, scope: Scope) -> list[Violation]:
-        """Characters that ASCII does not have: they are kept, and may be sent."""
+        """Characters that ASCII does not have: the same byte is another one in each code page."""
         if value.isascii():
             return []
-        return [Violation("", f"{value!r} is not ASCII", forbidden=False)]
+        index = next(index for index, character in enumerate(value) if character > "\x7f")
+        place = f"{value[index]!r}, character {index + 1} of {len(value)}, is none"
+        return [Violation("", f"must be ASCII, characters up to U+007F; {place}")]
 
     def from_json(self, data: Any, scope: Scope) -> str:
         """The text."""

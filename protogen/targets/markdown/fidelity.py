@@ -40,10 +40,11 @@ _TITLES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FidelityView:
-    """The page of counts, and the contradictions that it counts."""
+    """The page of counts, why some have no examples, and the contradictions that it counts."""
 
     documents: Table | None
     dialects: Table | None
+    without_examples: tuple[str, ...]
     contradictions: tuple[str, ...]
 
 
@@ -71,6 +72,7 @@ def fidelity_view(protocols: Sequence[Protocol]) -> FidelityView:
     return FidelityView(
         documents=_table(documents),
         dialects=_table(dialects),
+        without_examples=tuple(line for protocol in protocols for line in _missing(protocol)),
         contradictions=tuple(line for protocol in protocols for line in _contradictions(protocol)),
     )
 
@@ -90,8 +92,18 @@ def _table(protocols: Sequence[Protocol]) -> Table | None:
 def _row(protocol: Protocol) -> tuple[str, ...]:
     counts = count(protocol)
     document = protocol.source.document if protocol.source else None
-    numbers = (str(getattr(counts, item.name)) for item in fields(Counts))
-    return (page_link(protocol), markdown(document or ""), *numbers)
+    numbers = {item.name: str(getattr(counts, item.name)) for item in fields(Counts)}
+    if any(_missing(protocol)):
+        # A bare 0 would read as if examples had been left out.
+        numbers["verified"] += " ([why](#without-examples))"
+    return (page_link(protocol), markdown(document or ""), *numbers.values())
+
+
+def _missing(protocol: Protocol) -> Iterator[str]:
+    """Yield what the schema notes of its document, where that gave it no example."""
+    note = protocol.source.note if protocol.source else None
+    if note and not any(_examples(protocol)):
+        yield f"{page_link(protocol)}: {sentence(markdown(note))}"
 
 
 def _contradictions(protocol: Protocol) -> Iterator[str]:
