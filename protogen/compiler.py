@@ -58,5 +58,6 @@ def _protocol(
         problems=problems,
         files=merged.files,
         doubtful=loaded.doubtful,
+        lost=loaded.lost,
     )
     return resolve(context)

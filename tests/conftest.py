@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, settings
 
 # Deadlines measure the machine rather than the code; the CPU is shared with other workers.
 settings.register_profile(
-    "default", max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "default", max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile(
-    "ci", settings.get_profile("default"), max_examples=25, derandomize=True, print_blob=True
+    "ci", settings.get_profile("default"), max_examples=100, derandomize=True, print_blob=True
 )
 settings.register_profile("thorough", settings.get_profile("default"), max_examples=5000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
@@ -31,7 +31,3 @@ def project_root() -> Path:
 def require_tool() -> Callable[[str], str]:
     """Return the function that finds a program, or skips the test (see `tooling`)."""
     return tooling.require_tool
-
-
-# Random schemas take minutes; `make fuzz` tries them.
-collect_ignore = [] if os.environ.get("PROTOGEN_FUZZ") else ["test_schema_fuzzing.py"]

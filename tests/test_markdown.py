@@ -39,6 +39,12 @@ from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Decision, Endpoint, Link, Protocol, Sender
+from protogen.model.reserved import (
+    Reserved,
+    ReservedIdentity,
+    ReservedNames,
+    ReservedValues,
+)
 from protogen.model.types import (
     Array,
     Enum,
@@ -170,6 +176,23 @@ def test_decisions_are_told_and_linked():
     assert "| 1 | 0 | 1 | 0 | 0 | 0 | 1 |" in page(
         tiny_protocol(decisions=(decision,)), "fidelity.md"
     )
+
+
+def test_reserved_things_are_listed():
+    made = tiny_protocol()
+    sender = made.senders[0].name
+    reserved = Reserved(
+        identities=(ReservedIdentity(sender=sender, identity=(7,), doc="Once a reset"),),
+        fields=(ReservedNames(message="m", names=("speed", "mode")),),
+        values=(ReservedValues(path="m.state", values=(3, 4)),),
+    )
+    text = page(replace(made, reserved=reserved))
+    assert "[reserved](#reserved)" in text
+    part = made.senders[0].frame.identity[0].name
+    assert f"| identity, from `{sender}` | `{part} 0x07` | Once a reset. |\n" in text
+    assert "| field names of `m` | `speed`, `mode` |" in text
+    assert "| values of `m.state` | 3, 4 |" in text
+    assert "reserved" not in page(made)
 
 
 def test_unknowns_are_listed():

@@ -109,10 +109,10 @@ class TestRflex:
 
     @pytest.mark.parametrize("sender", ["linux", "flex"])
     def test_greatest_frame(self, sender: str) -> None:
-        # Two delimiters of two bytes; class, number, subclass, length, 255 bytes of contents and
-        # the checksum can each be 7C, which takes three.
+        # Two delimiters of two bytes; class, number, subclass, 255 bytes of contents and the
+        # checksum can each be 7C, which takes three. The length is FF then, which takes one.
         found = framing("rflex", sender)
-        assert found.greatest == 2 + 3 * (4 + 255 + 1) + 2
+        assert found.greatest == 2 + 3 * (3 + 255 + 1) + 1 + 2
         # Delimiter and four bytes in front of the contents, the checksum behind.
         assert (found.head, found.tail) == (6, 1)
         assert found.overhead == SizeSet.exactly(9)
@@ -137,9 +137,9 @@ class TestMatty:
 
     @pytest.mark.parametrize("sender", ["pc", "esp"])
     def test_sizes(self, sender: str) -> None:
-        # Length, counter, command, 121 arguments and sum can all be escaped; 55 is not.
+        # Counter, command, 121 arguments and sum can all be escaped; 55 and the length 7B are not.
         found = framing("matty", sender)
-        assert found.greatest == 1 + 2 * (1 + 1 + 1 + 121 + 1)
+        assert found.greatest == 1 + 1 + 2 * (1 + 1 + 121 + 1)
         assert found.least == 5
         assert found.payload == SizeSet.between(0, 121)
         assert (found.head, found.tail) == (4, 1)

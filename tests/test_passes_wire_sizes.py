@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from binascii import crc_hqx
+
 import pytest
 from passes_support import HEAD, framing_of, message_framing
 
@@ -95,8 +97,11 @@ transparency: slip
 """
     assert sizes(frame, "") == (2, 2)
     # identity, payload, two bytes of CRC, end; payload and CRC can be stuffed
-    assert sizes(frame, "a: uint8") == (1 + 1 + 2 + 1, 1 + 2 + 4 + 1)
-    assert sizes(frame, "a: {type: bytes, size: {fill: true, max: 1}}") == (2, 8)
+    contents = [bytes((1, value)) for value in range(256)]
+    frames = [data + crc_hqx(data, 0).to_bytes(2, "little") for data in contents]
+    stuffed = [1 + len(data) + sum(byte in b"\xc0\xdb" for byte in data) for data in frames]
+    assert sizes(frame, "a: uint8") == (min(stuffed), max(stuffed))
+    assert sizes(frame, "a: {type: bytes, size: {fill: true, max: 1}}") == (2, max(stuffed))
 
 
 COBS = """\

@@ -341,7 +341,7 @@ PC_FRAME = _rt.FrameSpec(
     start=_rt.StartLiteral(b"U", protected=True),
     end=None,
     least=5,
-    greatest=251,
+    greatest=250,
     greatest_payload=121,
     transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
     stuffed=("length", "counter", "command", "payload", "crc"),

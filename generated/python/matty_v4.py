@@ -444,7 +444,7 @@ PC_FRAME = _rt.FrameSpec(
     start=_rt.StartLiteral(b"U", protected=True),
     end=None,
     least=5,
-    greatest=253,
+    greatest=252,
     greatest_payload=122,
     transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
     stuffed=("length", "counter", "command", "payload", "crc"),

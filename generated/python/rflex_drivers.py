@@ -816,7 +816,7 @@ LINUX_FRAME = _rt.FrameSpec(
     start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
     end=_rt.End(bytes.fromhex("1B 03"), protected=True),
     least=9,
-    greatest=784,
+    greatest=780,
     greatest_payload=255,
     transparency=_transparency.Substitution(
         {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
@@ -843,7 +843,7 @@ FLEX_FRAME = _rt.FrameSpec(
     start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
     end=_rt.End(bytes.fromhex("1B 03"), protected=True),
     least=10,
-    greatest=784,
+    greatest=780,
     greatest_payload=255,
     transparency=_transparency.Substitution(
         {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},

@@ -9,6 +9,7 @@ from protogen.model.frame import Frame
 from protogen.model.framing import Framing
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
+from protogen.model.reserved import NOTHING_RESERVED, Reserved
 from protogen.model.types import Enum, Flags, Struct
 
 
@@ -84,6 +85,7 @@ class Protocol:
     messages: tuple[Message, ...]
     exchanges: tuple[Exchange, ...]
     decisions: tuple[Decision, ...]
+    reserved: Reserved = NOTHING_RESERVED
     spec_hash: str
     """SHA-256, in hex, of layout, framing and meaning of values."""
 

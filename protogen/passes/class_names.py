@@ -12,11 +12,14 @@ from protogen.passes.draft import Draft
 ROOT_NAMES = frozenset(
     {
         "protocol", "encode", "decode", "decoder", "encoder", "messages", "message", "parts",
-        "sender",
+        "sender", "not_implemented",
     }
 )  # fmt: skip
-"""Names that generated modules use themselves, which a type or message would hide."""
+"""Names that generated modules use themselves, which a type or message would hide.
 
+`NotImplemented` is what the comparisons of their dataclasses return. No other builtin that is
+written like a class stands in them, so that a message may well be called `warning`.
+"""
 
 _RENAME = "rename one of them; types inside of fields are called after message and field"
 

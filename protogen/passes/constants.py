@@ -88,6 +88,8 @@ class _Reader:
                 return self._text(written, type_)
             case Octets() if isinstance(written, bytes | tuple):
                 return self._octets(written, type_)
+            case Octets() if isinstance(written, int) and not isinstance(written, bool):
+                return self._octets((written,), type_)
             case Array():
                 return self._array(written, type_)
         raise _UnfitError(f"`{self._key}` is not a value of {self._item.type}")

@@ -14,6 +14,11 @@ from protogen.schema.syntax.protocol import ProtocolSyntax
 Loc = tuple[str | int, ...]
 """Where in the schema: keys and indexes from the root."""
 
+_CERTAIN = frozenset(
+    {"PG104", "PG105", "PG106", "PG108", "PG120", "PG123", "PG134", "PG143", "PG165"}
+)
+"""Problems of a single word or number: they are no consequence of what is missing around it."""
+
 Find = Callable[[Loc], Span]
 
 
@@ -38,6 +43,8 @@ class Context:
     doubtful: frozenset[Loc] = frozenset()
     """Items of which not everything could be read: what seems wrong with them may be no more than
     a consequence, so it is not reported."""
+    lost: frozenset[Loc] = frozenset()
+    """Names of which is not known what they mean; a key of the root stands for all its names."""
     tally: Tally = field(default_factory=Tally)
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
@@ -59,13 +66,25 @@ class Context:
 
     def _report(self, problem: Problem, loc: Loc) -> None:
         self.tally.errors += 1
-        if loc[:2] not in self.doubtful:
+        if loc[:2] not in self.doubtful or problem.code in _CERTAIN:
             self.problems.extend([problem])
+
+    def is_lost(self, key: str, name: str) -> bool:
+        """Whether `name` may be written under this key of the root, but could not be read.
+
+        What is refused as a name, such as `LeftMotor`, stands for the name it should have been.
+        """
+        names = (_letters(str(loc[1])) for loc in self.lost if loc[0] == key and len(loc) > 1)
+        return (key,) in self.lost or _letters(name) in names
 
     @property
     def failed(self) -> bool:
         """Whether an error has been reported so far."""
         return bool(self.tally.errors or self.problems.errors)
+
+
+def _letters(name: str) -> str:
+    return "".join(filter(str.isalnum, name)).casefold()
 
 
 def source_of(syntax: SourceSyntax | None) -> Source | None:

@@ -23,13 +23,17 @@ def resolve_decisions(context: Context, draft: Draft) -> None:
         for name, item in decisions.items()
     )
     for name, overload in context.syntax.overloads.items():
-        if overload.decision is not None and overload.decision not in decisions:
+        if overload.decision is not None and not _is_known(context, overload.decision):
             loc: Loc = ("overloads", name, "decision")
             text = f"there is no decision `{overload.decision}`"
             context.error("PG165", loc, text, hint_for(overload.decision, decisions))
     for sender, frame in context.syntax.frame.items():
         for part, written in frame.items():
-            if written.unprotected is not None and written.unprotected not in decisions:
+            if written.unprotected is not None and not _is_known(context, written.unprotected):
                 loc = ("frame", sender, part, "unprotected")
                 text = f"there is no decision `{written.unprotected}`"
                 context.error("PG143", loc, text, hint_for(written.unprotected, decisions))
+
+
+def _is_known(context: Context, name: str) -> bool:
+    return name in context.syntax.decisions or context.is_lost("decisions", name)

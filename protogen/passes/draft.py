@@ -8,6 +8,7 @@ from protogen.model.frame import Frame
 from protogen.model.framing import Framing
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.protocol import Decision
+from protogen.model.reserved import Reserved
 from protogen.passes.context import Context
 from protogen.passes.named_types import NamedTypes
 
@@ -29,6 +30,7 @@ class Draft:
     framings: dict[str, Framing] = field(default_factory=dict)
     decisions: tuple[Decision, ...] = ()
     exchanges: tuple[Exchange, ...] = ()
+    reserved: Reserved = field(default_factory=Reserved)
 
     @classmethod
     def of(cls, context: Context) -> Draft:

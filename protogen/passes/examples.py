@@ -11,6 +11,7 @@ from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.example_values import with_byte_strings
 from protogen.passes.runs import Runs
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
@@ -32,13 +33,23 @@ def attach_examples(context: Context, draft: Draft) -> None:
 
 
 def _content_known(context: Context) -> None:
-    """What `content` holds by default are parts of some frame at least."""
-    names = dict.fromkeys(name for frame in context.syntax.frame.values() for name in frame)
+    """What `content` holds by default are parts of some frame at least, examples or not."""
+    frames = [list(frame) for frame in context.syntax.frame.values()]
+    names = dict.fromkeys(name for frame in frames for name in frame)
+    loc: Loc = ("content_covers",)
     for item in context.syntax.content_covers or ():
-        for name in item.split(".."):
-            if name not in names:
-                text = f"no frame has a part called `{name}`"
-                context.error("PG132", ("content_covers",), text, hint_for(name, names))
+        ends = item.split("..")
+        unknown = [name for name in ends if name not in names]
+        for name in unknown:
+            text = f"no frame has a part called `{name}`"
+            context.error("PG132", loc, text, hint_for(name, names))
+        if not unknown and not any(_in_order(frame, ends) for frame in frames):
+            context.error("PG132", loc, f"in no frame does `{ends[-1]}` come behind `{ends[0]}`")
+
+
+def _in_order(names: list[str], ends: list[str]) -> bool:
+    """Whether a frame of these parts has a run with these ends."""
+    return set(ends) <= set(names) and names.index(ends[0]) <= names.index(ends[-1])
 
 
 def _example(
@@ -54,6 +65,10 @@ def _example(
     covers = None
     if item.frame is None:
         covers = _covers(context, draft.frames[sender], item, loc)
+    elif item.covers is not None:
+        text = "`covers` says what `content` holds; a `frame` is all bytes"
+        context.error_at_key("PG162", (*loc, "covers"), text)
+        return None
     if item.content is not None and not covers:
         return None
     if not _parts_known(context, draft.frames[sender], item, loc):
@@ -63,9 +78,9 @@ def _example(
         sender=sender,
         bytes=item.frame if item.frame is not None else item.content or b"",
         covers=covers,
-        values=dict(item.values) if item.values is not None else None,
+        values=None if item.values is None else with_byte_strings(message.fields, item.values),
         parts=dict(item.parts or {}),
-        contradicts=_contradiction(item),
+        contradicts=_contradiction(message, item),
         about=about(item.doc, item.source),
         span=context.find_key(loc),
     )
@@ -107,11 +122,12 @@ def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) 
     return not unknown
 
 
-def _contradiction(item: ExampleSyntax) -> Contradiction | None:
+def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | None:
     if item.contradicts is None:
         return None
     written = item.contradicts
-    return Contradiction(fails=written.fails, why=written.why, reads=written.reads)
+    reads = None if written.reads is None else with_byte_strings(message.fields, written.reads)
+    return Contradiction(fails=written.fails, why=written.why, reads=reads)
 
 
 def resolve_exchanges(context: Context, draft: Draft) -> None:

@@ -178,6 +178,8 @@ class FieldBuilder:
             text = f"integers are 1 to 64 bits wide, not {integer_width(name)}"
             self._context.error("PG105", loc, text)
             return
+        if self._context.is_lost("types", name):
+            return
         known = (*self._context.syntax.types, *COMMON_NAMES)
         self._context.error("PG104", loc, f"there is no type `{name}`", hint_for(name, known))
 

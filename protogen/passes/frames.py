@@ -89,7 +89,7 @@ class FrameBuilder:
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._sender, self._syntax)
         self._one_length(parts)
-        if self._context.tally.errors > before:
+        if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         known = tuple(part for part in parts if part is not None)
         frame = Frame(parts=known, transparency=transparency)

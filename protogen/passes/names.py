@@ -98,7 +98,7 @@ def _senders(context: Context) -> tuple[str, ...]:
 def check_endpoint(context: Context, name: str, loc: Loc) -> bool:
     """Whether there is such an endpoint; a problem at `loc` if not."""
     endpoints = context.syntax.endpoints
-    if name not in endpoints:
+    if name not in endpoints and not context.is_lost("endpoints", name):
         text = f"there is no endpoint `{name}`"
         context.error("PG108", loc, text, hint_for(name, endpoints))
     return name in endpoints
@@ -108,6 +108,6 @@ def _keys_are_endpoints(context: Context) -> None:
     endpoints = context.syntax.endpoints
     for key in _BY_SENDER:
         for sender in getattr(context.syntax, key):
-            if sender and sender not in endpoints:
+            if sender and sender not in endpoints and not context.is_lost("endpoints", sender):
                 text = f"there is no endpoint `{sender}`"
                 context.error_at_key("PG108", (key, sender), text, hint_for(sender, endpoints))

@@ -105,12 +105,15 @@ class Overloads:
         if overload.yields is not None:
             text = "`yields` is for messages that nothing tells apart: `by: undecidable`"
             self._context.error_at_key("PG154", (*loc, "yields"), text)
-        for one, other in _clashes(messages):
+        clashes = list(_clashes(messages))
+        if clashes:
+            one, other = clashes[0]
             text = f"`{one.name}` ({one.sizes} bytes) and `{other.name}` ({other.sizes} bytes)"
             self._context.error(
                 "PG153",
                 (*loc, "by"),
-                f"{text} can have the same size, so it does not tell them apart",
+                f"{text} can have the same size{_others(len(clashes) - 1)}, so it does not tell "
+                "them apart",
                 "bound their sizes, or write `by: undecidable` and `yields`",
             )
 
@@ -121,6 +124,11 @@ class Overloads:
             if name not in self._asked and known >= set(overload.messages):
                 text = "these messages do not share an identity, so there is nothing to tell apart"
                 self._context.error_at_key("PG154", ("overloads", name), text)
+
+
+def _others(count: int) -> str:
+    """How many more messages can have the size of another one."""
+    return f", and so can {count} more of these messages" if count else ""
 
 
 def _clashes(messages: Sequence[Message]) -> Iterable[tuple[Message, Message]]:

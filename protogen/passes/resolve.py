@@ -18,7 +18,7 @@ from protogen.passes.framing import analyse_framing
 from protogen.passes.identities import check_identities
 from protogen.passes.messages import resolve_messages
 from protogen.passes.names import check_names
-from protogen.passes.reserved import check_reserved
+from protogen.passes.reserved import resolve_reserved
 from protogen.passes.spec_hash import spec_hash
 from protogen.passes.unused import check_unused
 
@@ -33,7 +33,7 @@ PASSES: tuple[Pass, ...] = (
     check_unused,
     check_class_names,
     check_identities,
-    check_reserved,
+    resolve_reserved,
     attach_examples,
     resolve_exchanges,
     analyse_framing,
@@ -71,6 +71,7 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
         messages=tuple(draft.messages.values()),
         exchanges=draft.exchanges,
         decisions=draft.decisions,
+        reserved=draft.reserved,
         spec_hash="",
     )
     return replace(protocol, spec_hash=spec_hash(protocol))

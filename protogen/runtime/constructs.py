@@ -471,7 +471,33 @@ class Struct(construct.Struct):  # type: ignore[misc]
         if strange or missing:
             problem = "there is no such field" if strange else "the value is missing"
             raise PayloadError("value", f"{path} -> {(strange or missing)[0]}", 0, problem)
-        return super()._build(values, stream, context, path)
+        return self._build_in_order(values, stream, context, path)
+
+    def _build_in_order(
+        self, values: Mapping[str, Any], stream: BinaryIO, context: Any, path: str
+    ) -> Container:
+        """Build field after field, each of which sees those in front of it and no others.
+
+        construct shows a field all values from the start, and its own. Where one of them is called
+        like the field of an outer struct that counts or selects, that one would not be seen.
+        """
+        inside = Container(
+            _=context,
+            _params=context._params,
+            _root=None,
+            _parsing=context._parsing,
+            _building=context._building,
+            _sizing=context._sizing,
+            _subcons=self._subcons,
+            _io=stream,
+            _index=context.get("_index", None),
+        )
+        inside._root = context.get("_root", inside)
+        for subcon in self.subcons:
+            built = subcon._build(values.get(subcon.name), stream, inside, path)
+            if subcon.name:
+                inside[subcon.name] = built
+        return inside
 
 
 class Counted(_Around):

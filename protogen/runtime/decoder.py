@@ -17,7 +17,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     """Cuts what one endpoint sends into events.
 
     The raw bytes of all events, joined, are the input; how the input is divided among calls of
-    `feed` changes nothing. At most one greatest frame is kept between calls.
+    `feed` changes nothing. At most one greatest frame is kept between calls, and behind it what may
+    yet become a start literal of three bytes or more.
     """
 
     def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co]) -> None:

@@ -64,7 +64,7 @@ def compose(
     except _GiveUpError:
         return None
     except yaml.MarkedYAMLError as error:
-        _report_syntax(error, file, problems)
+        _report_syntax(error, Places(text, file), problems)
         return None
     return composer.finish()
 
@@ -222,18 +222,13 @@ class _Composer:
         return position_of(event.end_mark)
 
 
-def _report_syntax(error: yaml.MarkedYAMLError, file: str, problems: Problems) -> None:
+def _report_syntax(error: yaml.MarkedYAMLError, places: Places, problems: Problems) -> None:
     """Report what the parser could not read, in its words."""
     mark = error.problem_mark or error.context_mark
     problem = error.problem or "this is not YAML"
-    span = Span.of_file(file) if mark is None else _point(file, mark)
+    span = places.of_file() if mark is None else places.point(position_of(mark))
     hint = next((hint for words, hint in _SYNTAX_HINTS.items() if words in problem), None)
     notes = []
     if error.context is not None and error.context_mark is not None:
-        notes.append((_point(file, error.context_mark), error.context))
+        notes.append((places.point(position_of(error.context_mark)), error.context))
     problems.add("PG004", span, problem, hint, notes)
-
-
-def _point(file: str, mark: Any) -> Span:
-    place = position_of(mark)
-    return Span.at(file, place.line, place.column)

@@ -9,7 +9,8 @@ from protogen.problems import Problems, SourceMap
 from protogen.schema.document import read_document
 from protogen.schema.extends import Merged, merge_bases
 from protogen.schema.nodes import MappingNode, to_data
-from protogen.schema.shape import Loc, read_shape
+from protogen.schema.salvage import Loc
+from protogen.schema.shape import read_shape
 from protogen.schema.syntax.protocol import ProtocolSyntax
 
 
@@ -20,7 +21,9 @@ class Loaded:
     syntax: ProtocolSyntax
     merged: Merged
     doubtful: frozenset[Loc] = frozenset()
-    """Items with a key that is unknown: what else seems wrong with them may come of that."""
+    """Items of which something could not be read: what seems wrong with them may come of that."""
+    lost: frozenset[Loc] = frozenset()
+    """Names that are written, but whose meaning could not be read."""
 
 
 def load_syntax(
@@ -41,4 +44,4 @@ def load_syntax(
     shape = read_shape(to_data(merged.root), merged.find, problems)
     if shape is None or not sound:
         return None
-    return Loaded(shape.syntax, merged, shape.doubtful)
+    return Loaded(shape.syntax, merged, shape.doubtful, shape.lost)

@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 from protogen.problems import Span
-from protogen.problems.sources import Position, end_of
+from protogen.problems.sources import Position, end_of, split_lines
 
 _PROPERTIES = re.compile(r"(?:(?:&[\w-]+|![^\s,\[\]{}]*)\s*(?:#.*\s*)*)+", re.ASCII)
 """Anchor and tag before a node, with the white space and comments behind them."""
@@ -32,6 +32,18 @@ class Places:
     def at(self, start: Position, width: int) -> Span:
         """Return the span of ``width`` characters on one line."""
         return Span.at(self._file, start.line, start.column, width)
+
+    def point(self, start: Position) -> Span:
+        """Return the span of the character at a position, which may lie behind all text.
+
+        The parser sees that something is missing where the file ends, on a line that need not be
+        there; to a reader that is behind the last character.
+        """
+        lines = split_lines(self._text)
+        if start.line <= len(lines) and start.column <= len(lines[start.line - 1]):
+            return self.at(start, 1)
+        behind = end_of(self._text.rstrip())
+        return self.at(min(start, behind), 0)
 
     def of_file(self) -> Span:
         """Return the span for what concerns the file as a whole."""

@@ -12,34 +12,28 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from protogen.problems import Problems, Span, hint_for
+from protogen.schema.salvage import Loc, Salvage
 from protogen.schema.syntax.protocol import ProtocolSyntax
 
 Find = Callable[..., Span]
 Steps = Sequence[str | int]
-Loc = tuple[str | int, ...]
-
-_APART = frozenset(
-    {"messages", "overloads", "exchanges", "decisions", "endpoints", "link", "source", "reserved"}
-)
-"""Keys of the root under which an item with an unknown key leaves the rest of the schema clear."""
-_SPARED = frozenset({"messages", "overloads", "exchanges", "reserved", "link", "source"})
-"""Those whose items can be left out as a whole, so that the rest is still looked at."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What was written, without unknown keys and without items that can't be read."""
+    """What was written, as far as it can be read."""
 
     syntax: ProtocolSyntax
     doubtful: frozenset[Loc] = frozenset()
-    """The items that something was left out of, and those that may name what is not there."""
+    """Items of which something is missing, and those that depend on such items."""
+    lost: frozenset[Loc] = frozenset()
+    """Names that are written, but can't be referred to."""
 
 
 def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
     """The syntax tree of a schema's data, or None; errors of shape are reported.
 
-    Unknown keys, and messages that can't be read, are dropped from `data` where that leaves the
-    rest of the schema clear.
+    What is wrong is left out of `data` where the rest still can be looked at.
     """
     try:
         return Shape(ProtocolSyntax.model_validate(data))
@@ -47,46 +41,21 @@ def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
         details = error.errors(include_url=False)
     for detail in details:
         _report(detail, find, problems)
-    dropped = [_droppable(detail) for detail in details]
-    return _without(data, [loc for loc in dropped if loc]) if all(dropped) else None
+    return _without(data, details)
 
 
-def _droppable(detail: ErrorDetails) -> Loc:
-    """What to leave out so that the rest can be looked at; nothing where that is not possible."""
-    loc = detail["loc"]
-    if detail["type"] == "extra_forbidden":
-        return loc if len(loc) > 1 and loc[0] in _APART else ()
-    return loc[:2] if len(loc) > 1 and loc[0] in _SPARED else ()
-
-
-def _without(data: Any, dropped: Sequence[Loc]) -> Shape | None:
-    for loc in dropped:
-        _drop(data, loc)
+def _without(data: Any, details: Sequence[ErrorDetails]) -> Shape | None:
+    salvage = Salvage(data)
+    # Inner things first: where something around them is left out as well, they are gone with it.
+    for detail in sorted(details, key=lambda detail: -len(detail["loc"])):
+        unknown_key = detail["type"] == "extra_forbidden"
+        if not salvage.leave_out(detail["loc"], unknown_key=unknown_key):
+            return None
     try:
         syntax = ProtocolSyntax.model_validate(data)
     except ValidationError:
         return None
-    return Shape(syntax, _doubtful(syntax, dropped)) if syntax.messages else None
-
-
-def _drop(data: Any, loc: Steps) -> None:
-    """Drop a key; a step of its location that leads nowhere is the label of a tagged union."""
-    for step in loc[:-1]:
-        if isinstance(data, dict):
-            data = data.get(step, data)
-        elif isinstance(data, list) and isinstance(step, int):
-            data = data[step]
-    if isinstance(data, dict):
-        data.pop(loc[-1], None)
-
-
-def _doubtful(syntax: ProtocolSyntax, dropped: Sequence[Loc]) -> frozenset[Loc]:
-    """What a dropped key may have changed; sizes of messages also decide about overloads."""
-    items = {loc[:2] for loc in dropped}
-    if any(loc[0] == "messages" for loc in items):
-        items |= {("overloads", name) for name in syntax.overloads}
-        items |= {("exchanges", name) for name in syntax.exchanges}
-    return frozenset(items)
+    return Shape(syntax, salvage.consequences(syntax), frozenset(salvage.lost))
 
 
 def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:
@@ -103,7 +72,7 @@ def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:
         case "string_pattern_mismatch":
             _report_name(loc, detail["input"], find, problems)
         case _:
-            problems.add("PG102", find(loc), _plain_words(detail["msg"]))
+            problems.add("PG102", find(loc), _plain_words(detail["msg"]), _choice_hint(detail))
 
 
 def _report_name(loc: Loc, written: object, find: Find, problems: Problems) -> None:
@@ -116,6 +85,20 @@ def _key_hint(word: str, known: Sequence[str]) -> str | None:
     if close is not None or not known:
         return close
     return f"keys are {', '.join(known)}"
+
+
+_CHOICE = re.compile(r"'([^']*)'|(True)")
+
+
+def _choice_hint(detail: ErrorDetails) -> str | None:
+    """The choice that was probably meant, where there are few; the message lists all of them."""
+    written = detail["input"]
+    if not isinstance(written, str):
+        return None
+    if detail["type"] == "bool_type":
+        return hint_for(written, ("true", "false"))
+    expected = str(detail.get("ctx", {}).get("expected", ""))
+    return hint_for(written, [(text or word).lower() for text, word in _CHOICE.findall(expected)])
 
 
 _YAML_WORDS = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 from hypothesis import strategies as st
@@ -22,7 +23,12 @@ TEXTS = (
 )
 UNITS = ("mm", "mm/s", "deg", "V", "degC", "ms", "m/s^2", "%", "1/min", "µs")
 
+a_text = st.sampled_from(TEXTS)
+a_unit = st.sampled_from(UNITS)
 
+
+# Most draws ask this; to make a strategy and to check it costs more than to draw from it.
+@cache
 def one_in(many: int) -> st.SearchStrategy[bool]:
     """True once in so many draws; the simplest is False."""
     return st.sampled_from((False,) * (many - 1) + (True,))
@@ -33,7 +39,7 @@ def about(draw: st.DrawFn) -> dict[str, Any]:
     """What people read, mostly nothing."""
     if not draw(one_in(6)):
         return {}
-    found: dict[str, Any] = {"doc": draw(st.sampled_from(TEXTS))}
+    found: dict[str, Any] = {"doc": draw(a_text)}
     if draw(st.booleans()):
         found["source"] = draw(st.sampled_from(["61-65", 63, {"lines": "7", "note": "a note"}]))
     return found

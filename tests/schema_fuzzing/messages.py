@@ -175,7 +175,7 @@ class _Message:
         found = dict(self._draw(forms.about()))
         for key in ("title", "summary"):
             if self._draw(forms.one_in(6)):
-                found[key] = self._draw(st.sampled_from(forms.TEXTS))
+                found[key] = self._draw(forms.a_text)
         return found
 
 

@@ -7,6 +7,7 @@ struct ...) give the same name when they are joined.
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
+from functools import cache
 
 from hypothesis import strategies as st
 
@@ -47,6 +48,7 @@ def fresh(pool: Sequence[str], taken: Container[str]) -> st.SearchStrategy[str]:
     return st.just(next(f"spare_{n}" for n in range(2, 10_000) if f"spare_{n}" not in taken))
 
 
-def several(pool: Sequence[str], least: int, greatest: int) -> st.SearchStrategy[list[str]]:
+@cache
+def several(pool: tuple[str, ...], least: int, greatest: int) -> st.SearchStrategy[list[str]]:
     """Different names out of a pool."""
     return st.lists(st.sampled_from(pool), min_size=least, max_size=greatest, unique=True)

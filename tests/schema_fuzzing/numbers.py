@@ -135,7 +135,7 @@ def _float(draw: st.DrawFn, setting: Setting) -> Built:
     elif key:
         data[key] = draw(FLOATS)
     if draw(forms.one_in(5)):
-        data["unit"] = draw(st.sampled_from(forms.UNITS))
+        data["unit"] = draw(forms.a_unit)
     return Built(data, Size(size, size))
 
 
@@ -146,7 +146,7 @@ def _named(draw: st.DrawFn, key: str, value: Any) -> Any:
     """The short form, or a mapping with a text."""
     if not draw(forms.one_in(4)):
         return value
-    return {key: value, "doc": draw(st.sampled_from(forms.TEXTS))}
+    return {key: value, "doc": draw(forms.a_text)}
 
 
 @st.composite
@@ -238,7 +238,7 @@ def _physical(draw: st.DrawFn, data: dict[str, Any]) -> None:
         if draw(forms.one_in(6)):
             data[key] = draw(values)
     if draw(forms.one_in(4)):
-        data["unit"] = draw(st.sampled_from(forms.UNITS))
+        data["unit"] = draw(forms.a_unit)
 
 
 def _constants(

@@ -168,7 +168,7 @@ class _Drawing:
         return keyed.get(_SHARED, keyed)
 
     def _endpoint(self) -> Any:
-        title = self._draw(st.sampled_from(forms.TEXTS))
+        title = self._draw(forms.a_text)
         return self._draw(st.sampled_from([title, {"title": title, "doc": "Some words."}]))
 
     def _extras(self, frames: Mapping[str, FramePlan], found: list[MessagePlan]) -> dict[str, Any]:
@@ -177,22 +177,19 @@ class _Drawing:
         data: dict[str, Any] = {}
         for key in ("title", "doc", "version"):
             if draw(forms.one_in(4)):
-                data[key] = draw(st.sampled_from(forms.TEXTS))
+                data[key] = draw(forms.a_text)
         if draw(forms.one_in(3)):
             data["link"] = draw(_links())
         accepted = any("unprotected" in p.data for f in frames.values() for p in f.parts)
         if accepted or draw(forms.one_in(6)):
             keys = ("question", "document", "choice", "because")
-            data["decisions"] = {DECISION: {key: draw(_TEXT) for key in keys}}
+            data["decisions"] = {DECISION: {key: draw(forms.a_text) for key in keys}}
         if draw(forms.one_in(5)):
             steps = draw(st.lists(st.sampled_from([m.name for m in found]), max_size=4))
-            data["exchanges"] = {"startup": {"title": draw(_TEXT), "steps": list(steps)}}
+            data["exchanges"] = {"startup": {"title": draw(forms.a_text), "steps": list(steps)}}
         if draw(forms.one_in(6)):
             data["reserved"] = {"fields": {found[0].name: ["no_longer_used"]}}
         return data
-
-
-_TEXT = st.sampled_from(forms.TEXTS)
 
 
 @st.composite

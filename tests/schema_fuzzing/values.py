@@ -29,6 +29,7 @@ from protogen.model.types import (
 
 _USUAL_COUNT = 5
 _GREATEST_COUNT = 300
+_ASCII = st.characters(max_codepoint=0x7F)
 
 Scope = dict[str, int]
 """The integers in front, which count and choose."""
@@ -230,13 +231,12 @@ def _string(draw: st.DrawFn, type_: Text | Octets, scope: Scope) -> str:
     if isinstance(type_, Octets):
         return draw(_octets(size, type_.byte_bits)).hex()
     if not isinstance(type_.extent, Fixed):
-        return draw(_text(size, size, type_.byte_bits))
-    return draw(_text(0, size, type_.byte_bits)).rstrip("\0")
+        return draw(_text(size, size))
+    return draw(_text(0, size)).rstrip("\0")
 
 
-def _text(least: int, greatest: int, byte_bits: int) -> st.SearchStrategy[str]:
-    characters = st.characters(max_codepoint=0x7F if byte_bits == 7 else 0xFF)
-    return st.text(characters, min_size=least, max_size=greatest)
+def _text(least: int, greatest: int) -> st.SearchStrategy[str]:
+    return st.text(_ASCII, min_size=least, max_size=greatest)
 
 
 def _octets(size: int, byte_bits: int) -> st.SearchStrategy[bytes]:

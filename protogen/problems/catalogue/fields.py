@@ -250,11 +250,13 @@ one would be lost.
     Code(
         "PG122",
         "frame-too-large",
-        "A frame can be larger than 1 MiB",
+        "A frame can be larger than 1 MiB, or has too many fields",
         """\
 A receiver has to hold the greatest frame, and a damaged length must not make it wait for millions
 of bytes that never come. Bound the count with a `range` on the counting field, the length part with
-a `range`, or a field that fills with `max`.
+a `range`, or a field that fills with `max`. Structs and declared types are nested at most 64 deep,
+and declared types come to at most 50000 fields where they are used: a few lines that repeat each
+other can't come to more than a program can hold.
 """,
         with_fields("""
             points: uint32

@@ -39,7 +39,10 @@ format.
         """\
 The keys of a part say what it does: `literal` (fixed bytes), `id: true` (identity), `counts`
 (length), `counter: true`, `algorithm` with `covers` (checksum), or a `type` alone (a number that
-the caller gives). This part has none of them, keys of two roles, or lacks one that its role needs.
+the caller gives). This part has none of them, or a key that does not go together with its role, or
+it lacks one: each part but literals and the payload needs a `type`, a checksum `covers`. Only a
+checksum behind the payload can be there `when: payload`, and only one of bytes that COBS did not
+make is `over: wire`.
 """,
         with_frame(
             """
@@ -198,9 +201,10 @@ document says that the sum over *all* bytes is zero, the checksum is a negated o
         "length-too-narrow",
         "The length part is too narrow",
         """\
-A message can be longer than the length part can say, so it could not be sent. Either the length
-part is wider than was written, or the message is bounded: by a `range` on the field that counts, by
-`max` on a field that fills.
+A size that the schema states is greater than the length part can say, so such a message could not
+be sent: a fixed size, a counting field with a `range`, a `max`. (What no `range` or `max` bounds is
+bounded by the length part.) Or the length part can't even say how many bytes it counts besides the
+payload. Make the length part wider, or its `range`, or bound the message to what it can say.
 """,
         with_framed(
             """
@@ -228,7 +232,7 @@ part is wider than was written, or the message is bounded: by a `range` on the f
         """\
 A transparency is exactly one of `substitute` (a table), `escape`, `encoding` or `preset`, and
 covers one unbroken run of parts. Without `covers` these are all parts between the literals that
-open and close the frame.
+open and close the frame. A table says once what becomes of a byte: `b` and `0x62` are the same.
 """,
         with_frame(
             """

@@ -95,9 +95,11 @@ and in the document. Add a word that says more: `class` becomes `class_id`.
         "name-taken",
         "A name is taken twice",
         """\
-Messages and types share one set of names, because generated code has one class for each of them.
-An enum, flags or struct that is written inside a field is called after its message and field:
-`gyro_status`. Give one of the two another name.
+Messages and types share one set of names, because generated code has one class for each of them:
+`gyro_1` and `gyro1` would both be `Gyro1`. What is written inside a field is called after its
+message and field: `gyro_status`. A type can't be called like a built-in one. Nor is a declared type
+one type if its uses differ: in byte order, or because a switch in it ends the payload in one place
+and not in another. Rename one of the two, or declare a type for each use.
 """,
         with_messages(
             "gyro: {id: 1, from: robot, fields: {state: {type: gyro}}}",

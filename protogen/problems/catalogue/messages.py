@@ -34,9 +34,11 @@ for two messages, say under `overloads` how they are told apart, or that they ca
         "incomplete-identity",
         "An identity does not name the frame's identity parts",
         """\
-A message has a value for each identity part of its frame, and for no other part. With one identity
-part a number or character is enough: `id: 7`. With several it is a mapping:
-`id: {class_id: 2, subclass: 7}`.
+A message has a value for each identity part of its frame, and for no other part; so has an identity
+that is `reserved`. With one identity part a number or character is enough: `id: 7`. With several it
+is a mapping: `id: {class_id: 2, subclass: 7}`. Where the frame has no identity part, `id` is left
+out. If several endpoints send a message, their frames have the same identity parts in the same
+order.
 """,
         with_framed(
             """

@@ -28,7 +28,7 @@ Reason = Literal[
 class Contradiction(Syntax):
     """How an example of the document differs from the schema; checked to differ just so."""
 
-    fails: Reason | Literal["values", "unknown"] = Field(
+    fails: Literal[Reason, "values", "unknown"] = Field(
         description="The decoder's reason, `values` where it decodes to other values than the "
         "document prints (give `reads`), or `unknown` where its identity is another's."
     )

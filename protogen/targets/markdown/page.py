@@ -19,6 +19,7 @@ from protogen.targets.markdown.record import (
     ExchangeView,
     decision_view,
     exchange_view,
+    reserved,
     unknowns,
 )
 from protogen.targets.markdown.table import Table
@@ -45,6 +46,7 @@ class PageView:
     exchanges: tuple[ExchangeView, ...]
     decisions: tuple[DecisionView, ...]
     unknowns: Table | None
+    reserved: Table | None
 
 
 def page_view(protocol: Protocol) -> PageView:
@@ -65,6 +67,7 @@ def page_view(protocol: Protocol) -> PageView:
         exchanges=tuple(exchange_view(item, protocol) for item in protocol.exchanges),
         decisions=tuple(map(decision_view, protocol.decisions)),
         unknowns=unknowns(protocol.messages),
+        reserved=reserved(protocol),
     )
 
 

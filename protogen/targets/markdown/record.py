@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol
+from protogen.model.reserved import ReservedIdentity
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.anchors import example_anchor, message_link
 from protogen.targets.markdown.origin import about_line, place
@@ -77,6 +78,30 @@ def decision_view(decision: Decision) -> DecisionView:
         because=sentence(markdown(decision.because)),
         source=place(decision.source),
     )
+
+
+def reserved(protocol: Protocol) -> Table | None:
+    """Return what may not come back with another meaning; None if nothing is reserved."""
+    item = protocol.reserved
+    rows = [
+        *(_reserved_identity(protocol, identity) for identity in item.identities),
+        *(
+            (f"field names of {code(entry.message)}", ", ".join(map(code, entry.names)), "")
+            for entry in item.fields
+        ),
+        *(
+            (f"values of {code(entry.path)}", ", ".join(map(str, entry.values)), "")
+            for entry in item.values
+        ),
+    ]
+    return table(("What", "Reserved", "What it was"), rows) if rows else None
+
+
+def _reserved_identity(protocol: Protocol, item: ReservedIdentity) -> tuple[str, ...]:
+    parts = protocol.sender(item.sender).frame.identity
+    named = (f"{part.name} 0x{value:02X}" for part, value in zip(parts, item.identity, strict=True))
+    what = sentence(markdown(item.doc)) if item.doc else ""
+    return f"identity, from {code(item.sender)}", code(", ".join(named)), what
 
 
 def unknowns(messages: Iterable[Message]) -> Table | None:

@@ -23,7 +23,7 @@ from protogen.model.types import (
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty
-from protogen.targets.python.literals import call, octets, text, tuple_of
+from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import class_name, member_name, unit_suffix
 from protogen.targets.python.wrapping import docstring, remark, union, wrapped
@@ -186,7 +186,7 @@ def annotation(type_: Type, taken: frozenset[str]) -> str:
         case Octets():
             return _builtin("bytes", taken)
         case Struct():
-            return "None" if is_empty(type_) else class_name(type_.name)
+            return class_name(type_.name)
         case Array():
             return f"{_builtin('list', taken)}[{annotation(type_.element, taken)}]"
         case Switch():
@@ -206,7 +206,9 @@ def _integer_annotation(type_: Integer, taken: frozenset[str]) -> str:
 
 
 def _switch_annotation(type_: Switch, taken: frozenset[str]) -> str:
-    choices = [annotation(case.type, taken) for case in type_.cases]
+    choices = [
+        "None" if is_empty(case.type) else annotation(case.type, taken) for case in type_.cases
+    ]
     if type_.rest is not None:
         choices.append(_builtin("bytes", taken))
     distinct = dict.fromkeys(choices)
@@ -223,7 +225,7 @@ def _default(field: Field) -> str | None:
         case tuple():
             return f"_field(default_factory=lambda: {list(value)})"
         case bytes():
-            return octets(value)
+            return octets_in_class(value)
         case str():
             return text(value)
         case int() if isinstance(field.type, Integer):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from protogen.model.fields import Field
+from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
     Case,
@@ -18,7 +21,7 @@ from protogen.model.types import (
     Text,
     Type,
 )
-from protogen.targets.python.literals import call, mapping, octets, text
+from protogen.targets.python.literals import call, mapping, octets_in_class, text
 from protogen.targets.python.spelling import class_name
 
 
@@ -40,7 +43,7 @@ def constant(field: Field) -> str:
     """The raw value of a field's constant, as `FORMAT` has it."""
     match field.const:
         case bytes():
-            return octets(field.const)
+            return octets_in_class(field.const)
         case str():
             return text(field.const)
         case tuple():
@@ -127,3 +130,23 @@ def _case(case: Case) -> str:
 def is_empty(type_: Type) -> bool:
     """Whether the type is a struct without fields, which Python shows as None."""
     return isinstance(type_, Struct) and not type_.fields
+
+
+def classes_of(protocol: Protocol) -> tuple[Struct, ...]:
+    """The structs that need a class: all but those that are only cases without bytes."""
+    named = {name for fields in _field_lists(protocol) for item in fields for name in _named(item)}
+    return tuple(item for item in protocol.structs if item.fields or item.name in named)
+
+
+def _field_lists(protocol: Protocol) -> Iterator[tuple[Field, ...]]:
+    yield from (message.fields for message in protocol.messages)
+    yield from (struct.fields for struct in protocol.structs)
+
+
+def _named(field: Field) -> Iterator[str]:
+    """The struct that a field is, or has as its elements."""
+    type_ = field.type
+    while isinstance(type_, Array):
+        type_ = type_.element
+    if isinstance(type_, Struct):
+        yield type_.name

@@ -21,6 +21,11 @@ def octets(value: bytes) -> str:
     return f'bytes.fromhex("{value.hex(" ").upper()}")' if value else 'b""'
 
 
+def octets_in_class(value: bytes) -> str:
+    """Bytes for the body of a class, where a field may be called `bytes`."""
+    return 'b"' + "".join(f"\\x{byte:02x}" for byte in value) + '"'
+
+
 def text(value: str) -> str:
     """A string in double quotes."""
     return _quoted(value)

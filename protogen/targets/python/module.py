@@ -10,7 +10,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
-from protogen.targets.python.formats import is_empty
+from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, method, remark, union, wrapped
@@ -79,7 +79,7 @@ def view(protocol: Protocol) -> Module:
     any_message = " | ".join(dict.fromkeys(sender.union for sender in senders))
     any_parts = " | ".join(dict.fromkeys(sender.parts for sender in senders))
     arguments = _arguments(protocol)
-    structs = tuple(classes.struct_class(item) for item in protocol.structs if not is_empty(item))
+    structs = tuple(map(classes.struct_class, classes_of(protocol)))
     return Module(
         name=protocol.name,
         doc=docstring(describing.module(protocol), 0),

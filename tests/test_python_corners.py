@@ -1,0 +1,92 @@
+"""Schemas whose names and shapes meet something in the generated Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import protogen
+
+HEAD = """\
+protocol: corner
+endpoints: {a: A, b: B}
+byte_order: little
+frame:
+  sync: {literal: 0x55, unprotected: accepted}
+  ident: {type: uint8, id: true}
+  payload: {}
+  end: {literal: 0xAA, unprotected: accepted}
+decisions:
+  accepted: {question: May it occur in the data?, document: Silent., choice: Yes., because: It can.}
+"""
+
+
+@pytest.fixture
+def compiled(tmp_path: Path, request: pytest.FixtureRequest) -> ModuleType:
+    schema = tmp_path / "corner.yaml"
+    schema.write_text(HEAD + request.param)
+    return protogen.module_of(protogen.load(schema))
+
+
+EMPTY = """\
+types: {nothing: {fields: {}}}
+messages:
+  ping:
+    id: 1
+    from: a
+    fields: {one: nothing, two: {fields: {}}, three: {fields: {}, count: 2}, x: uint8}
+"""
+
+
+@pytest.mark.parametrize("compiled", [EMPTY], indirect=True)
+def test_a_struct_without_fields_takes_no_bytes(compiled: ModuleType) -> None:
+    values = {"one": {}, "two": {}, "three": [{}, {}], "x": 7}
+    ping = compiled.Ping.from_dict(values)
+    assert ping.to_payload() == b"\x07"
+    assert compiled.Ping.from_payload(b"\x07") == ping
+    assert ping.to_dict() == values
+
+
+SHADOWED = """\
+messages:
+  ping:
+    id: 1
+    from: a
+    fields:
+      bytes: {type: uint8, default: 1}
+      value: {type: bytes, size: 2, const: {hex: BA 0D}}
+"""
+
+
+@pytest.mark.parametrize("compiled", [SHADOWED], indirect=True)
+def test_a_field_may_be_called_like_a_built_in_type(compiled: ModuleType) -> None:
+    assert compiled.Ping().to_payload() == bytes.fromhex("01 BA 0D")
+
+
+OUTER = """\
+messages:
+  ping:
+    id: 1
+    from: a
+    fields:
+      kind: uint8
+      choice:
+        switch: kind
+        cases:
+          1: {fields: {kind: {switch: kind, cases: {1: uint16}}}}
+          2: {fields: {data: {type: uint8, count: kind}, kind: uint8}}
+"""
+
+
+@pytest.mark.parametrize("compiled", [OUTER], indirect=True)
+def test_a_field_is_chosen_by_what_stands_in_front_of_it(compiled: ModuleType) -> None:
+    """Neither the field's own name nor that of one behind it hides the outer field."""
+    named_alike = compiled.Ping.from_dict({"kind": 1, "choice": {"kind": {"value": 5}}})
+    # kind 1, then the uint16 5, least significant byte first.
+    assert named_alike.to_payload() == bytes.fromhex("01 05 00")
+    counted = compiled.Ping.from_dict({"kind": 2, "choice": {"data": [8, 9], "kind": 3}})
+    # kind 2, so two numbers, then the inner kind.
+    assert counted.to_payload() == bytes.fromhex("02 08 09 03")
+    assert compiled.Ping.from_payload(bytes.fromhex("02 08 09 03")) == counted
