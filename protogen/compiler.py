@@ -40,7 +40,7 @@ def compile_file(path: str | os.PathLike[str], *, examples: bool = False) -> Com
         from protogen.examples import verify_examples  # construct is needed only here
 
         verify_examples(protocol, problems)
-        protocol = None if problems.errors else protocol
+    protocol = None if problems.errors else protocol
     return Compilation(os.fspath(path), protocol, tuple(problems), sources)
 
 
@@ -59,5 +59,6 @@ def _protocol(
         files=merged.files,
         doubtful=loaded.doubtful,
         lost=loaded.lost,
+        spoilt=loaded.spoilt,
     )
     return resolve(context)

@@ -72,7 +72,7 @@ class _Verification:
             self._contradicts(reading)
             return
         if reading.fails:
-            self._report("PG160", f"a decoder rejects it: {reading.fails}")
+            self._report("PG160", f"a decoder rejects it: {reading.fails}{self._wrong_end(wire)}")
             return
         if self._values_hold(reading, self._example.values):
             self._parts_hold(reading)
@@ -81,6 +81,14 @@ class _Verification:
     def _report(self, code: str, text: str) -> None:
         where = f"`{self._example.name}` of `{self._message.name}`"
         self._problems.add(code, self._example.span, f"{where}: {text}")
+
+    def _wrong_end(self, wire: bytes) -> str:
+        """Say what the last bytes should be; a decoder only knows that the end did not come."""
+        last = self._frame.parts[-1]
+        if not isinstance(last, LiteralPart) or wire.endswith(last.bytes):
+            return ""
+        seen = _hex(wire[-len(last.bytes) :])
+        return f"; `{last.name}` must be {_hex(last.bytes)}, and the last bytes are {seen}"
 
     # -- bytes --------------------------------------------------------------------------------
 

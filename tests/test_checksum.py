@@ -37,7 +37,7 @@ def runtime_checksum(spec: ChecksumSpec) -> Checksum:
         case "sum":
             return Sum8(spec.init, spec.negated)
         case "fletcher":
-            return Fletcher16()
+            return Fletcher16(spec.modulus)
         case "crc":
             return Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)
 
@@ -72,6 +72,11 @@ def named(name: str) -> Checksum:
         ("fletcher-16", "01 02", 0x0403),
         # FF is 0 modulo FF, in both sums: FF -> 00, then 01 -> 01 and 00 + 01.
         ("fletcher-16", "FF 01", 0x0101),
+        # Modulo 100 FF stays: running sums FF, then FF + 01 = 00; high byte FF + 00.
+        ("fletcher-16/256", "FF 01", 0xFF00),
+        # UBX NAV-POSLLH poll without its sync bytes: running sums 01, 03, 03, 03, so CK_A is 03
+        # and CK_B 01 + 03 + 03 + 03 = 0A.
+        ("fletcher-16/256", "01 02 00 00", 0x0A03),
     ],
 )
 def test_a_checksum_worked_out_by_hand(name: str, data: str, value: int) -> None:
@@ -99,6 +104,15 @@ def test_a_crc_divided_by_hand() -> None:
 )
 def test_fletcher_16_gives_the_widely_published_values(text: bytes, value: int) -> None:
     assert Fletcher16().compute(text) == value
+
+
+@given(st.binary(max_size=600) | st.integers(0, 600).map(lambda size: b"\xff" * size))
+def test_fletcher_modulo_256_is_the_loop_of_the_ubx_manual(data: bytes) -> None:
+    ck_a = ck_b = 0
+    for byte in data:
+        ck_a = ck_a + byte & 0xFF
+        ck_b = ck_b + ck_a & 0xFF
+    assert named("fletcher-16/256").compute(data).to_bytes(2, "little") == bytes((ck_a, ck_b))
 
 
 @pytest.mark.parametrize(
@@ -158,7 +172,8 @@ def test_an_unknown_name_finds_nothing(name: str) -> None:
 
 def test_every_listed_name_is_found_and_listed_once() -> None:
     names = algorithm_names()
-    assert names[:5] == ("xor-8", "sum-8", "sum-8/negated", "fletcher-16", "CRC-3/GSM")
+    simple = ("xor-8", "sum-8", "sum-8/negated", "fletcher-16", "fletcher-16/256")
+    assert names[:6] == (*simple, "CRC-3/GSM")
     assert len({name.casefold() for name in names}) == len(names)
     assert all(find_algorithm(name) for name in names)
     own = [name for name in names if named_spec(name).name == name]
@@ -312,7 +327,7 @@ def test_parameters_that_make_no_crc_are_refused(
 
 @given(st.binary(max_size=300))
 def test_simple_checksums_keep_to_their_width(data: bytes) -> None:
-    for name in ("xor-8", "sum-8", "sum-8/negated", "fletcher-16"):
+    for name in ("xor-8", "sum-8", "sum-8/negated", "fletcher-16", "fletcher-16/256"):
         checksum = named(name)
         assert checksum.width == named_spec(name).width
         assert 0 <= checksum.compute(data) < 1 << checksum.width

@@ -114,7 +114,7 @@ def test_cases_lists_and_texts() -> None:
         "0010 levels[0] 16",
         "61620000 name ab",
         "aabb rest",
-        "1a check 26 xor-8 of kind, number, length, payload must be 0x44",
+        "1a check 26 xor-8 of kind, number, length, payload check is 1a, not 44",
     ]
 
 
@@ -218,7 +218,7 @@ def test_payload_of_a_given_message() -> None:
     found = annotate(protocol, "pc", b"\7\1", covers=("payload",), message=protocol.message("two"))
     assert lines(list(found)) == ["07 x 7", "01 y 1"]
     found = annotate(protocol, "pc", bytes.fromhex("0409070100"), message=protocol.message("two"))
-    assert lines(list(found))[1:3] == ["07 x 7", "01 y 1"]
+    assert lines(list(found))[2:4] == ["07 x 7", "01 y 1"]
 
 
 def test_rows_know_what_they_show() -> None:
@@ -227,8 +227,9 @@ def test_rows_know_what_they_show() -> None:
     found = rows(protocol, "pc", "0401070900")
     x, y = sender.messages[0].fields
     kind, _, end = sender.frame.parts
-    assert [row.subject for row in found] == [kind, x, y, end]
+    assert [row.subject for row in found] == [None, kind, x, y, end]
     assert [row.value_type for row in found] == [
+        None,
         sender.frame.identity[0].type,
         x.type,
         y.type,
@@ -254,10 +255,11 @@ messages:
 """
 
 
-def test_cobs_code_bytes_stand_with_the_byte_behind_them() -> None:
+def test_the_first_cobs_code_byte_stands_alone_the_others_for_zeros() -> None:
     # 01 00 05 in COBS: 02 01 | 02 05.
     assert lines(rows(compiled(COBS), "pc", "0201 0205 00")) == [
-        "0201 id 1 two",
+        "02 COBS: the next zero or the end is 2 bytes on",
+        "01 id 1 two",
         "02 x 0",
         "05 y 5",
         "00 end",
@@ -265,7 +267,21 @@ def test_cobs_code_bytes_stand_with_the_byte_behind_them() -> None:
 
 
 def test_cobs_of_nothing() -> None:
-    assert lines(rows(compiled(COBS), "pc", "01 00"))[-2:] == ["01 stands for no byte", "00"]
+    assert lines(rows(compiled(COBS), "pc", "01 00"))[-2:] == ["id missing bytes: 1", "00"]
+
+
+def test_cobs_groups_without_a_zero() -> None:
+    schema = COBS.replace("y: uint8", "y: {type: bytes, size: 260}")
+    data = b"\xff\x01" + b"\x07" * 253 + b"\x09" + b"\x07" * 8 + b"\0"
+    found = rows(compiled(schema), "pc", data.hex())
+    assert lines(found)[0] == "ff COBS: 254 bytes without a zero"
+    # The code byte inside a field stays with it.
+    assert (len(found[3].wire), found[3].bytes) == (261, b"\x07" * 260)
+
+
+@pytest.mark.parametrize("text", ["05 00", "00", "05", "05 01 02 00", "05 00 01 00", "01 01 00"])
+def test_cobs_that_is_cut_or_holds_a_zero_is_shown_whole(text: str) -> None:
+    assert rows(compiled(COBS), "pc", text)
 
 
 ANY_SENDER = [
@@ -314,7 +330,8 @@ def test_checksums(type: str, algorithm: str, right: str) -> None:
     protocol = compiled(CHECKED.format(type=type, algorithm=algorithm))
     assert rows(protocol, "pc", f"01 02 {right}")[-1].fault == ""
     wrong = rows(protocol, "pc", f"01 02 {'00' * (len(right) // 2)}")[-1]
-    assert wrong.fault == f"must be 0x{right.lower()}"
+    zeros, due = bytes(len(right) // 2).hex(" "), bytes.fromhex(right).hex(" ")
+    assert wrong.fault == f"check is {zeros}, not {due}"
 
 
 def test_checksum_of_parts_that_are_not_shown() -> None:

@@ -203,3 +203,48 @@ def test_quiet(project: Path) -> None:
     assert run("generate", "--quiet").output == ""
     assert run("generate", "--check", "--quiet").output == ""
     assert "files are current" in run("generate", "--check").output
+
+
+def test_a_wrong_choice_is_said_without_the_words_of_a_library() -> None:
+    result = run("check", str(ROOT / "schemas"), "--format", "jsno")
+    assert result.exit_code == 2
+    assert "'jsno' is not one of 'text', 'json', 'github'; did you mean `json`?" in result.stderr
+    assert "Value error" not in result.stderr
+    other = run("check", ".", "--format", "x").stderr
+    assert "'x' is not one of 'text', 'json', 'github'.\n" in other
+
+
+BAD_EXAMPLE = """\
+protocol: seen
+endpoints: {pc: Computer}
+frame:
+  sync: {literal: 0x02}
+  id: {type: uint8, id: true}
+  payload: {}
+  etx: {literal: 0x03}
+transparency: {covers: id..payload, escape: {byte: 0x10, of: [2, 3, 0x10], transform: {xor: 0x40}}}
+messages:
+  m:
+    id: 1
+    from: pc
+    fields: {a: uint8}
+    examples: {one: {frame: {hex: 02 01 05 04}, values: {a: 5}}}
+"""
+
+
+def test_a_wrong_last_byte_is_named(tmp_path: Path) -> None:
+    schema = tmp_path / "seen.yaml"
+    schema.write_text(BAD_EXAMPLE)
+    output = run("check", str(schema)).output
+    assert "`etx` must be 03, and the last bytes are 04" in output
+
+
+@pytest.mark.parametrize("option", [[], ["--check"], ["--diff"]])
+def test_nothing_is_generated_where_an_example_fails(tmp_path: Path, option: list[str]) -> None:
+    schema = tmp_path / "seen.yaml"
+    schema.write_text(BAD_EXAMPLE.replace("05 04", "06 03"))
+    made = tmp_path / "made"
+    result = run("generate", str(schema), "-o", str(made), "--target", "markdown", *option)
+    assert result.exit_code == 1
+    assert "error[PG160]: `one` of `m`: `a` is 6, not 5" in result.stderr
+    assert not made.exists()

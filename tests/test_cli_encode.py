@@ -214,3 +214,30 @@ def test_bad_lines(text: str, message: str) -> None:
 
 def test_unknown_sender_with_lines() -> None:
     assert run("encode", MATTY, "--sender", "nobody", input="").exit_code == 2
+
+
+TWO_FRAMES = """\
+protocol: two
+endpoints: {a: A, b: B}
+frame:
+  a: {start: {literal: 0xC0}, id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}
+  b:
+    start: {literal: 0xC0}
+    id: {type: uint8, id: true}
+    payload: {}
+    sum: {type: uint8, algorithm: xor-8, covers: [id, payload]}
+    end: {literal: 0xC0}
+transparency: {a: slip, b: slip}
+messages:
+  ping: {id: 1, from: [a, b]}
+"""
+
+
+def test_a_message_in_different_frames_needs_its_sender(tmp_path: Path) -> None:
+    schema = tmp_path / "two.yaml"
+    schema.write_text(TWO_FRAMES)
+    result = run("encode", str(schema), "ping")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "their frames differ" in result.stderr
+    assert "give --sender a or b" in result.stderr
+    assert run("encode", str(schema), "ping", "--sender", "b").stdout == "C0 01 01 C0\n"

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import handwritten_matty
 import pytest
 from cli_support import ROOT, run
+
+from protogen.cli.explain import _not_looked_at
+from protogen.model.annotate import Row
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
 TWO_BYTES = """\
@@ -98,6 +102,45 @@ def test_bytes_from_standard_input() -> None:
     assert result.output.startswith("offset 0, 5 bytes from pc: message stop\n")
 
 
+@pytest.mark.parametrize("arguments", [["--hex", ""], []])
+def test_no_bytes(arguments: list[str]) -> None:
+    result = run("explain", MATTY, "--sender", "pc", *arguments, input="")
+    assert (result.exit_code, result.output) == (0, "no bytes\n")
+
+
+TWO_BYTE_END = """\
+protocol: ended
+endpoints: {board: The board}
+frame:
+  sync: {literal: 0xAA, unprotected: plain}
+  id: {type: uint8, id: true}
+  payload: {}
+  end: {literal: {hex: 0D 0A}, unprotected: plain}
+decisions: {plain: {question: q, document: d, choice: c, because: b}}
+messages:
+  m: {id: 1, from: board, fields: {z: uint8}}
+"""
+
+
+def test_what_is_behind_the_byte_that_decided_was_not_looked_at(tmp_path: Path) -> None:
+    schema = tmp_path / "ended.yaml"
+    schema.write_text(TWO_BYTE_END)
+    output = run("explain", str(schema), "--hex", "AA 01 07 55 0A").output
+    assert "! must be 0D 0A" in output
+    assert "missing" not in output
+    cut = run("explain", str(schema), "--hex", "AA 01 07").output
+    assert "missing bytes: 2" in cut
+
+
+def test_rows_behind_the_byte_that_decided() -> None:
+    row = Row(
+        offset=5, wire=b"", bytes=b"", path="z", type="uint8", fault="missing bytes: 1", cut=True
+    )
+    assert (_not_looked_at(row).fault, _not_looked_at(row).meaning) == ("", "not looked at")
+    begun = _not_looked_at(replace(row, wire=b"\1", bytes=b"\1"))
+    assert begun.meaning == "the rest was not looked at"
+
+
 def test_bytes_that_are_no_text() -> None:
     result = run("explain", MATTY, "--sender", "pc", input=b"55 \xff")
     assert result.exit_code == 2
@@ -130,7 +173,7 @@ def test_everything_comes_back() -> None:
 
 def test_one_message() -> None:
     result = run("fuzz", MATTY, "--message", "go", "--examples", "20", "--seed", "7")
-    assert result.output == "python: 20 samples, all came back (seed 7)\n"
+    assert result.output.splitlines()[0] == "python: 20 samples, all came back (seed 7)"
 
 
 def test_another_seed_each_time() -> None:

@@ -103,7 +103,8 @@ def test_substituted_and_cobs_examples():
         message("m", 5, ("a", UINT16_BIG), examples=(example("e", "02 05 02 07 00"),)), frame=cobs
     )
     assert [row[:5] for row in example_rows(made)] == [
-        ("0..1", "`02 05`", "`05`", "`id`", "`0x05`"),
+        ("0", "`02`", "", "", ""),
+        ("1", "`05`", "", "`id`", "`0x05`"),
         ("2..3", "`02 07`", "`00 07`", "`a`", "`7`"),
         ("4", "`00`", "", "`zero`", ""),
     ]
@@ -292,7 +293,7 @@ def test_frames_that_are_none_are_shown_as_far_as_they_look_like_one():
         ("0", "`AA`", "`sync`", "Fixed. **Must be 55.**"),
         ("", "", "`length`", "Length. **Missing bytes: 1.**"),
     ]
-    assert bad_robbus_rows("55 03 01 47 09 5F")[-1][-1] == "Checksum. **Must be 0xac.**"
+    assert bad_robbus_rows("55 03 01 47 09 5F")[-1][-1] == "Checksum. **`crc` is 5f, not ac.**"
     stuffed = bad_robbus_rows("55 04 01 47 56 00 5F")
     assert stuffed[3][:3] == ("3", "`47`", "`command`")
     assert stuffed[-1][1] == "`56 00 5F`"

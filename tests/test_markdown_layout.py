@@ -26,17 +26,21 @@ from models import (
 )
 
 from protogen.model.checksums import find_algorithm
-from protogen.model.frame import ChecksumPart, Cobs, Frame
+from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
 from protogen.model.protocol import Protocol, Sender
+from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
+    Case,
     Counted,
     Fill,
     Fixed,
     Octets,
     Struct,
+    Switch,
     Text,
 )
+from protogen.targets.markdown.layout import has_further_codes
 
 
 def test_message_table_counts_bytes_of_the_frame_and_of_the_payload():
@@ -158,6 +162,24 @@ def test_switches_show_every_case_with_its_place():
     assert layout(made)[-2]["Type"] == "invalid"
 
 
+def test_a_case_of_a_single_type_is_one_row():
+    case = Case(value=1, name="ang", type=Struct(name="s", fields=fields(("value", SINT14))))
+    switch = Switch(selector="op", cases=(case,), rest=None)
+    rows = layout(protocol(message("m", 1, ("op", UINT8), ("argument", switch))))
+    assert [(row["Name"], row["Type"]) for row in rows[3:5]] == [
+        ("`argument`", "depends on `op`"),
+        ("`argument` if `op` is `1` ang", "`sint14` LE"),
+    ]
+    assert "argument.value" not in str(rows)
+
+
+def test_the_length_of_a_varying_message_has_the_range_of_the_message():
+    varying = message("m", 0x47, ("a", UINT16), ("t", Text(extent=Fill(greatest=9))))
+    rows = {row["Name"]: row for row in layout(protocol(varying, frame=robbus_frame()))}
+    # Counter, command and 2 to 11 bytes.
+    assert rows["`length`"]["Range"] == "4..13"
+
+
 def test_a_checksum_that_an_empty_payload_lacks():
     bare = message("stop", ord("S"))
     full = message("drive", ord("D"), ("speed", UINT8))
@@ -247,7 +269,7 @@ def test_messages_of_several_senders_are_explained_once():
     [
         ("sum-8", "the sum of all bytes modulo 256"),
         ("sum-8/negated", "what brings the sum of all bytes to 0 modulo 256"),
-        ("fletcher-16", "Fletcher-16"),
+        ("fletcher-16", "Fletcher-16, both sums modulo 255"),
         (
             "CRC-16/KERMIT",
             "CRC-16/KERMIT (width 16, poly 0x1021, init 0x0000, xorout 0x0000, refin true, "
@@ -314,6 +336,44 @@ def test_lenient_cobs_of_one_part():
     text = page(protocol(message("m", 1), frame=frame))
     assert "`payload` is COBS-encoded as a whole, so that it holds no zero byte." in text
     assert "also accept" in text
+
+
+def cobs_frame() -> Frame:
+    parts = (*simple_frame().parts[1:3], LiteralPart(name="zero", bytes=b"\0"))
+    return Frame(
+        parts=parts, transparency=Transparency(first="id", last="payload", encoding=Cobs())
+    )
+
+
+def test_cobs_positions_are_those_of_the_wire():
+    made = protocol(message("m", 5, ("a", UINT16), ("b", UINT8)), frame=cobs_frame())
+    assert places(made) == [
+        ("COBS code", "0", ""),
+        ("id", "1", ""),
+        ("a", "2..3", "0..1"),
+        ("b", "4", "2"),
+        ("zero", "5", ""),
+    ]
+    text = page(made)
+    assert diagrams(text)[1][:2] == ['0: "0 COBS code"', '1: "1 id"']
+    frame_rows = table_of(made, "Frame byte")
+    assert [(row["Frame byte"], row["Part"]) for row in frame_rows][:2] == [
+        ("0", "COBS code"),
+        ("1", "`id`"),
+    ]
+    assert "with the first COBS code byte." in text
+    assert "each zero is replaced by how many bytes on the next one is" in text
+    assert "unstuffed frame" not in text
+
+
+@pytest.mark.parametrize(("size", "expected"), [(253, False), (254, True)])
+def test_a_long_cobs_region_can_have_further_code_bytes(size, expected):
+    payload = SizeSet.exactly(size)
+    assert has_further_codes(cobs_frame(), payload) is expected
+    made = protocol(message("m", 5, ("a", Octets(extent=Fixed(count=size)))), frame=cobs_frame())
+    sender = replace(made.senders[0], framing=replace(made.senders[0].framing, payload=payload))
+    text = page(replace(made, senders=(sender,)))
+    assert ("a further code byte moves what follows a byte on" in text) is expected
 
 
 def test_diagrams_show_positions_and_draw_long_fields_as_one_block():

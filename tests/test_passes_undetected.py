@@ -19,6 +19,12 @@ messages:
 """
 
 
+VARYING = """\
+messages:
+  log: {id: 1, from: robot, fields: {data: {type: bytes, size: {fill: true, max: 9}}}}
+"""
+
+
 def framed(parts: str, messages: str = ONE, more: str = "") -> tuple[str, ...]:
     start = "frame:\n  sync: {literal: 0xAA, unprotected: accepted}\n"
     return framing_of(HEAD + start + parts + more + DECISION + messages).undetected
@@ -48,9 +54,100 @@ def test_a_part_that_no_checksum_covers_is_named() -> None:
 
 
 def test_a_length_that_no_checksum_covers_may_pass_by_chance() -> None:
-    (sentence,) = framed(checked("xor-8", "[id, number, payload]"))
+    (sentence,) = framed(checked("xor-8", "[id, number, payload]"), VARYING)
     assert "`length`" in sentence
     assert "happen to check" in sentence
+
+
+def test_a_wrong_length_moves_where_the_checksum_is_read() -> None:
+    # AA 01 04 xx .. with the length 6 for 4: the checksum is then found two bytes further on.
+    (sentence,) = framed(checked("xor-8", "id..payload"), VARYING)
+    assert sentence == (
+        "a wrong `length`, which moves where `check` is read, where the bytes there happen to check"
+    )
+
+
+def test_a_message_of_one_size_shows_a_wrong_length() -> None:
+    assert framed(checked("xor-8", "[id, number, payload]"), ONE) == ()
+    assert framed(checked("xor-8", "id..payload"), TWO_SIZES) == ()
+
+
+def test_a_checksum_of_the_header_shows_a_wrong_length() -> None:
+    parts = (
+        "  id: {type: uint8, id: true}\n  length: {type: uint8, counts: payload}\n"
+        "  head: {type: uint8, algorithm: xor-8, covers: [id, length]}\n  payload: {}\n"
+        "  check: {type: uint8, algorithm: xor-8, covers: [payload]}\n"
+    )
+    assert framed(parts, VARYING) == ()
+
+
+def test_a_wrong_length_without_any_checksum() -> None:
+    parts = (
+        "  id: {type: uint8, id: true}\n  length: {type: uint8, counts: payload}\n  payload: {}\n"
+    )
+    assert "a wrong `length`: nothing checks it" in framed(parts, VARYING)
+
+
+def test_a_length_of_0_does_without_a_checksum() -> None:
+    parts = checked("xor-8", "id..payload").replace("covers", "when: payload, covers")
+    assert any("that there is no payload" in sentence for sentence in framed(parts, VARYING))
+
+
+def test_a_wrong_identity_or_count_moves_the_checksum_as_well() -> None:
+    parts = (
+        "  id: {type: uint8, id: true}\n  payload: {}\n"
+        "  check: {type: uint16, algorithm: CRC-16/KERMIT, covers: [id, payload]}\n"
+    )
+    (sentence,) = framed(parts, TWO_SIZES)
+    assert sentence.startswith("a wrong byte that moves where `check` is read")
+    assert framed(parts, TWO_ALIKE) == ()
+
+
+ENDED = (
+    "frame:\n  id: {type: uint8, id: true}\n  payload: {}\n"
+    "  check: {type: uint8, algorithm: ALGORITHM, covers: [id, payload]}\n"
+    "  end: {literal: 0x0A, unprotected: accepted}\n"
+)
+
+
+def ended(algorithm: str, messages: str = VARYING) -> str:
+    text = HEAD + ENDED.replace("ALGORITHM", algorithm) + DECISION + messages
+    if algorithm.startswith("CRC-16"):
+        text = text.replace("check: {type: uint8", "check: {type: uint16, byte_order: big")
+    return "\n".join(framing_of(text).undetected)
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "words"),
+    [
+        ("xor-8", "a wrong end of 00 joins two frames"),
+        ("sum-8/negated", "a wrong end of 00 joins two frames"),
+        ("CRC-8/SMBUS", "a wrong end of 00 joins two frames"),
+        ("CRC-16/XMODEM", "a wrong end of 00 joins two frames"),
+        ("sum-8", "a wrong end of one value, another for each frame, joins two"),
+    ],
+)
+def test_a_wrong_end_joins_two_frames(algorithm: str, words: str) -> None:
+    assert words in ended(algorithm)
+
+
+def test_a_wrong_end_that_joins_nothing() -> None:
+    # What a frame leaves in the register is then not what the next one starts from.
+    assert "joins" not in ended("CRC-16/IBM-3740")
+    assert "joins" not in ended("xor-8", ONE)
+
+
+def test_a_protected_end_can_be_damaged_as_well() -> None:
+    text = HEAD + ENDED.replace("ALGORITHM", "xor-8").replace(", unprotected: accepted", "")
+    text = text.replace("0x0A", "0xC0") + "transparency: slip\n" + VARYING
+    assert "a wrong end of 00 joins" in "\n".join(framing_of(text).undetected)
+    cobs = text.replace("0xC0", "0").replace("slip", "{encoding: cobs}")
+    assert "a wrong end of 01 joins" in "\n".join(framing_of(cobs).undetected)
+
+
+def test_a_false_start_in_a_frame_that_nothing_checks() -> None:
+    parts = "  id: {type: uint8, id: true}\n  payload: {}\n"
+    assert any("makes AA, the start" in sentence for sentence in framed(parts))
 
 
 def test_behind_a_length_that_is_wrong_no_end_stands() -> None:
@@ -71,13 +168,15 @@ def test_without_a_checksum_nothing_checks_the_payload() -> None:
         "  id: {type: uint8, id: true}\n  length: {type: uint8, counts: payload}\n  payload: {}\n"
         "  end: {literal: 0xBB, unprotected: accepted}\n"
     )
-    assert framed(parts) == ("a wrong byte in the payload: nothing checks it",)
+    assert framed(parts)[0] == "a wrong byte in the payload: nothing checks it"
 
 
 def test_fletcher_takes_00_for_ff() -> None:
     # Sums modulo 255: 00 and FF are the same to it.
     (sentence,) = framed(checked("fletcher-16", "id..payload", 16))
     assert "fletcher-16 does not see them" in sentence
+    # Modulo 256 they are not.
+    assert framed(checked("fletcher-16/256", "id..payload", 16)) == ()
 
 
 @pytest.mark.parametrize(
@@ -122,6 +221,8 @@ def test_the_documents() -> None:
 
     # rn1 and uherobot have no checksum at all.
     assert "payload" in said("rn1", "brain")
+    assert "makes a start, 80 to FE" in said("rn1", "brain")
+    assert "a wrong end of 00 joins" in said("dagny", "host")
     assert "still a hex digit" in said("uherobot", "board")
     # rflex: the checksum covers the contents only.
     for part in ("class_id", "number", "subclass"):

@@ -132,15 +132,19 @@ class TestSampler:
         assert both.sizeof() == 8
 
 
+def standalone(folder: Path, *schemas: Path) -> None:
+    subprocess.run(
+        [sys.executable, "-m", "protogen", "generate", *map(str, schemas), "--quiet",
+         "-o", str(folder), "--standalone", "--target", "python"],
+        check=True,
+        cwd=ROOT,
+    )  # fmt: skip
+
+
 class TestStandalone:
     def test_it_needs_only_construct(self, tmp_path):
         """In an environment where protogen is not installed."""
-        subprocess.run(
-            [sys.executable, "-m", "protogen", "generate", str(SAMPLER), "--quiet",
-             "-o", str(tmp_path / "out"), "--standalone", "--target", "python"],
-            check=True,
-            cwd=ROOT,
-        )  # fmt: skip
+        standalone(tmp_path / "out", SAMPLER)
         import construct
 
         packages = tmp_path / "packages"
@@ -157,6 +161,29 @@ class TestStandalone:
         bare = tmp_path / "bare"
         venv.create(bare, with_pip=False, symlinks=True)
         subprocess.run([bare / "bin" / "python", "-c", code], check=True, env=env, cwd=tmp_path)
+
+    def test_strangers_find_nothing_to_complain_about(self, tmp_path):
+        """By the rules that ruff and mypy have without any configuration of ours."""
+        standalone(tmp_path, SAMPLER, ROOT / "schemas" / "rn1.yaml")
+        complaints = [
+            said(tmp_path, "ruff", "check", "--isolated", "--no-cache", "--quiet", "."),
+            said(tmp_path, "mypy", "--strict", "--config-file=", "--no-error-summary",
+                 "--cache-dir", str(ROOT / ".mypy_cache" / "standalone"),
+                 "-p", "sampler", "-p", "rn1"),
+        ]  # fmt: skip
+        assert complaints == ["", ""]
+
+
+def said(folder: Path, module: str, *arguments: str) -> str:
+    """What a tool prints about the packages in a folder."""
+    run = subprocess.run(
+        [sys.executable, "-m", module, *arguments],
+        cwd=folder / "python",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return run.stdout + run.stderr
 
 
 class TestWording:

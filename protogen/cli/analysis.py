@@ -11,7 +11,7 @@ from protogen.cli.console import print_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from protogen.model.framing import Framing, MessageFraming
+    from protogen.model.framing import MessageFraming
     from protogen.model.protocol import Protocol, Sender
 
 _INDENT = "  "
@@ -26,7 +26,7 @@ def print_analysis(out: Console, path: str, protocol: Protocol) -> None:
     for sender in protocol.senders:
         title = next(item.title for item in protocol.endpoints if item.name == sender.name)
         out.print(Text.assemble(_INDENT, (sender.name, "bold"), f": {title}"))
-        _print_properties(out, sender.framing)
+        _print_properties(out, sender)
         _print_messages(out, sender)
     out.print()
 
@@ -49,26 +49,36 @@ def count_examples(protocol: Protocol) -> tuple[int, int]:
     return len(examples) - contradicting, contradicting
 
 
-def _print_properties(out: Console, framing: Framing) -> None:
+def _print_properties(out: Console, sender: Sender) -> None:
     from rich.text import Text
 
-    for name, text in _properties(framing):
+    for name, text in _properties(sender):
         label = Text(f"{_INDENT * 2}{name:<20}", style="dim")
         out.print(label.append(text, style="default"))
 
 
-def _properties(framing: Framing) -> Iterator[tuple[str, str]]:
+def _properties(sender: Sender) -> Iterator[tuple[str, str]]:
     from protogen.model.sizes import SizeSet
 
+    framing = sender.framing
     yield "start", framing.finds_start
     yield "end", framing.finds_end
     synchronising = "yes" if framing.self_synchronising else "no"
     yield "self-synchronising", f"{synchronising}: {framing.why_synchronising}"
     sizes = SizeSet.between(framing.least, framing.greatest)
     yield "frame", _bytes(str(sizes).replace("..", " to "))
-    yield "overhead", f"{_bytes(str(framing.overhead))}, before any stuffing"
+    yield "overhead", _overhead(sender)
     for index, sentence in enumerate(framing.undetected or ("none",)):
         yield ("undetected errors" if index == 0 else ""), sentence
+
+
+def _overhead(sender: Sender) -> str:
+    from protogen.model.sizes import SizeSet
+    from protogen.model.wire import code_size
+
+    code_bytes = code_size(sender.frame)
+    overhead = _bytes(str(sender.framing.overhead + SizeSet.exactly(code_bytes)))
+    return f"{overhead}, {'with the first COBS code byte' if code_bytes else 'before any stuffing'}"
 
 
 def _bytes(count: str) -> str:

@@ -11,17 +11,18 @@ from contextlib import contextmanager
 from enum import StrEnum
 from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, cast
+from typing import BinaryIO, cast
 
 from protogen.cli.exits import UsageError
 from protogen.cli.hexinput import HexError, HexReader, parse_hex
 from protogen.cli.progress import progress
+from protogen.cli.tagged import Piece
 
 STANDARD_INPUT = Path("-")
 _PIECE = 1 << 16
 """The most bytes that are read at once."""
 _LONGEST_LINE = 1 << 24
-"""Characters; no line of a log or of JSON is longer."""
+"""Characters; no line of JSON is longer."""
 
 
 class InputFormat(StrEnum):
@@ -32,18 +33,7 @@ class InputFormat(StrEnum):
     HEX = "hex"
     """Hex digits, in any of the usual ways."""
     TAGGED = "tagged"
-    """Lines of hex digits behind the name of the sender and a colon."""
-
-
-class Piece(NamedTuple):
-    """Some bytes of a capture and who sent them."""
-
-    sender: str
-    data: bytes
-
-
-Complain = Callable[[str], None]
-"""Take note of a line that can't be used."""
+    """Lines of hex digits behind the name of the sender."""
 
 
 @contextmanager
@@ -105,30 +95,7 @@ def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
         raise UsageError(str(error)) from None
 
 
-# --- a log of both directions ---------------------------------------------------------------------
-
-
-def tagged_pieces(
-    pieces: Iterator[bytes], senders: tuple[str, ...], complain: Complain
-) -> Iterator[Piece]:
-    """What each line says behind its sender; lines of which that can't be said are complained of.
-
-    Empty lines and those that begin with `#` say nothing. A sender may stand in upper case.
-    """
-    names = {name.casefold(): name for name in senders}
-    for number, line in enumerate(text_lines(pieces), start=1):
-        tag, colon, written = line.partition(":")
-        sender = names.get(tag.strip().casefold())
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        if sender is None or not colon:
-            complain(f"line {number}: does not begin with a sender: {', '.join(senders)}")
-            continue
-        try:
-            yield Piece(sender, parse_hex(written))
-        except HexError as error:
-            column = len(line) - len(written) + error.column
-            complain(f"line {number}, column {column}: {error.problem}")
+# --- lines of text --------------------------------------------------------------------------------
 
 
 def text_lines(pieces: Iterator[bytes]) -> Iterator[str]:

@@ -14,15 +14,14 @@ import typer
 from protogen.cli.capture import (
     STANDARD_INPUT,
     InputFormat,
-    Piece,
     hex_bytes,
     hex_pieces,
     opened,
     raw_pieces,
-    tagged_pieces,
 )
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
+from protogen.cli.tagged import Piece, tagged_pieces
 
 if TYPE_CHECKING:
     from protogen.cli.codec import Codec
@@ -33,7 +32,9 @@ EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 550201
 Tagged = Annotated[
     bool,
     typer.Option(
-        "--tagged", help="The same as --input tagged: lines such as `linux: 1B 02`, both ways."
+        "--tagged",
+        help="The same as --input tagged: a log of both ways, with lines such as `pc: 1B 02`,"
+        " `[pc] 1B 02`, `pc> 1B 02` or `12:00:01.5 pc: 1B 02`.",
     ),
 ]
 
@@ -67,7 +68,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
     """Cut bytes into messages, unknown frames and what is no frame.
 
     The bytes of all these events, joined, are the capture. Lines of JSON go back through
-    `protogen encode`.
+    `protogen encode`. Exits with 1 if a line of a tagged log can't be used, as its bytes are lost.
     """
     from protogen.cli.codec import open_codec
 
@@ -84,7 +85,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
                 show(event)
             sys.stdout.flush()
     faults.report()
-    return FINDINGS if strict and faults.any else CLEAN
+    return FINDINGS if faults.lost or (strict and faults.any) else CLEAN
 
 
 class Faults:
@@ -96,6 +97,12 @@ class Faults:
     def __init__(self) -> None:
         self._lines = 0
         self.any = False
+        """Whether any byte belongs to no valid frame."""
+
+    @property
+    def lost(self) -> bool:
+        """Whether there were lines whose bytes nobody gets to see."""
+        return self._lines > 0
 
     def see(self, event: Any) -> None:
         """Take note of an event."""
@@ -104,7 +111,6 @@ class Faults:
 
     def complain(self, problem: str) -> None:
         """Take note of a line that can't be used."""
-        self.any = True
         self._lines += 1
         if self._lines <= self._MOST_LINES:
             typer.echo(f"warning: {problem}", err=True)

@@ -42,6 +42,8 @@ def explain(
     decoder = codec.decoder(codec.sender_of_bytes(sender))
     data = hex_bytes(_standard_input() if hex is None else hex)
     out = console()
+    if not data:
+        out.print("no bytes")
     for event in (*decoder.feed(data), *decoder.flush()):
         _print_event(out, codec.protocol, event)
     return CLEAN
@@ -86,15 +88,20 @@ def _rows(protocol: Protocol, event: Any) -> Sequence[Row]:
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
     rows = annotate(protocol, event.sender, event.raw)
-    if event.kind == "invalid" and event.reason == "checksum":
-        return [_as_in_title(row, event.problem) for row in rows]
+    if event.kind == "invalid" and event.reason != "truncated":
+        return [*rows[:-1], *map(_not_looked_at, rows[-1:])]
     return rows
 
 
-def _as_in_title(row: Row, problem: str) -> Row:
-    """Say at a wrong checksum what the title says: bytes in wire order, not their number."""
-    is_meant = row.fault and problem.startswith(f"{row.path} is ")
-    return replace(row, fault=problem) if is_meant else row
+def _not_looked_at(row: Row) -> Row:
+    """Say of what is behind the byte that decided that nobody asked for it, not that it is missing.
+
+    A decoder gives a frame up at that byte; those behind it begin something else.
+    """
+    if not row.cut or (row.wire and row.type == "literal"):
+        return row
+    text = "the rest was not looked at" if row.wire else "not looked at"
+    return replace(row, fault="", meaning=text)
 
 
 def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:

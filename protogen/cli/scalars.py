@@ -13,6 +13,7 @@ from protogen.model.fields import Field
 from protogen.model.readings import decimal
 from protogen.model.types import Integer
 from protogen.problems import did_you_mean, hint_for
+from protogen.runtime.nearest import nearest_reading
 
 
 def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
@@ -36,7 +37,7 @@ def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
         raise UsageError(
             f"{path}: `{written}` is none of: {allowed(field, type)}", _mend(field, type, written)
         )
-    return _raw(field, physical, written, path)
+    return _raw(field, type, physical, written, path)
 
 
 def _mend(field: Field, type: Integer, written: str) -> str | None:
@@ -47,7 +48,8 @@ def _mend(field: Field, type: Integer, written: str) -> str | None:
         return f"flags are joined by `|`, in quotes for the shell: '{flags}'"
     number = _exact(written.strip())
     if number is not None and field.unit is not None:
-        return f"a value in {field.unit} has its unit behind it: {_nearest(field, number)}"
+        nearest = _nearest(field, type, number)
+        return f"a value in {field.unit} has its unit behind it: {nearest}" if nearest else None
     return hint_for(written, names)
 
 
@@ -134,21 +136,33 @@ def _exact(text: str) -> Fraction | None:
         return None
 
 
-def _raw(field: Field, physical: Fraction, written: str, path: str) -> int:
+def _raw(field: Field, type: Integer, physical: Fraction, written: str, path: str) -> int:
     raw = (physical - field.offset) / field.scale
-    if raw.denominator == 1:
-        return raw.numerator
-    step = f"{decimal(field.scale)}{field.unit}"
-    raise UsageError(
-        f"{path}: `{written}` is no whole number of steps of {step}",
-        f"the nearest that can be sent is {_nearest(field, physical)}",
-    )
+    nearest = _nearest(field, type, physical)
+    hint = f"the nearest that can be sent is {nearest}" if nearest else None
+    if raw.denominator != 1:
+        step = f"{decimal(field.scale)}{field.unit}"
+        raise UsageError(f"{path}: `{written}` is no whole number of steps of {step}", hint)
+    special = next((item.name for item in field.special if item.value == raw), None)
+    if special is not None:
+        # As a name it may be given; as a number it is a mistake: nobody will read that number.
+        raise UsageError(f"{path}: `{written}` is sent as {raw}, which means `{special}`", hint)
+    return raw.numerator
 
 
-def _nearest(field: Field, physical: Fraction) -> str:
-    """Return the physical value closest to this one that a raw value stands for."""
-    raw = round((physical - field.offset) / field.scale)
-    return f"{decimal(raw * field.scale + field.offset)}{field.unit}"
+def _nearest(field: Field, type: Integer, physical: Fraction) -> str | None:
+    """Return the physical value closest to this one that a receiver reads as such, if any."""
+    least, greatest = _bounds(field, type)
+    special = {item.value for item in field.special}
+    raw = nearest_reading((physical - field.offset) / field.scale, special, least, greatest)
+    return None if raw is None else f"{decimal(raw * field.scale + field.offset)}{field.unit}"
+
+
+def _bounds(field: Field, type: Integer) -> tuple[int, int]:
+    """Return the least and the greatest raw value that an encoder allows."""
+    least = type.least if field.least is None else field.least
+    greatest = type.greatest if field.greatest is None else field.greatest
+    return int(least), int(greatest)
 
 
 def float_value(field: Field, written: Any, path: str) -> float:
@@ -187,8 +201,7 @@ def _latin(text: str, path: str) -> bytes:
 
 def allowed(field: Field, type: Integer) -> str:
     """Return what may be written for an integer, in words."""
-    least = type.least if field.least is None else field.least
-    greatest = type.greatest if field.greatest is None else field.greatest
+    least, greatest = _bounds(field, type)
     kinds = [f"a whole number from {least} to {greatest}"]
     if field.unit is not None:
         kinds.append(f"a number with its unit {field.unit}")

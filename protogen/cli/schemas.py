@@ -47,14 +47,17 @@ def open_protocol(path: Path) -> Protocol:
 
 
 def print_problems(compilations: Iterable[Compilation]) -> None:
-    """Print every problem to standard error, with its source line."""
+    """Print every problem to standard error, once, with its source line."""
     from protogen.cli.console import error_console
     from protogen.problems import render_rich
 
     console = error_console()
+    shown: set[Problem] = set()
     for compilation in compilations:
         for problem in compilation.problems:
-            console.print(render_rich(problem, compilation.sources))
+            if problem not in shown:
+                console.print(render_rich(problem, compilation.sources))
+            shown.add(problem)
 
 
 def distinct(compilations: Iterable[Compilation]) -> tuple[Problem, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from protogen.model.dissect import Cursor, Row, decoded, dissect
+from protogen.model.dissect import Cursor, Row, decoded, dissect, encoded
 from protogen.model.frame import (
     ChecksumPart,
     IdentityPart,
@@ -22,7 +22,7 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character, type_name
-from protogen.model.wire import Unit, Wire, fixed_size, unstuff
+from protogen.model.wire import FULL_GROUP, Unit, Wire, fixed_size, unstuff
 from protogen.runtime import checksum as sums
 from protogen.runtime.errors import ByteError
 
@@ -73,6 +73,8 @@ class _Frame:
         self._wire = wire
         self._given = message
         self._cursor = Cursor(wire.units, 0)
+        transparency = sender.frame.transparency
+        self._coded = "" if transparency is None else transparency.first
         self._rows: list[Row] = []
         self._found: dict[str, _Found] = {}
         self._numbers: dict[str, int] = {}
@@ -80,10 +82,23 @@ class _Frame:
     def rows(self) -> tuple[Row, ...]:
         """Read all parts."""
         for part in self._parts:
+            if part.name == self._coded:
+                self._code(self._wire.code)
             if not self._ended:
                 self._part(part)
         self._leftovers()
         return tuple(self._rows)
+
+    def _code(self, code: bytes) -> None:
+        """The code byte of COBS, which is in front of all that it is about."""
+        if not code:
+            return
+        meaning = f"COBS: the next zero or the end is {code[0]} bytes on"
+        if code[0] > FULL_GROUP:
+            meaning = f"COBS: {FULL_GROUP} bytes without a zero"
+        offset = self._cursor.skip(len(code))
+        row = Row(offset=offset, wire=code, bytes=b"", path="", type="", meaning=meaning)
+        self._rows.append(row)
 
     def _part(self, part: Part) -> None:
         start = len(self._rows)
@@ -120,8 +135,10 @@ class _Frame:
     def _fixed(self, part: Part) -> Row:
         piece = self._cursor.take(fixed_size(part))
         if isinstance(part, LiteralPart):
-            fault = "" if piece.bytes == part.bytes else f"must be {_hex(part.bytes)}"
-            return piece.row(part.name, "literal", fault=fault, subject=part)
+            row = piece.row(part.name, "literal", subject=part)
+            if part.bytes.startswith(piece.bytes):
+                return row
+            return replace(row, fault=f"must be {_hex(part.bytes)}")
         assert isinstance(part, NumberPart | ChecksumPart)
         row = piece.row(part.name, type_name(part.type), subject=part, value_type=part.type)
         if piece.missing:
@@ -131,7 +148,7 @@ class _Frame:
         except ByteError as error:
             return replace(row, fault=str(error))
         if isinstance(part, ChecksumPart):
-            return self._checksum(part, value, row)
+            return self._checksum(part, row.reads(value, ""))
         return self._number(part, value, row)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
@@ -151,15 +168,17 @@ class _Frame:
         names = [message.name for message in self._candidates()]
         return " or ".join(names) or "no message has this identity"
 
-    def _checksum(self, part: ChecksumPart, value: int, row: Row) -> Row:
-        meaning = f"{part.algorithm.name} of {', '.join(part.covers)}"
+    def _checksum(self, part: ChecksumPart, row: Row) -> Row:
+        row = replace(row, meaning=f"{part.algorithm.name} of {', '.join(part.covers)}")
         if any(name not in self._found for name in part.covers):
-            return row.reads(value, meaning)
+            return row
         pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
-        due = _checksum_of(part).compute(covered)
-        fault = "" if value == due else f"must be {due:#0{2 * part.type.size + 2}x}"
-        return row.reads(value, meaning, fault)
+        due = encoded(part.type, _checksum_of(part).compute(covered))
+        if row.bytes == due:
+            return row
+        # In the words of a decoder: bytes in wire order, which are not always the number's digits.
+        return replace(row, fault=f"{part.name} is {row.bytes.hex(' ')}, not {due.hex(' ')}")
 
     # --- the payload ------------------------------------------------------------------------
 
@@ -179,13 +198,25 @@ class _Frame:
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""
         behind = self._parts[self._parts.index(part) + 1 :]
-        here = max(0, self._cursor.left - sum(map(fixed_size, behind)))
         length = self._sender.frame.length
         if length is None or length.name not in self._numbers:
-            return here
+            return self._size_without_length(behind)
         others = [name for name in length.counts if name != part.name]
         counted = sum(fixed_size(self._sender.frame.part(name)) for name in others)
         return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
+
+    def _size_without_length(self, behind: Sequence[Part]) -> int:
+        """What the parts behind the payload leave; the message's size if the frame is not whole."""
+        message = self._given or next(iter(self._candidates()), None)
+        if message is not None and behind and not self._is_closed(behind[-1]):
+            fixed = message.sizes.fixed
+            if fixed is not None:
+                return min(fixed, self._cursor.left)
+        return max(0, self._cursor.left - sum(map(fixed_size, behind)))
+
+    def _is_closed(self, last: Part) -> bool:
+        """Whether the bytes end as a frame does, as far as that can be told."""
+        return not isinstance(last, LiteralPart) or self._cursor.ends_with(last.bytes)
 
     def _message(self, size: int) -> Message | None:
         """The given message, else that of this identity and size, else the one that is closest."""
@@ -247,6 +278,6 @@ def _checksum_of(part: ChecksumPart) -> sums.Checksum:
         case "sum":
             return sums.Sum8(spec.init, spec.negated)
         case "fletcher":
-            return sums.Fletcher16()
+            return sums.Fletcher16(spec.modulus)
         case "crc":
             return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

@@ -19,6 +19,7 @@ class ChecksumSpec:
 
     `width` is the checksum's size in bits. `init` is the value before the first byte (`xor`, `sum`
     and `crc`). `negated` belongs to `sum`: the result is what brings the sum to 0 modulo 256.
+    `modulus` belongs to `fletcher` and follows from the name.
     `poly`, `refin`, `refout` and `xorout` belong to `crc` and are the Rocksoft parameters as the
     catalogue prints them: `poly` without its top bit, `init` and `poly` most significant bit
     first whatever `refin` says.
@@ -34,12 +35,22 @@ class ChecksumSpec:
     refout: bool = False
     xorout: int = 0
 
+    @property
+    def modulus(self) -> int:
+        """What Fletcher's two sums are taken modulo of."""
+        # No field: it would be in the spec hash of every schema, and the name says it already.
+        return 256 if self.name == FLETCHER_256 else 255
+
+
+FLETCHER_256 = "fletcher-16/256"
+"""Fletcher's checksum with sums of one byte that simply overflow, as UBX has it."""
 
 SIMPLE_ALGORITHMS = (
     ChecksumSpec("xor-8", "xor", 8),
     ChecksumSpec("sum-8", "sum", 8),
     ChecksumSpec("sum-8/negated", "sum", 8, negated=True),
     ChecksumSpec("fletcher-16", "fletcher", 16),
+    ChecksumSpec(FLETCHER_256, "fletcher", 16),
 )
 
 

@@ -131,6 +131,16 @@ class Cursor:
         self._offset += sum(len(unit.wire) for unit in taken)
         return piece
 
+    def ends_with(self, data: bytes) -> bool:
+        """Whether the units that are left end with these bytes."""
+        left = self._units[self.position :]
+        return bytes(unit.byte for unit in left[-len(data) :]) == data
+
+    def skip(self, size: int) -> int:
+        """Pass bytes on the wire that belong to no unit; return the place of the first."""
+        self._offset += size
+        return self._offset - size
+
     def part(self, count: int) -> Cursor:
         """A cursor over the next `count` units, which this one passes."""
         offset = self._offset
@@ -247,9 +257,17 @@ def _number(field: Field, type: Integer | Float, row: Row) -> Row:
 
 def decoded(type: Integer | Float, data: bytes) -> int:
     """Read an integer, or the bits of a float. Raises ByteError if there is none like that."""
+    return _layout(type).decode(data)
+
+
+def encoded(type: Integer, value: int) -> bytes:
+    """The bytes of an integer."""
+    return _layout(type).encode(value)
+
+
+def _layout(type: Integer | Float) -> Number:
     signed = isinstance(type, Integer) and type.signed
-    number = Number(type.bits, signed, type.byte_order, seven_bit=type.byte_bits == 7)
-    return number.decode(data)
+    return Number(type.bits, signed, type.byte_order, seven_bit=type.byte_bits == 7)
 
 
 def _float(type: Float, pattern: int) -> float:

@@ -19,6 +19,9 @@ from protogen.model.frame import (
 )
 from protogen.runtime import transparency as stuffing
 
+FULL_GROUP = 254
+"""Bytes that one code byte of COBS can stand for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Unit:
@@ -33,12 +36,23 @@ class Wire:
     """A frame's bytes, unstuffed as far as that is possible."""
 
     units: tuple[Unit, ...]
+    code: bytes = b""
+    """What the encoding puts in front of its region: the first code byte of COBS."""
     rest: bytes = b""
     """What is behind the units and stands for no byte."""
     fault: str = ""
     """Why the rest could not be unstuffed."""
     behind: tuple[Unit, ...] = ()
     """What follows that."""
+
+
+def code_size(frame: Frame) -> int:
+    """Bytes that the encoding puts in front of its region, whatever that holds.
+
+    COBS puts its first code byte there. The others stand in the places of zeros, except that a
+    further one stands behind each `FULL_GROUP` bytes without a zero.
+    """
+    return int(frame.transparency is not None and isinstance(frame.transparency.encoding, Cobs))
 
 
 def fixed_size(part: Part) -> int:
@@ -60,15 +74,22 @@ def unstuff(frame: Frame, data: bytes) -> Wire:
     start = min(len(data), sum(map(fixed_size, frame.parts[:first])))
     end = max(start, len(data) - _closing(frame, frame.parts[last + 1 :], data))
     unstuffer = _transparency(frame.transparency.encoding, frame.transparency.lenient).decoder()
-    units, rest, fault = _region(unstuffer, data[start:end])
+    code = data[start : min(end, start + code_size(frame))].strip(b"\0")
+    units, rest, fault = _region(unstuffer, data[start:end], len(code))
     before, behind = _plain(data[:start]), _plain(data[end:])
-    if rest or fault:
-        return Wire((*before, *units), rest, fault, behind)
-    return Wire((*before, *units, *behind))
+    if rest or fault or len(units) < _least(frame.parts[first : last + 1]):
+        return Wire((*before, *units), code, rest, fault, behind)
+    return Wire((*before, *units, *behind), code)
 
 
 def _plain(data: bytes) -> tuple[Unit, ...]:
     return tuple(Unit(byte, bytes((byte,))) for byte in data)
+
+
+def _least(parts: tuple[Part, ...]) -> int:
+    """Bytes that parts have even with an empty payload."""
+    present = (part for part in parts if not (isinstance(part, ChecksumPart) and part.when_payload))
+    return sum(map(fixed_size, present))
 
 
 def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
@@ -79,10 +100,15 @@ def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
     return sum(map(fixed_size, parts))
 
 
-def _region(unstuffer: stuffing.Unstuffer, region: bytes) -> tuple[tuple[Unit, ...], bytes, str]:
-    """Return the units of a region, the bytes behind them that are none, and what is wrong."""
+def _region(
+    unstuffer: stuffing.Unstuffer, region: bytes, code: int
+) -> tuple[tuple[Unit, ...], bytes, str]:
+    """Return the units of a region, the bytes behind them that are none, and what is wrong.
+
+    The first `code` bytes belong to no unit.
+    """
     units: list[Unit] = []
-    done = 0
+    done = code
     fault = ""
     try:
         for end, byte in enumerate(region, start=1):
@@ -93,7 +119,7 @@ def _region(unstuffer: stuffing.Unstuffer, region: bytes) -> tuple[tuple[Unit, .
         units += _units(unstuffer.finish(), region[done:])
     except stuffing.TransparencyError as error:
         fault = str(error)
-    carried = sum(len(unit.wire) for unit in units)
+    carried = code + sum(len(unit.wire) for unit in units)
     return tuple(units), region[carried:], fault
 
 

@@ -37,8 +37,8 @@ def check_class_names(context: Context, draft: Draft) -> None:
     for name, loc in (types | messages).items():
         other = classes.setdefault(_pascal(name), name)
         if _pascal(name) in generated:
-            text = f"`{name}` is a name that generated code uses itself"
-            context.error_at_key("PG106", loc, text)
+            text = f"`{name}` would be `{_pascal(name)}`, which generated code uses itself"
+            context.error_at_key("PG106", loc, text, f"another name, such as `{name}_data`")
         elif other != name:
             text = f"`{name}` and `{other}` are both `{_pascal(name)}` in generated code"
             context.error_at_key("PG107", loc, text, _RENAME)

@@ -139,6 +139,6 @@ def _algorithm(spec: ChecksumSpec) -> sums.Checksum:
         case "sum":
             return sums.Sum8(spec.init, spec.negated)
         case "fletcher":
-            return sums.Fletcher16()
+            return sums.Fletcher16(spec.modulus)
         case "crc":
             return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

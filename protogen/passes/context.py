@@ -19,6 +19,11 @@ _CERTAIN = frozenset(
 )
 """Problems of a single word or number: they are no consequence of what is missing around it."""
 
+_OF_ONE_FIELD = frozenset({"PG110", "PG112", "PG113", "PG114", "PG115"})
+"""Problems of one field and its declared type: what is missing in other fields has no part in."""
+_OF_REFERENCES = frozenset({"PG116", "PG117", "PG121"})
+"""Problems of a field with another one that it names."""
+
 Find = Callable[[Loc], Span]
 
 
@@ -27,6 +32,8 @@ class Tally:
     """How often something was found to be wrong, the same problem counted each time."""
 
     errors: int = 0
+    in_examples: int = 0
+    """How many of them concern examples only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +52,8 @@ class Context:
     a consequence, so it is not reported."""
     lost: frozenset[Loc] = frozenset()
     """Names of which is not known what they mean; a key of the root stands for all its names."""
+    spoilt: bool = False
+    """Whether more than some examples could not be read."""
     tally: Tally = field(default_factory=Tally)
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
@@ -66,8 +75,20 @@ class Context:
 
     def _report(self, problem: Problem, loc: Loc) -> None:
         self.tally.errors += 1
-        if loc[:2] not in self.doubtful or problem.code in _CERTAIN:
+        self.tally.in_examples += loc[0] == "messages" and loc[2:3] == ("examples",)
+        if problem.code in _CERTAIN or not self._is_doubtful(problem.code, loc):
             self.problems.extend([problem])
+
+    def _is_doubtful(self, code: str, loc: Loc) -> bool:
+        """Whether the problem may be no more than a consequence of what could not be read."""
+        if any(loc[:steps] in self.doubtful for steps in range(4, len(loc) + 1)):
+            return True
+        if loc[0] == "messages" and loc[2:3] == ("fields",):
+            if code in _OF_ONE_FIELD:
+                return False
+            if code in _OF_REFERENCES:
+                return loc[:3] in self.doubtful
+        return loc[:2] in self.doubtful
 
     def is_lost(self, key: str, name: str) -> bool:
         """Whether `name` may be written under this key of the root, but could not be read.
@@ -79,8 +100,8 @@ class Context:
 
     @property
     def failed(self) -> bool:
-        """Whether an error has been reported so far."""
-        return bool(self.tally.errors or self.problems.errors)
+        """Whether there is something wrong so far, but for examples, which nothing depends on."""
+        return self.spoilt or self.tally.errors > self.tally.in_examples
 
 
 def _letters(name: str) -> str:

@@ -23,6 +23,8 @@ class Draft:
     messages: dict[str, Message] = field(default_factory=dict)
     unidentified: set[str] = field(default_factory=set)
     """Messages whose identity is wrong: no receiver could have them, so later passes don't."""
+    too_large: set[str] = field(default_factory=set)
+    """Messages that no frame can hold."""
     used_types: frozenset[str] = frozenset()
     """The declared types that messages have."""
     overloads: dict[str, list[Overload]] = field(default_factory=dict)

@@ -33,13 +33,12 @@ from protogen.passes.named_types import NamedTypes
 from protogen.passes.setting import Setting
 from protogen.passes.switches import SwitchBuilder
 from protogen.passes.type_names import (
-    COMMON_NAMES,
     float_type,
     has_width,
     integer,
     integer_width,
+    type_hint,
 )
-from protogen.problems import hint_for
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
@@ -180,8 +179,8 @@ class FieldBuilder:
             return
         if self._context.is_lost("types", name):
             return
-        known = (*self._context.syntax.types, *COMMON_NAMES)
-        self._context.error("PG104", loc, f"there is no type `{name}`", hint_for(name, known))
+        hint = type_hint(name, self._context.syntax.types)
+        self._context.error("PG104", loc, f"there is no type `{name}`", hint)
 
     def _no_byte_order(self, loc: Loc) -> None:
         self._context.error(

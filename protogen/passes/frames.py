@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
+from protogen.model.checksums import SIMPLE_ALGORITHMS
 from protogen.model.frame import (
+    ChecksumPart,
     CounterPart,
     Frame,
     IdentityPart,
@@ -24,8 +26,7 @@ from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.runs import Runs
 from protogen.passes.transparencies import transparency_of
-from protogen.passes.type_names import COMMON_NAMES, Layout, has_width, integer, integer_width
-from protogen.problems import hint_for
+from protogen.passes.type_names import Layout, has_width, integer, integer_width, type_hint
 from protogen.schema.syntax.parts import Part as PartSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS
 
@@ -79,6 +80,8 @@ class FrameBuilder:
         self._checksums = ChecksumReader(context, self._loc, self._runs)
         order = byte_order_of(context, sender)
         self._layout = Layout(byte_bits=context.syntax.byte_bits, byte_order=order)
+        self._replaced = 0
+        """Errors of checksums that another one stands for."""
 
     def frame(self) -> Frame | None:
         """The frame, or None where something about it is wrong."""
@@ -89,6 +92,7 @@ class FrameBuilder:
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._sender, self._syntax)
         self._one_length(parts)
+        before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         known = tuple(part for part in parts if part is not None)
@@ -122,10 +126,20 @@ class FrameBuilder:
         if type_ is None:
             return None
         if role == "algorithm":
-            return self._checksums.read(name, item, type_)
+            return self._checksum(name, item, type_)
         least, greatest = self._range(name, item, type_)
         part = NumberPart(name=name, type=type_, least=least, greatest=greatest, about=text)
         return self._number(role, item, part)
+
+    def _checksum(self, name: str, item: PartSyntax, type_: Integer) -> Part:
+        """The checksum; any other of its size serves where the rest of the frame is asked about."""
+        before = self._context.tally.errors
+        part = self._checksums.read(name, item, type_)
+        if part is not None and self._context.tally.errors == before:
+            return part
+        self._replaced += self._context.tally.errors - before
+        plain = SIMPLE_ALGORITHMS[0]
+        return ChecksumPart(name=name, type=type_, algorithm=plain, covers=(PAYLOAD,))
 
     def _number(self, role: str, item: PartSyntax, part: NumberPart) -> Part:
         """The part as what its role makes of it."""
@@ -191,7 +205,7 @@ class FrameBuilder:
             return None
         if found is None or found.signed or found.role == "bool":
             text = f"`{item.type}` is no unsigned integer, which a part of a frame is"
-            self._context.error("PG104", loc, text, hint_for(item.type, COMMON_NAMES))
+            self._context.error("PG104", loc, text, type_hint(item.type))
             return None
         if found.size > 1 and order is None:
             hint = "set `byte_order: little` or `big` on the part or the protocol"

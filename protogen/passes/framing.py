@@ -63,6 +63,7 @@ class _Analysis:
         self._context = context
         self._key = sender if sender in context.syntax.frame else ALL_SENDERS
         self._messages = draft.sent_by(sender)
+        self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
         self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)
         self.sender = sender
@@ -210,6 +211,8 @@ class _Analysis:
         wire = wire_sizes.WireSizes(frame, self._payload)
         greatest = wire.frame(payload).greatest
         if greatest > GREATEST_FRAME:
+            if self._too_large:
+                return None  # Which was said of the message.
             text = f"a frame of {self.sender} can have {amount(greatest)} bytes; "
             text = f"{text}at most 1 MiB is allowed"
             self._context.error_at_key("PG122", ("frame", self._key), text)
@@ -231,7 +234,7 @@ class _Analysis:
             why_synchronising=why,
             finds_start=framing_words.finds_start(start),
             finds_end=framing_words.finds_end(frame, end, self._messages),
-            undetected=undetected_errors(frame, end, self._messages, self._payload),
+            undetected=undetected_errors(frame, start, end, self._messages, self._payload),
             messages=per_message,
         )
 

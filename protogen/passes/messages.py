@@ -83,6 +83,7 @@ class _Resolution:
         syntax = self._syntax
         self._fields = draft.named.settled(self._fields)
         identity = self._identity()
+        sizes = self._sizes(draft)
         if identity is None:
             draft.unidentified.add(self._name)
         draft.messages[self._name] = Message(
@@ -92,7 +93,7 @@ class _Resolution:
             senders=syntax.from_,
             identity=identity or (),
             fields=self._fields,
-            sizes=self._sizes(),
+            sizes=sizes,
             unspecified=isinstance(syntax.fields, str),
             about=about(syntax.doc, syntax.source),
             span=self._context.find_key(self._loc),
@@ -145,16 +146,26 @@ class _Resolution:
 
     # -- sizes --------------------------------------------------------------------------------
 
-    def _sizes(self) -> SizeSet:
+    def _sizes(self, draft: Draft) -> SizeSet:
         sizes = self._stated_sizes()
         for framed in self._frames:
             self._fits(sizes, framed)
         sizes = self._sendable(sizes)
         if sizes.greatest > GREATEST_FRAME:
             text = f"the payload can have {amount(sizes.greatest)} bytes; a frame is at most 1 MiB"
-            self._context.error_at_key("PG122", self._loc, text)
+            self._context.error("PG122", self._greatest(), text)
+            draft.too_large.add(self._name)
             return sizes.within(0, GREATEST_FRAME) or SizeSet.exactly(0)
         return sizes
+
+    def _greatest(self) -> Loc:
+        """The place of what makes the payload as long as it can be."""
+        if isinstance(self._syntax.fields, str):
+            return (*self._loc, "max_size")
+        greatest = max(self._fields, key=lambda field: field.type.sizes.greatest).name
+        loc = (*self._loc, "fields", greatest)
+        written = self._syntax.fields[greatest].model_fields_set
+        return next(((*loc, key) for key in ("count", "size") if key in written), loc)
 
     def _stated_sizes(self) -> SizeSet:
         sizes = total(self._fields)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.reserved_words import (
+    AS_CLASSES,
     OWN_ARGUMENTS,
     OWN_ATTRIBUTES,
     languages_reserving,
@@ -47,8 +48,9 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
     languages = languages_reserving(name)
     if languages:
         report = context.error if at_value else context.error_at_key
-        text = f"`{name}` is a reserved word of {', '.join(languages)}"
-        report("PG106", loc, text, f"another name, such as `{name}_` with a word behind it")
+        becomes = f" would be `{name.capitalize()}`, which" if name in AS_CLASSES else ""
+        text = f"`{name}`{becomes} is a reserved word of {', '.join(languages)}"
+        report("PG106", loc, text, f"another name, such as `{name}_value`")
 
 
 def _free(context: Context, name: str, own: frozenset[str], loc: Loc) -> None:

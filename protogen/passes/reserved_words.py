@@ -37,10 +37,13 @@ OWN_ATTRIBUTES = frozenset(
 OWN_ARGUMENTS = frozenset({"message", "sender", "strict"})
 """What a generated encoder takes beside the parts whose values the caller gives."""
 
+AS_CLASSES = frozenset({"none"})
+"""Words that are reserved only as classes are written."""
+
 _LANGUAGES: dict[str, frozenset[str]] = {
     "C": frozenset(_C.split()),
     "C++": frozenset(_CPP.split()),
-    "Python": frozenset(word for word in keyword.kwlist if word.islower()) | {"self", "none"},
+    "Python": frozenset(word for word in keyword.kwlist if word.islower()) | {"self"} | AS_CLASSES,
     "JavaScript": frozenset(_JAVASCRIPT.split()),
     "protogen": DIRECTIVES,
 }

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 from protogen.model.types import ByteOrder, Float, Integer
+from protogen.problems import hint_for
 
 _INTEGER = re.compile(r"[us]int(0|[1-9][0-9]{0,5})")
 
@@ -21,6 +23,14 @@ COMMON_NAMES = (
     *(f"{sign}int{bits}" for bits in range(1, 65) for sign in "us"),
 )
 """Everything that a type may be called before a schema declares its own."""
+
+
+_OTHER_WORDS = {
+    "string": "ascii", "str": "ascii", "text": "ascii", "float": "float32", "single": "float32",
+    "f32": "float32", "double": "float64", "f64": "float64", "boolean": "bool", "blob": "bytes",
+}  # fmt: skip
+"""What other languages call the built-in types."""
+_OTHER_INTEGER = re.compile(r"(u|uint|unsigned|i|s|int|sint|signed)([0-9]{0,3})(_t)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +51,20 @@ def has_width(name: str) -> bool:
     """Whether the name is no integer's, or that of one that exists: of 1 to 64 bits."""
     width = integer_width(name)
     return width is None or 1 <= width <= GREATEST_WIDTH
+
+
+def type_hint(name: str, declared: Iterable[str] = ()) -> str | None:
+    """Which type was probably meant: by its name in another language, or a slip of one here."""
+    word = name.casefold().replace(" ", "")
+    integers = _OTHER_INTEGER.fullmatch(word)
+    if integers is None:
+        known = (*declared, *COMMON_NAMES)
+        return hint_for(_OTHER_WORDS.get(word, name), known)
+    sign = "u" if word[0] == "u" else "s"
+    if not integers[2]:
+        return f"give it a width: `{sign}int8`"
+    meant = f"{sign}int{int(integers[2])}"
+    return f"did you mean `{meant}`?" if has_width(meant) else None
 
 
 def is_builtin(name: str) -> bool:

@@ -20,17 +20,23 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
 )
-from protogen.model.framing import End
+from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
+from protogen.passes.damaged_ends import joined_frames
+from protogen.passes.misread_sizes import misread_absence, misread_size
 from protogen.passes.wire_code import SEVEN_BITS, ByteSet
 
 
 def undetected_errors(
-    frame: Frame, end: End | None, messages: list[Message], payload: ByteSet
+    frame: Frame, start: Start, end: End | None, messages: list[Message], payload: ByteSet
 ) -> tuple[str, ...]:
     """One sentence for each kind of wrong byte that a receiver takes for right."""
     sentences = [_part(frame, part, end, messages, payload) for part in frame.parts]
-    sentences.append(_early_end(frame, end, messages))
+    sentences.append(misread_size(frame, end, messages))
+    sentences.append(misread_absence(frame, messages))
+    sentences.append(_false_start(frame, start))
+    sentences.append(_early_end(frame, start, end, messages))
+    sentences.append(joined_frames(frame, start, end, messages, payload))
     sentences.append(_weak_checksum(frame))
     sentences.append(_stuffing(frame))
     return tuple(sentence for sentence in sentences if sentence)
@@ -45,7 +51,7 @@ def _part(
     if covering:
         return _sometimes(part, covering, messages)
     if isinstance(part, LengthPart):
-        return _length(frame, part, end)
+        return ""  # What comes of a wrong size is asked for the frame as a whole.
     if isinstance(part, IdentityPart):
         return _identity(frame, part, end, messages)
     if isinstance(part, PayloadPart):
@@ -60,12 +66,6 @@ def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]
     if always or not empty or isinstance(part, PayloadPart):
         return ""
     return f"a wrong `{part.name}` in a frame without payload: it has no checksum"
-
-
-def _length(frame: Frame, part: LengthPart, end: End | None) -> str:
-    if end is not None:
-        return ""  # The end literal then stands in the wrong place.
-    return f"a wrong `{part.name}`, where the bytes that follow happen to check"
 
 
 def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[Message]) -> str:
@@ -86,14 +86,31 @@ def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[
     return ""
 
 
-def _early_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
+def _false_start(frame: Frame, start: Start) -> str:
+    """Inside of a frame that nothing checks, a start makes a message of what follows."""
+    if any(not part.when_payload for part in frame.checksums):
+        return ""
+    match start:
+        case StartLiteral():
+            what = f"makes {start.bytes.hex(' ').upper()}, the start"
+        case StartSet():
+            what = f"makes a start, {start.least:02X} to {start.greatest:02X}"
+        case _:
+            return ""
+    return f"a wrong byte that {what}, where the bytes behind it happen to be a whole frame"
+
+
+def _early_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
     """A wrong byte can end a frame early, or join two, where nothing else tells the size."""
-    if end is None or frame.length is not None or not frame.checksums:
+    if end is None or frame.length is not None:
         return ""
     if all(message.sizes.fixed is not None for message in messages):
         return ""
-    what = end.bytes.hex(" ").upper()
-    return f"a wrong byte that makes or breaks {what}, the end, where what is read happens to check"
+    # Where the end is broken, a start that occurs nowhere else shows it.
+    shown = isinstance(start, StartLiteral | StartSet) and start.protected
+    verb = "makes" if shown else "makes or breaks"
+    what = f"a wrong byte that {verb} {end.bytes.hex(' ').upper()}, the end"
+    return f"{what}, where what is read happens to check" if frame.checksums else what
 
 
 def _share_a_size(messages: list[Message]) -> bool:
@@ -124,9 +141,9 @@ def _weak_checksum(frame: Frame) -> str:
 
 
 def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
-    """Fletcher takes 00 for FF; a CRC sees bursts up to its width if its polynomial is odd."""
+    """Sums modulo 255 take 00 for FF; a CRC sees bursts of its width if its polynomial is odd."""
     if algorithm.kind == "fletcher":
-        return True
+        return algorithm.modulus == 255
     return algorithm.kind == "crc" and (algorithm.width < 8 or algorithm.poly % 2 == 0)
 
 

@@ -44,6 +44,11 @@ class SourceMap:
         self._texts[file] = text
         self._lines.pop(file, None)
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Every file that was read."""
+        return tuple(self._texts)
+
     def text(self, file: str) -> str | None:
         """Return the text of ``file``, or None if it was never read."""
         return self._texts.get(file)

@@ -65,10 +65,12 @@ class Sum8:
 
 @dataclass(frozen=True, slots=True)
 class Fletcher16:
-    """Fletcher's checksum of bytes modulo 255.
+    """Fletcher's checksum of bytes modulo 255, or 256 as UBX has it.
 
     The sum of the bytes is the low byte, the sum of those running sums the high byte.
     """
+
+    modulus: int = 255
 
     @property
     def width(self) -> int:
@@ -76,8 +78,8 @@ class Fletcher16:
         return 16
 
     def compute(self, data: bytes) -> int:
-        """Return the checksum of `data`; neither of its bytes is ever 255."""
-        return ((sum(accumulate(data)) % 255) << 8) | (sum(data) % 255)
+        """Return the checksum of `data`; both of its bytes are below `modulus`."""
+        return ((sum(accumulate(data)) % self.modulus) << 8) | (sum(data) % self.modulus)
 
 
 @dataclass(frozen=True, slots=True)

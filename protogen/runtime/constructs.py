@@ -17,7 +17,7 @@ bytes behind the last field, keys that no field has, and a bad tail of a greedy 
 from __future__ import annotations
 
 import io
-from collections.abc import Collection, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, BinaryIO, Literal, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
@@ -289,7 +289,7 @@ class Fixed(_Around):
 class Closed(_Around):
     """A value out of a closed set."""
 
-    def __init__(self, subcon: Construct, values: Collection[int]) -> None:
+    def __init__(self, subcon: Construct, values: Iterable[int]) -> None:
         super().__init__(subcon)
         self._values = frozenset(values)
 

@@ -71,7 +71,10 @@ class Physical(_PhysicalView[float]):
 
 
 class PhysicalOrNone(_PhysicalView[float | None]):
-    """The same for a field with special values: None while there is no reading."""
+    """The same for a field with special values: None while there is no reading.
+
+    Writing refuses a number whose nearest raw value is a special one.
+    """
 
     def _read(self, record: object) -> float | None:
         return self._shown_or_none(getattr(record, self._field))

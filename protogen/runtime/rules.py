@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import EncodeError, join_path
+from protogen.runtime.nearest import nearest_reading
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""
@@ -88,7 +89,7 @@ class IntegerRule(Rule):
 
     bits: int
     signed: bool = False
-    named: type[OpenEnum] | type[Flags] | None = None
+    named: type[OpenEnum | Flags] | None = None
     closed: bool = False
     least: int | None = None
     greatest: int | None = None
@@ -102,8 +103,7 @@ class IntegerRule(Rule):
         """The raw value."""
         if not isinstance(value, int) or isinstance(value, bool):
             raise EncodeError("", f"must be an integer, not {value!r}")
-        low = -(1 << (self.bits - 1)) if self.signed else 0
-        high = (1 << (self.bits - self.signed)) - 1
+        low, high = self._capacity()
         if not low <= value <= high:
             raise EncodeError("", self._out_of_range(value, low, high))
         if strict:
@@ -150,11 +150,34 @@ class IntegerRule(Rule):
     def nearest(self, physical: float | Fraction | None) -> int:
         """The raw value nearest to a physical value, ties to even. Raises ValueError.
 
-        None stands for the special value, where there is exactly one.
+        None stands for the special value, where there is exactly one. A number never does: it would
+        be read back as no reading at all.
         """
         if physical is None:
             return self._only_special()
-        return round((_exact(physical) - self.offset) / self.scale)
+        exact = (_exact(physical) - self.offset) / self.scale
+        raw = round(exact)
+        if raw in self.special.values():
+            raise ValueError(self._means_no_reading(exact, raw))
+        return raw
+
+    def _means_no_reading(self, exact: Fraction, raw: int) -> str:
+        name = next(name for name, value in self.special.items() if value == raw)
+        text = f"{self._shown(exact)} would be sent as {raw}, which means {name}"
+        low, high = self._capacity()
+        least = low if self.least is None else self.least
+        greatest = high if self.greatest is None else self.greatest
+        other = nearest_reading(exact, self.special.values(), least, greatest)
+        return text if other is None else f"{text}; the nearest reading is {self._shown(other)}"
+
+    def _shown(self, raw: int | Fraction) -> str:
+        value = f"{float(raw * self.scale + self.offset):.10g}"
+        return f"{value} {self.unit}" if self.unit else value
+
+    def _capacity(self) -> tuple[int, int]:
+        """The least and the greatest value that the bits can hold."""
+        low = -(1 << (self.bits - 1)) if self.signed else 0
+        return low, (1 << (self.bits - self.signed)) - 1
 
     def _only_special(self) -> int:
         if len(self.special) != 1:

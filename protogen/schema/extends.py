@@ -17,6 +17,7 @@ from protogen.schema.merge import merge
 from protogen.schema.nodes import Loc, MappingNode, Node, ScalarNode, find
 from protogen.schema.provenance import name_documents
 from protogen.schema.renames import apply_renames
+from protogen.schema.short_forms import expand_short_forms
 
 _PROJECT_MARKS = (".git", "pyproject.toml", "protogen.toml")
 
@@ -48,7 +49,7 @@ def merge_bases(document: Document, problems: Problems, sources: SourceMap) -> M
         stated = _stated(dialect, over_base=True)
         # A rename in one sender's frame needs that frame, so sharing ends first.
         base = apply_renames(spread_shared(root, stated), stated, problems)
-        root = merge(base, stated, problems)
+        root = merge(expand_short_forms(base, stated), stated, problems)
     return Merged(root, tuple(link.file for link in chain))
 
 
@@ -76,7 +77,10 @@ def _chain(document: Document, problems: Problems, sources: SourceMap) -> list[D
     folder = project_folder(document.file)
     chain = [document]
     seen = {os.path.realpath(document.file)}
-    while (named := _extended(chain[-1].root, problems)) is not None:
+    while (written := chain[-1].root.child("extends")) is not None:
+        named = _path(written, problems)
+        if named is None:
+            return None
         place = _locate(chain[-1].file, named, folder, problems)
         if place is None:
             return None
@@ -92,11 +96,8 @@ def _chain(document: Document, problems: Problems, sources: SourceMap) -> list[D
     return chain
 
 
-def _extended(root: Node, problems: Problems) -> ScalarNode | None:
-    """Return what stands under `extends`, if anything does."""
-    named = root.child("extends")
-    if named is None:
-        return None
+def _path(named: Node, problems: Problems) -> ScalarNode | None:
+    """Return what stands under `extends`, if it can be a path."""
     if isinstance(named, ScalarNode) and isinstance(named.value, str) and named.value:
         return named
     problems.add("PG025", named.span, "`extends` takes the path of one schema")

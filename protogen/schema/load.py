@@ -24,6 +24,8 @@ class Loaded:
     """Items of which something could not be read: what seems wrong with them may come of that."""
     lost: frozenset[Loc] = frozenset()
     """Names that are written, but whose meaning could not be read."""
+    spoilt: bool = False
+    """Whether more than some examples could not be read."""
 
 
 def load_syntax(
@@ -41,7 +43,8 @@ def load_syntax(
         return None
     # Of two equal keys the first one counts; with that, the rest can still be looked at.
     sound = all(problem.code == "PG006" for problem in problems.errors)
+    spoilt = bool(problems.errors)
     shape = read_shape(to_data(merged.root), merged.find, problems)
     if shape is None or not sound:
         return None
-    return Loaded(shape.syntax, merged, shape.doubtful, shape.lost)
+    return Loaded(shape.syntax, merged, shape.doubtful, shape.lost, spoilt or shape.spoilt)

@@ -1,30 +1,35 @@
 """Where a schema refers to what it names: changes the references after a rename.
 
 What refers to a name is known per kind of item: to a field the fields beside it and the examples,
-to a part what `part_references` lists, to a message overloads and exchanges, to a type every
-`type`. An item of another kind is renamed alone.
+to a part what `part_references` lists, to an endpoint or a decision what `side_references` lists,
+to a value or a flag what `value_references` lists, to a message overloads and exchanges, to a type
+every `type`. An item of another kind is renamed alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 from protogen.schema.edit import (
     ANY,
     Names,
     Path,
     edit_at,
-    items_of,
     keys_of,
     rename_keys,
     rename_scalar,
 )
-from protogen.schema.nodes import Node, ScalarNode, SequenceNode
+from protogen.schema.nodes import Node, SequenceNode
 from protogen.schema.part_references import follow_parts, is_by_sender
 from protogen.schema.scalars import Scalar
+from protogen.schema.side_references import follow_decisions, follow_endpoints, follow_examples
+from protogen.schema.uses import example_steps
+from protogen.schema.value_references import NAMING, follow_values
 
 _PART_TYPES: tuple[Path, ...] = (("frame", ANY, "type"), ("frame", ANY, ANY, "type"))
 _FIELDS: tuple[Path, ...] = (("types",), ("messages", ANY, "fields"))
+_RESERVED_VALUES: Path = ("reserved", "values")
 _MESSAGE_NAMES: tuple[Path, ...] = (
     ("overloads", ANY, "messages", ANY),
     ("overloads", ANY, "yields"),
@@ -44,10 +49,30 @@ def follow_renames(root: Node, path: Sequence[Scalar], names: Names) -> Node:
             return follow_parts(root, None, names)
         case ("frame", str(sender)) if is_by_sender(root, "frame"):
             return follow_parts(root, sender, names)
-        case ("messages" | "types", _, "fields", *_) if path[-1] == "fields":
-            return _follow_fields(root, tuple(path), names)
-        case _:
-            return root
+        case ("endpoints",):
+            return follow_endpoints(root, names)
+        case ("decisions",):
+            return follow_decisions(root, names)
+        case ("messages" | "types", _, *_):
+            return _follow_inside(root, tuple(path), names)
+    return root
+
+
+def _follow_inside(root: Node, path: tuple[Scalar, ...], names: Names) -> Node:
+    """Rename what stands inside of a message or a declared type."""
+    match path:
+        case ("messages", message, "examples"):
+            return follow_examples(root, message, names)
+        case (_, _, "fields", *_) if _holds_fields(path):
+            return _follow_fields(root, path, names)
+        case (_, _, *_, kind) if kind in NAMING:
+            return follow_values(root, path, names)
+    return root
+
+
+def _holds_fields(path: Sequence[Scalar]) -> bool:
+    """Whether a mapping of fields is here; a field may be called `fields` as well."""
+    return len(path) % 2 == 1 and path[-1] == "fields"
 
 
 def _follow_types(root: Node, names: Names) -> Node:
@@ -55,7 +80,7 @@ def _follow_types(root: Node, names: Names) -> Node:
         root = edit_at(root, path, lambda node: rename_scalar(node, names))
     for path in _FIELDS:
         root = edit_at(root, path, lambda fields: _retype(fields, names))
-    return root
+    return edit_at(root, _RESERVED_VALUES, lambda node: rename_keys(node, names))
 
 
 def _retype(fields: Node, names: Names) -> Node:
@@ -70,19 +95,30 @@ def _retype(fields: Node, names: Names) -> Node:
 def _follow_messages(root: Node, names: Names) -> Node:
     for path in _MESSAGE_NAMES:
         root = edit_at(root, path, lambda node: rename_scalar(node, names))
-    return edit_at(root, ("reserved", "fields"), lambda node: rename_keys(node, names))
+    root = edit_at(root, ("reserved", "fields"), lambda node: rename_keys(node, names))
+    return edit_at(root, _RESERVED_VALUES, lambda node: _rename_dotted(node, (), names))
+
+
+def _rename_dotted(node: Node, owner: Sequence[Scalar], names: Names) -> Node:
+    """Rename keys such as `message.field`, in what stands behind `owner`."""
+    place = len(owner)
+    dotted = {}
+    for key in keys_of(node):
+        steps = str(key).split(".")
+        if len(steps) > max(place, 1) and steps[:place] == list(owner) and steps[place] in names:
+            new = names[steps[place]]
+            text = ".".join((*steps[:place], new.text, *steps[place + 1 :]))
+            dotted[key] = replace(new, value=text, text=text)
+    return rename_keys(node, dotted)
 
 
 def _follow_fields(root: Node, path: tuple[Scalar, ...], names: Names) -> Node:
     root = edit_at(root, path, lambda fields: _rename_beside(fields, names))
-    kind, owner, steps = path[0], path[1], path[3::2]
-    if any(step != "fields" for step in path[4::2]):
-        # Values do not say which case of a switch they belong to.
-        return root
-    if kind == "messages":
-        return _rename_values(root, owner, steps, names)
-    for message, field in _uses(root, owner):
-        root = _rename_values(root, message, (field, *steps), names)
+    if path[0] == "messages" and len(path) == 3:
+        owner = path[1:2]
+        root = edit_at(root, _RESERVED_VALUES, lambda node: _rename_dotted(node, owner, names))
+    for message, steps in example_steps(root, path[:-1]):
+        root = _rename_values(root, message, steps, names)
     return root
 
 
@@ -101,16 +137,6 @@ def _rename_in_field(field: Node, names: Names) -> Node:
 def _rename_inside(inner: Node, names: Names) -> Node:
     """Rename in fields further inside, which hide outer fields of the same name."""
     return _rename_beside(inner, {old: names[old] for old in names.keys() - keys_of(inner)})
-
-
-def _uses(root: Node, type_name: Scalar) -> Iterator[tuple[Scalar, Scalar]]:
-    """Yield each message and its field that have the declared type."""
-    messages = root.child("messages")
-    for message, syntax in items_of(messages):
-        for field, written in items_of(syntax.child("fields")):
-            named = written if isinstance(written, ScalarNode) else written.child("type")
-            if isinstance(named, ScalarNode) and named.value == type_name:
-                yield message.value, field.value
 
 
 def _rename_values(root: Node, message: Scalar, steps: Sequence[Scalar], names: Names) -> Node:

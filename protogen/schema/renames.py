@@ -6,7 +6,7 @@ from protogen.problems import Problems
 from protogen.schema.directives import Rename, read_directives
 from protogen.schema.edit import Names, edit_at, rename_keys
 from protogen.schema.merge import report_unknown
-from protogen.schema.nodes import MappingNode, Node, ScalarNode
+from protogen.schema.nodes import Item, MappingNode, Node, ScalarNode
 from protogen.schema.references import follow_renames
 from protogen.schema.scalars import Scalar
 
@@ -31,9 +31,14 @@ def _apply(root: Node, path: tuple[Scalar, ...], dialect: Node, problems: Proble
     if names:
         root = edit_at(root, path, lambda node: rename_keys(node, names))
         root = follow_renames(root, path, names)
-    for key, value in directives.items:
+    for key, value in sorted(directives.items, key=_is_late):
         root = _apply(root, (*path, key.value), value, problems)
     return root
+
+
+def _is_late(item: Item) -> bool:
+    """Endpoints come first: frames are keyed by them, in the dialect by their new names."""
+    return item[0].value != "endpoints"
 
 
 def _report_pointless(dialect: Node, problems: Problems) -> None:

@@ -29,6 +29,15 @@ _DISPENSABLE = frozenset(
     {"title", "doc", "version", "source", "link", "exchanges", "reserved", "byte_bits"}
 )
 """Keys of the root that can be left out without more ado."""
+_WITHOUT_EFFECT = frozenset(
+    {"scale", "offset", "unit", "range", "const", "default", "special", "closed", "unknown"}
+    | {"doc", "source"}
+)
+"""Keys of a field without which it is as long as with them, and called the same."""
+_LEFT_OUT = _WITHOUT_EFFECT | {"count", "size", "byte_order"}
+"""Keys of a field that leave one when they are left out."""
+_SOME_FIELD = {"type": "uint1"}
+"""What stands for a field that can't be read, so that its name is still known. It fits anywhere."""
 _ITEMS = frozenset({"types", "decisions", "overloads"})
 """Keys of the root whose items others refer to."""
 
@@ -39,7 +48,7 @@ class Salvage:
 
     data: dict[str, Any]
     doubtful: set[Loc] = field(default_factory=set)
-    """Items of the root that are not whole."""
+    """Items of the root that are not whole, and fields; `fields` stands for what refers to any."""
     lost: set[Loc] = field(default_factory=set)
     """Names that can't be referred to any more; a key of the root stands for all of its names."""
 
@@ -89,21 +98,40 @@ class Salvage:
             self._drop(loc[:4] if len(loc) > 3 else loc[:3])
             self.doubtful.add(("exchanges",))
             return
+        if loc[2:3] == ("fields",) and len(loc) > 4:
+            # Behind `fields` stands the label of a tagged union.
+            self._field((*loc[:3], loc[4]), loc[5:], unknown_key=unknown_key)
+            return
         self.doubtful.add(loc[:2])
         if unknown_key:
             self._drop(loc)
-        elif loc[2:3] == ("fields",):
-            # Behind `fields` stands the label of a tagged union.
-            self._drop((*loc[:3], loc[4]) if len(loc) > 4 else loc[:3])
         elif loc[2:3] in ((), ("from",), ("[key]",)):
             self._drop(loc[:2])
         else:
             self._drop(loc[:3])
 
+    def _field(self, place: Loc, inside: Loc, *, unknown_key: bool) -> None:
+        """A field of a message is left out last: others may refer to it."""
+        while len(inside) > 2 and inside[0] == "fields":
+            place, inside = (*place, *inside[:2]), inside[2:]
+        self.doubtful.add(place)
+        if not unknown_key and inside[:1] and inside[0] in _LEFT_OUT:
+            self._drop((*place, inside[0]))
+            if inside[0] not in _WITHOUT_EFFECT:
+                self.doubtful.add(place[:2])
+            return
+        self.doubtful |= {place[:2], place[:3]}
+        if unknown_key:
+            self._drop((*place, *inside))
+        elif inside == ("[key]",):
+            self._drop(place)
+        else:
+            _put(self.data, place, dict(_SOME_FIELD))
+
     def _type(self, loc: Loc, *, unknown_key: bool) -> None:
         self.doubtful.add(loc[:2])
-        if unknown_key:
-            self._drop(loc)
+        if unknown_key or (len(loc) > 2 and loc[2] in _LEFT_OUT):
+            self._drop(loc if unknown_key else loc[:3])
         elif loc[2:3] == ("fields",) and len(loc) > 3:
             self._drop(loc[:4])
         else:
@@ -159,10 +187,12 @@ class Salvage:
             found |= {(key,), *((key, name) for name in getattr(syntax, str(key)))}
         if ("overloads",) in self.doubtful or ("types",) in self.doubtful:
             found |= {("messages", name) for name in syntax.messages}
+        if ("types",) in self.doubtful:
+            found |= {place for place, _ in _fields(syntax)}
         found |= set(
             _users(syntax, {str(loc[1]) for loc in found if loc[0] == "types" and len(loc) > 1})
         )
-        roots = {loc[0] for loc in found}
+        roots = {loc[0] for loc in found if len(loc) < 3}
         if "messages" in roots:
             # Sizes of messages also decide about overloads.
             found |= {("overloads", name) for name in syntax.overloads}
@@ -174,18 +204,31 @@ class Salvage:
 
 
 def _drop(data: Any, loc: Sequence[str | int]) -> None:
-    """Drop a key; a step of its location that leads nowhere is the label of a tagged union."""
+    """Drop a key."""
+    around = _around(data, loc)
+    if isinstance(around, dict):
+        around.pop(loc[-1], None)
+
+
+def _put(data: Any, loc: Sequence[str | int], value: Any) -> None:
+    """Put something in the place of what a key has."""
+    around = _around(data, loc)
+    if isinstance(around, dict) and loc[-1] in around:
+        around[loc[-1]] = value
+
+
+def _around(data: Any, loc: Sequence[str | int]) -> Any:
+    """What holds the place; a step that leads nowhere is the label of a tagged union."""
     for step in loc[:-1]:
         if isinstance(data, dict):
             data = data.get(step, data)
         elif isinstance(data, list) and isinstance(step, int):
             data = data[step]
-    if isinstance(data, dict):
-        data.pop(loc[-1], None)
+    return data
 
 
 def _users(syntax: ProtocolSyntax, types: set[str]) -> Iterator[Loc]:
-    """The types and messages that come to one of these types."""
+    """The types, messages and fields of messages that come to one of these types."""
     known = set(types)
     while True:
         more = {name for name, item in syntax.types.items() if known & set(_named([item]))} - known
@@ -193,9 +236,16 @@ def _users(syntax: ProtocolSyntax, types: set[str]) -> Iterator[Loc]:
             break
         known |= more
         yield from (("types", name) for name in more)
+    for place, item in _fields(syntax):
+        if known & set(_named([item])):
+            yield from (place[:2], place)
+
+
+def _fields(syntax: ProtocolSyntax) -> Iterator[tuple[Loc, FieldSyntax]]:
+    """The fields of all messages, with their places."""
     for name, message in syntax.messages.items():
-        if not isinstance(message.fields, str) and known & set(_named(message.fields.values())):
-            yield ("messages", name)
+        for field_name, item in () if isinstance(message.fields, str) else message.fields.items():
+            yield ("messages", name, "fields", field_name), item
 
 
 def _named(items: Iterable[FieldSyntax]) -> Iterator[str]:

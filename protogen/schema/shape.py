@@ -13,7 +13,11 @@ from pydantic_core import ErrorDetails
 
 from protogen.problems import Problems, Span, hint_for
 from protogen.schema.salvage import Loc, Salvage
-from protogen.schema.syntax.protocol import ProtocolSyntax
+from protogen.schema.syntax.base import Source
+from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, NamedValue
+from protogen.schema.syntax.messages import Step
+from protogen.schema.syntax.parts import Part, TransparencySyntax
+from protogen.schema.syntax.protocol import Endpoint, ProtocolSyntax
 
 Find = Callable[..., Span]
 Steps = Sequence[str | int]
@@ -28,6 +32,8 @@ class Shape:
     """Items of which something is missing, and those that depend on such items."""
     lost: frozenset[Loc] = frozenset()
     """Names that are written, but can't be referred to."""
+    spoilt: bool = False
+    """Whether more than some examples could not be read."""
 
 
 def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
@@ -55,7 +61,8 @@ def _without(data: Any, details: Sequence[ErrorDetails]) -> Shape | None:
         syntax = ProtocolSyntax.model_validate(data)
     except ValidationError:
         return None
-    return Shape(syntax, salvage.consequences(syntax), frozenset(salvage.lost))
+    spoilt = any(detail["loc"][2:3] != ("examples",) for detail in details)
+    return Shape(syntax, salvage.consequences(syntax), frozenset(salvage.lost), spoilt)
 
 
 def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:
@@ -72,7 +79,37 @@ def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:
         case "string_pattern_mismatch":
             _report_name(loc, detail["input"], find, problems)
         case _:
-            problems.add("PG102", find(loc), _plain_words(detail["msg"]), _choice_hint(detail))
+            words = _form(detail) or _plain_words(detail["msg"])
+            problems.add("PG102", find(loc), words, _choice_hint(detail))
+
+
+_FORMS: dict[type[BaseModel], str] = {
+    FieldSyntax: "a field is the name of its type, such as `uint8`, or a mapping with a `type`, "
+    "`fields` or a `switch`",
+    Endpoint: "an endpoint is its title, or a mapping with a `title`",
+    Part: "a part of a frame is a mapping, such as `{type: uint8, id: true}`; only the payload's "
+    "may be empty: `{}`",
+    NamedValue: "a name stands for a number or a character, or a mapping with a `value`",
+    NamedBit: "a flag is the number of a bit, or a mapping with a `bit`",
+    NamedBits: "a run of bits is a number, LOW..HIGH, or a mapping with `bits`",
+    TransparencySyntax: "a transparency is the name of a preset, or a mapping with `substitute`, "
+    "`escape`, `encoding` or `preset`",
+    Step: "a step is the name of a message, or a mapping with a `message`",
+    Source: "a source is the lines of the document, or a mapping",
+}
+"""What may stand where one of these is."""
+
+
+def _form(detail: ErrorDetails) -> str | None:
+    """All forms that what stands here may have, where it has none of them."""
+    loc = detail["loc"]
+    if detail["type"] in ("model_type", "model_attributes_type"):
+        models = _models_at(ProtocolSyntax, loc)
+        return next((_FORMS[model] for model in models if model in _FORMS), None)
+    if detail["type"] == "dict_type" and "fields" in loc[-2:]:
+        more = ", or `unspecified`" if loc[-1] == "mapping" else ""
+        return f"`fields` is a mapping of names to fields{more}"
+    return None
 
 
 def _report_name(loc: Loc, written: object, find: Find, problems: Problems) -> None:
@@ -81,7 +118,8 @@ def _report_name(loc: Loc, written: object, find: Find, problems: Problems) -> N
 
 
 def _key_hint(word: str, known: Sequence[str]) -> str | None:
-    close = hint_for(word, known)
+    # `untis` is `unit` for two reasons at once, which no single word would be taken for.
+    close = hint_for(word, known) or hint_for(word.removesuffix("s"), known)
     if close is not None or not known:
         return close
     return f"keys are {', '.join(known)}"

@@ -34,13 +34,15 @@ class File:
 
     `banner` is the first line, without its line break; None where the format has no comments.
     `text` is the rest. Lines end in ``\n``. A `shared` file tells of all schemas of the folder, so
-    it is left as it is where only some of them are generated.
+    it is left as it is where only some of them are generated. A file that is made `once` is for
+    its user to go on with: where there is one, whatever it holds, it stays.
     """
 
     path: PurePosixPath
     text: str
     banner: str | None
     shared: bool = False
+    once: bool = False
 
     @property
     def content(self) -> str:
@@ -231,10 +233,14 @@ def _head(path: Path, whole: bool) -> bytes:
 
 def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...]:
     """The files that the folder should hold, with the manifest if one of them has no banner."""
-    due = tuple(file for file in files if prune or not _stays(file, folder))
+    due = tuple(
+        file for file in files if (prune or not _stays(file, folder)) and not _is_kept(file, folder)
+    )
     kept = {} if prune else _read_manifest(folder)
     hashes = kept | {
-        str(file.path): sha256(file.bytes).hexdigest() for file in due if file.banner is None
+        str(file.path): sha256(file.bytes).hexdigest()
+        for file in due
+        if file.banner is None and not file.once
     }
     return (*due, _manifest(hashes)) if hashes else due
 
@@ -242,6 +248,12 @@ def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...
 def _stays(file: File, folder: Path) -> bool:
     """Whether the file tells of schemas that are not generated now."""
     return file.shared and (folder / file.path).is_file()
+
+
+def _is_kept(file: File, folder: Path) -> bool:
+    """Whether the file was made before, and belongs to its user now."""
+    path = folder / file.path
+    return file.once and (path.exists() or path.is_symlink())
 
 
 def _manifest(hashes: Mapping[str, str]) -> File:

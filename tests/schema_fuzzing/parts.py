@@ -13,7 +13,8 @@ from schema_fuzzing.names import PARTS, fresh
 from schema_fuzzing.numbers import ORDERS
 
 ALGORITHMS = (
-    ("xor-8", 8), ("sum-8", 8), ("sum-8/negated", 8), ("fletcher-16", 16), ("CRC-3/GSM", 3),
+    ("xor-8", 8), ("sum-8", 8), ("sum-8/negated", 8), ("fletcher-16", 16), ("fletcher-16/256", 16),
+    ("CRC-3/GSM", 3),
     ("CRC-5/USB", 5), ("CRC-7/MMC", 7), ("CRC-8/SMBUS", 8), ("CRC-8/MAXIM-DOW", 8),
     ("CRC-12/UMTS", 12), ("CRC-15/CAN", 15), ("CRC-16/KERMIT", 16), ("CRC-16/MODBUS", 16),
     ("CRC-16/XMODEM", 16), ("CRC-24/OPENPGP", 24), ("crc-32", 32), ("CRC-32/MPEG-2", 32),

@@ -229,10 +229,11 @@ def checksum(spec: ChecksumSpec, data: bytes) -> int:
             total = (spec.init + sum(data)) % 256
             return -total % 256 if spec.negated else total
         case "fletcher":
+            modulus = 256 if spec.name.endswith("/256") else 255
             low = high = 0
             for byte in data:
-                low = (low + byte) % 255
-                high = (high + low) % 255
+                low = (low + byte) % modulus
+                high = (high + low) % modulus
             return high << 8 | low
     return _crc(spec, data)
 

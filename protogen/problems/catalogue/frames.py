@@ -117,9 +117,10 @@ that has another purpose is a part with a `type` alone.
         "unknown-algorithm",
         "There is no such checksum algorithm",
         """\
-Algorithms are `xor-8`, `sum-8`, `sum-8/negated`, `fletcher-16`, and the CRCs of the CRC RevEng
-catalogue by name, such as `CRC-16/MODBUS`. "CRC-16" alone says too little: some thirty algorithms
-are called so. One that is not in the catalogue is given by its parameters:
+Algorithms are `xor-8`, `sum-8`, `sum-8/negated`, `fletcher-16` (modulo 255),
+`fletcher-16/256` and the CRCs of the CRC RevEng catalogue by name, such as `CRC-16/MODBUS`.
+"CRC-16" alone says too little: some thirty algorithms are called so. One that is not in the
+catalogue is given by its parameters:
 `{width: 16, poly: 0x1021, init: 0xFFFF, refin: false, refout: false, xorout: 0}`.
 """,
         with_frame(

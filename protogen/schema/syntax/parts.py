@@ -91,8 +91,8 @@ class Part(Syntax):
     )
     algorithm: Algorithm | None = Field(
         None,
-        description="The part is a checksum: xor-8, sum-8, sum-8/negated, fletcher-16, a name of "
-        "the CRC RevEng catalogue, or Rocksoft parameters.",
+        description="The part is a checksum: xor-8, sum-8, sum-8/negated, fletcher-16, "
+        "fletcher-16/256, a name of the CRC RevEng catalogue, or Rocksoft parameters.",
     )
     covers: PartRun | None = Field(None, description="The parts that the checksum covers.")
     over: Literal["content", "wire"] | None = Field(

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cache
 from pathlib import PurePosixPath
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
@@ -16,6 +13,7 @@ from protogen.targets.markdown.fidelity import fidelity_view
 from protogen.targets.markdown.index import index_view
 from protogen.targets.markdown.page import page_view
 from protogen.targets.output import File
+from protogen.targets.printing import environment
 
 _BLANK_LINES = re.compile(r"\n{3,}")
 _ONE_BLANK_LINE = "\n\n"
@@ -54,18 +52,7 @@ def _file(name: str, protocols: Sequence[Protocol], view: object) -> File:
 
 
 def _render(template: str, view: object) -> str:
-    text = _environment().get_template(f"{template}.md.j2").render(view=view)
-    return f"\n{_BLANK_LINES.sub(_ONE_BLANK_LINE, text).strip()}\n"
-
-
-@cache
-def _environment() -> Environment:
-    # The views hold Markdown that is escaped already; HTML's rules would spoil it.
-    return Environment(
-        loader=PackageLoader("protogen.targets.markdown"),
-        autoescape=False,  # noqa: S701
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+    text = (
+        environment("protogen.targets.markdown").get_template(f"{template}.md.j2").render(view=view)
     )
+    return f"\n{_BLANK_LINES.sub(_ONE_BLANK_LINE, text).strip()}\n"

@@ -49,8 +49,15 @@ class _Line:
         )
 
     def _faults(self) -> Iterator[str]:
-        for fault in dict.fromkeys(row.fault for row in self.rows if row.fault):
-            yield f"**{capital(sentence(markdown(fault)))}**"
+        for text in dict.fromkeys(_fault(row) for row in self.rows if row.fault):
+            yield f"**{text}**"
+
+
+def _fault(row: Row) -> str:
+    """Print what is wrong; a name keeps its small letter."""
+    text = sentence(markdown(row.fault))
+    named = bool(row.path) and row.fault.startswith(f"{row.path} is ")
+    return code(row.path) + text[len(markdown(row.path)) :] if named else capital(text)
 
 
 def bytes_table(protocol: Protocol, message: Message, example: Example) -> Table | None:

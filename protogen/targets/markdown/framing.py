@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from protogen.model.framing import Framing
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.model.wire import code_size
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.context import by_frame
 from protogen.targets.markdown.packet import frame_diagram
@@ -73,7 +74,7 @@ def sender_title(sender: Sender, protocol: Protocol) -> str:
 
 def _shared_properties(senders: Sequence[Sender]) -> tuple[Property, ...]:
     """Return the properties of several senders; what differs names the sender."""
-    columns = [dict(_properties(sender.framing)) for sender in senders]
+    columns = [dict(_properties(sender)) for sender in senders]
     return tuple(
         (label, _merged(senders, [column[label] for column in columns])) for label in columns[0]
     )
@@ -89,17 +90,25 @@ def _merged(senders: Sequence[Sender], texts: Sequence[Sentences]) -> str:
     return " ".join(common)
 
 
-def _properties(framing: Framing) -> Iterator[tuple[str, Sentences]]:
+def _properties(sender: Sender) -> Iterator[tuple[str, Sentences]]:
+    framing = sender.framing
     sizes = plural(SizeSet.between(framing.least, framing.greatest), "byte")
-    overhead = plural(framing.overhead, "byte")
     sync = "Yes." if framing.self_synchronising else "No."
     yield "Start", (_said(framing.finds_start),)
     yield "End", (_said(framing.finds_end),)
     yield "Self-synchronising", (f"{sync} {_said(framing.why_synchronising)}".strip(),)
     yield "Frame size", (f"{sizes} on the wire.",)
-    yield "Overhead", (f"{overhead} besides the payload, before any stuffing or encoding.",)
+    yield "Overhead", (_overhead(sender),)
     yield "Single-byte errors that go unnoticed", _undetected(framing)
     yield "Ambiguity", (_AMBIGUITY[framing.cut_ambiguous],)
+
+
+def _overhead(sender: Sender) -> str:
+    code_bytes = code_size(sender.frame)
+    overhead = plural(sender.framing.overhead + SizeSet.exactly(code_bytes), "byte")
+    if code_bytes:
+        return f"{overhead} besides the payload, with the first COBS code byte."
+    return f"{overhead} besides the payload, before any stuffing or encoding."
 
 
 def _undetected(framing: Framing) -> Sentences:

@@ -1,8 +1,8 @@
 """Where things lie: parts in a frame, and payload bytes in the frame around them.
 
 Positions are bytes as a logic analyser counts them, from 0, wherever the wire allows it: with
-Base16 each byte of the payload takes two. Where stuffing can insert bytes, positions are those of
-the unstuffed frame.
+Base16 each byte of the payload takes two, and the code byte of COBS is a part. Where stuffing can
+insert bytes, positions are those of the unstuffed frame.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from itertools import accumulate
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
+    Cobs,
     Frame,
     LengthPart,
     LiteralPart,
@@ -21,12 +22,26 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.sizes import SizeSet
+from protogen.model.wire import FULL_GROUP, code_size
 from protogen.targets.markdown.words import code, span
 
 INDICES = "ijkl"
 """Names of the indices of nested arrays, outermost first."""
 
 _NOTHING = SizeSet.exactly(0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodePart(Part):
+    """What an encoding puts in front of its region. It is in no schema."""
+
+    size: int
+    name: str = "COBS code"
+
+
+def part_title(part: Part) -> str:
+    """Print the name of a part as tables show it."""
+    return part.name if isinstance(part, CodePart) else code(part.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +126,7 @@ def _from_last(distance: int) -> str:
 
 def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
     """Return where each part lies in frames with such a payload; absent parts are left out."""
-    sized = [(part, part_sizes(part, payload)) for part in frame.parts]
+    sized = [(part, part_sizes(part, payload)) for part in _parts_on_wire(frame)]
     present = [(part, sizes) for part, sizes in sized if _is_present(part, sizes)]
     shown = [sizes.times(SizeSet.exactly(wire_scale(frame, part))) for part, sizes in present]
     starts = accumulate(shown, initial=_NOTHING)
@@ -128,17 +143,32 @@ def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
     )
 
 
+def _parts_on_wire(frame: Frame) -> tuple[Part, ...]:
+    """Return the parts of a frame, and what its encoding adds."""
+    size = code_size(frame)
+    if frame.transparency is None or not size:
+        return frame.parts
+    first = [part.name for part in frame.parts].index(frame.transparency.first)
+    return (*frame.parts[:first], CodePart(size=size), *frame.parts[first:])
+
+
 def _is_present(part: Part, sizes: SizeSet) -> bool:
     return sizes.greatest > 0 or isinstance(part, PayloadPart)
 
 
 def part_sizes(part: Part, payload: SizeSet) -> SizeSet:
     """Return the unstuffed bytes of a part in frames whose payload has such sizes."""
-    if isinstance(part, LiteralPart):
-        return SizeSet.exactly(len(part.bytes))
-    if isinstance(part, ChecksumPart):
-        return _checksum_sizes(part, payload)
-    return SizeSet.exactly(part.type.size) if isinstance(part, NumberPart) else payload
+    match part:
+        case LiteralPart():
+            return SizeSet.exactly(len(part.bytes))
+        case ChecksumPart():
+            return _checksum_sizes(part, payload)
+        case NumberPart():
+            return SizeSet.exactly(part.type.size)
+        case CodePart():
+            return SizeSet.exactly(part.size)
+        case _:
+            return payload
 
 
 def _checksum_sizes(part: ChecksumPart, payload: SizeSet) -> SizeSet:
@@ -148,10 +178,10 @@ def _checksum_sizes(part: ChecksumPart, payload: SizeSet) -> SizeSet:
     return _NOTHING if payload.greatest == 0 else sizes | _NOTHING
 
 
-def length_value(frame: Frame, part: LengthPart, payload: SizeSet) -> int | None:
-    """Return what the length part holds in front of such a payload; None where that varies."""
+def length_values(frame: Frame, part: LengthPart, payload: SizeSet) -> SizeSet:
+    """Return what the length part can hold in front of such a payload."""
     counted = (part_sizes(frame.part(name), payload) for name in part.counts)
-    return sum(counted, start=_NOTHING).fixed
+    return sum(counted, start=_NOTHING)
 
 
 def wire_scale(frame: Frame, part: Part) -> int:
@@ -159,11 +189,25 @@ def wire_scale(frame: Frame, part: Part) -> int:
     transparency = frame.transparency
     if transparency is None or not isinstance(transparency.encoding, Base16):
         return 1
-    names = [item.name for item in frame.parts]
-    region = range(names.index(transparency.first), names.index(transparency.last) + 1)
-    return 2 if names.index(part.name) in region else 1
+    return 2 if part in _region(frame) else 1
+
+
+def _region(frame: Frame) -> tuple[Part, ...]:
+    """Return the parts that transparency covers."""
+    if frame.transparency is None:
+        return ()
+    names = [part.name for part in frame.parts]
+    first, last = frame.transparency.first, frame.transparency.last
+    return frame.parts[names.index(first) : names.index(last) + 1]
 
 
 def is_stuffed(frame: Frame) -> bool:
-    """Say whether bytes on the wire can lie further on than positions say."""
-    return frame.transparency is not None and not isinstance(frame.transparency.encoding, Base16)
+    """Say whether bytes on the wire can lie further on than positions say, by any number."""
+    encoding = None if frame.transparency is None else frame.transparency.encoding
+    return encoding is not None and not isinstance(encoding, Base16 | Cobs)
+
+
+def has_further_codes(frame: Frame, payload: SizeSet) -> bool:
+    """Say whether a region can be so long that COBS puts a second code byte into it."""
+    region = sum((part_sizes(part, payload) for part in _region(frame)), start=_NOTHING)
+    return bool(code_size(frame)) and region.greatest > FULL_GROUP

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from protogen.model.frame import Frame
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.model.wire import FULL_GROUP
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.anchors import message_link
 from protogen.targets.markdown.context import Context
 from protogen.targets.markdown.framing import sender_title
-from protogen.targets.markdown.layout import is_stuffed, wire_scale
+from protogen.targets.markdown.layout import has_further_codes, is_stuffed, wire_scale
 from protogen.targets.markdown.message import identity_text, overload_text
 from protogen.targets.markdown.table import Table, table
 from protogen.targets.markdown.words import code, rate, size_text
@@ -64,13 +64,19 @@ def _row(message: Message, sender: Sender, context: Context) -> tuple[str, ...]:
 
 def counting(protocol: Protocol) -> tuple[str, ...]:
     """Say what the byte numbers of the messages count."""
-    texts = {_counting(sender.frame): sender.name for sender in protocol.senders}
+    texts = {_counting(sender): sender.name for sender in protocol.senders}
     if len(texts) == 1:
         return tuple(texts)
     return tuple(f"From {code(name)}: {text}" for text, name in texts.items())
 
 
-def _counting(frame: Frame) -> str:
+def _counting(sender: Sender) -> str:
+    frame = sender.frame
+    if has_further_codes(frame, sender.framing.payload):
+        return (
+            "Frame bytes count from 0 on the wire, the COBS code byte included; behind each "
+            f"{FULL_GROUP} bytes without a zero, a further code byte moves what follows a byte on."
+        )
     if is_stuffed(frame):
         return (
             "Frame bytes count from 0 in the unstuffed frame; on the wire, every stuffed byte in "

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from protogen.model.frame import Frame, PayloadPart
 from protogen.model.messages import Message
-from protogen.targets.markdown.layout import Slot, slots
+from protogen.targets.markdown.layout import Slot, part_title, slots
 from protogen.targets.markdown.parts import part_type, role, value_in
 from protogen.targets.markdown.rows import Row, field_rows
 from protogen.targets.markdown.table import Table, table
 from protogen.targets.markdown.values import Anchors
-from protogen.targets.markdown.words import code, size_text
+from protogen.targets.markdown.words import size_text
 
 _HEADER = ("Frame byte", "Payload byte", "Size", "Type", "Name", "Unit", "Range", "Meaning")
 
@@ -29,7 +29,7 @@ def _part_cells(slot: Slot, frame: Frame, message: Message) -> tuple[str, ...]:
     part = slot.part
     value = value_in(frame, part, message.identity, message.sizes)
     size = size_text(slot.sizes)
-    return (slot.place, "", size, part_type(part), code(part.name), "", value, role(part))
+    return (slot.place, "", size, part_type(part), part_title(part), "", value, role(part))
 
 
 def _field_cells(row: Row, payload: Slot) -> tuple[str, ...]:

@@ -25,8 +25,9 @@ from protogen.model.frame import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Integer
+from protogen.model.wire import FULL_GROUP
 from protogen.targets.markdown.anchors import decision_link
-from protogen.targets.markdown.layout import Slot, length_value, slots
+from protogen.targets.markdown.layout import CodePart, Slot, length_values, part_title, slots
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.table import Table, table
 from protogen.targets.markdown.types import type_text
@@ -44,7 +45,8 @@ def frame_table(frame: Frame, payload: SizeSet) -> Table:
 def _frame_row(frame: Frame, slot: Slot) -> tuple[str, ...]:
     part = slot.part
     size = size_text(slot.sizes)
-    return (slot.place, size, part_type(part), code(part.name), part_value(part), meaning(part))
+    name = part_title(part)
+    return (slot.place, size, part_type(part), name, part_value(part), meaning(part))
 
 
 def part_type(part: Part) -> str:
@@ -68,8 +70,10 @@ def value_in(frame: Frame, part: Part, identity: Sequence[int], payload: SizeSet
     if isinstance(part, IdentityPart):
         return identity_value(part, identity[frame.identity.index(part)])
     if isinstance(part, LengthPart):
-        length = length_value(frame, part, payload)
-        return part_value(part) if length is None else code(hex_number(length, part.type.bits))
+        lengths = length_values(frame, part, payload)
+        if lengths.fixed is not None:
+            return code(hex_number(lengths.fixed, part.type.bits))
+        return f"{max(lengths.least, part.least)}..{min(lengths.greatest, part.greatest)}"
     return part_value(part)
 
 
@@ -109,6 +113,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (ValuePart, "Given by the sender."),
     (ChecksumPart, "Checksum."),
     (PayloadPart, "Payload."),
+    (CodePart, "How far on the next zero is, or the end."),
 )
 
 
@@ -122,6 +127,8 @@ def _roles(part: Part) -> tuple[str, ...]:
             return _number_roles(part)
         case ChecksumPart():
             return _checksum_roles(part)
+        case CodePart():
+            return (role(part),)
         case _:
             return ("The fields of the message.",)
 
@@ -166,7 +173,7 @@ def algorithm_text(spec: ChecksumSpec) -> str:
         case "sum":
             return f"the sum of all bytes modulo 256{start}"
         case "fletcher":
-            return "Fletcher-16"
+            return f"Fletcher-16, both sums modulo {spec.modulus}"
         case "crc":
             return f"{spec.name} ({_rocksoft(spec)})"
 
@@ -206,7 +213,14 @@ def _rule(encoding: Encoding, region: str) -> str:
         case Base16():
             return f"Each byte of {region} travels as two upper-case hex digits, the high one first"
         case Cobs():
-            return f"{region} is COBS-encoded as a whole, so that it holds no zero byte"
+            return f"{region} is COBS-encoded as a whole, so that it holds no zero byte. {_COBS}"
+
+
+_COBS = (
+    "The code byte in front says how many bytes on the first zero is, and each zero is replaced by "
+    "how many bytes on the next one is; the last says where the region ends. "
+    f"Where {FULL_GROUP} bytes hold no zero, the code is `FF`, and another one follows them"
+)
 
 
 def _escape_rule(escape: Escape) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from protogen.model.fields import Field
@@ -16,6 +16,8 @@ from protogen.targets.markdown.types import type_text
 from protogen.targets.markdown.values import Anchors, range_text, unit_text
 from protogen.targets.markdown.words import bounds, code, plural, short_number
 
+_UNNAMED = "value"
+"""The field of a case that is one type."""
 _UNKNOWN = "Unknown: the document does not say what it is."
 
 
@@ -84,13 +86,35 @@ def _element_rows(array: Array, place: Place, path: Path, anchors: Anchors) -> I
 
 def _switch_rows(switch: Switch, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
     for case in switch.cases:
-        yield _case_row(switch, case, place, path)
-        yield from _inner_rows(case.type, place, path.case(case.name), anchors)
+        yield from _case_rows(switch, case, place, path, anchors)
     otherwise = "invalid"
     if switch.rest is not None:
         otherwise = f"raw bytes to the end, at most {plural(switch.rest, 'byte')}"
     rest = SizeSet.between(0, switch.rest or 0)
     yield Row(place=place, sizes=rest, type=otherwise, name=f"{code(path.shown)} otherwise")
+
+
+def _case_rows(
+    switch: Switch, case: Case, place: Place, path: Path, anchors: Anchors
+) -> Iterator[Row]:
+    whole = _case_row(switch, case, place, path)
+    inner = path.case(case.name)
+    alone = _only_value(case.type)
+    if alone is None:
+        yield whole
+        yield from _inner_rows(case.type, place, inner, anchors)
+        return
+    # The schema gave the case a type and no name; the model makes it a struct of one field.
+    inner = Path(path.shown, inner.field(alone.name).anchor)
+    yield replace(_field_row(alone, place, inner, anchors), name=whole.name)
+    yield from _inner_rows(alone.type, place, inner, anchors)
+
+
+def _only_value(kind: Type) -> Field | None:
+    """Return the field of a case that is a single type."""
+    if isinstance(kind, Struct) and [field.name for field in kind.fields] == [_UNNAMED]:
+        return kind.fields[0]
+    return None
 
 
 def _case_row(switch: Switch, case: Case, place: Place, path: Path) -> Row:

@@ -272,9 +272,18 @@ def _physical(field: Field, taken: frozenset[str]) -> Attribute:
 
 
 def _physical_range(field: Field) -> str:
+    """The range of the readings: no special value at its ends, as none of them is a reading."""
     if field.least is None or field.greatest is None:
         return ""
-    ends = sorted(float(end * field.scale + field.offset) for end in (field.least, field.greatest))
+    special = {item.value for item in field.special}
+    least, greatest = field.least, field.greatest
+    while least in special and least <= greatest:
+        least += 1
+    while greatest in special and least <= greatest:
+        greatest -= 1
+    if least > greatest:
+        return ""
+    ends = sorted(float(end * field.scale + field.offset) for end in (least, greatest))
     return f", {ends[0]:.10g}..{ends[1]:.10g}"
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 from pathlib import PurePosixPath
-
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
+from protogen.targets.printing import environment
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring
 
@@ -33,17 +31,41 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 
 def _file(protocol: Protocol) -> File:
     path = PurePosixPath(f"{protocol.name}.py")
-    return File(path, source(protocol), banner(PYTHON, [protocol]))
+    return File(path, kept_source(protocol), banner(PYTHON, [protocol]))
+
+
+_PRINTED: dict[int, tuple[Protocol, str]] = {}
+"""What was printed last, by the protocol's address; a protocol that is kept keeps its own."""
+_KEPT = 64
+
+
+def kept_source(protocol: Protocol) -> str:
+    """The text of a protocol's module, which is printed once for whoever asks again.
+
+    To verify a schema's examples takes the module that is then written.
+    """
+    found = _PRINTED.get(id(protocol))
+    if found is not None and found[0] is protocol:
+        return found[1]
+    text = source(protocol)
+    while len(_PRINTED) >= _KEPT:
+        del _PRINTED[next(iter(_PRINTED))]
+    _PRINTED[id(protocol)] = (protocol, text)
+    return text
 
 
 def source(protocol: Protocol, runtime: str = RUNTIME) -> str:
     """The text of a protocol's module; `runtime` is where it imports the runtime from."""
     module = view(protocol)
-    return _template().render(
-        module=module,
-        runtime=runtime,
-        encode_doc=docstring(_encode_doc(module), 4),
-        encoder_doc=docstring(_encoder_doc(module), 8),
+    return (
+        environment("protogen.targets.python")
+        .get_template("module.py.j2")
+        .render(
+            module=module,
+            runtime=runtime,
+            encode_doc=docstring(_encode_doc(module), 4),
+            encoder_doc=docstring(_encoder_doc(module), 8),
+        )
     )
 
 
@@ -59,16 +81,3 @@ def _encoder_doc(module: Module) -> list[str]:
     if not module.counts:
         return ["The next frame."]
     return ["The next frame. A given counter is used once and does not change the count."]
-
-
-@cache
-def _template() -> Template:
-    environment = Environment(
-        loader=PackageLoader("protogen.targets.python"),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        undefined=StrictUndefined,
-        autoescape=False,  # noqa: S701 - the text is Python; the views escape it
-    )
-    return environment.get_template("module.py.j2")

@@ -79,7 +79,8 @@ def algorithm(spec: ChecksumSpec) -> str:
         case "sum":
             return call("_checksum.Sum8", init=init, negated="True" if spec.negated else None)
         case "fletcher":
-            return "_checksum.Fletcher16()"
+            modulus = None if spec.modulus == 255 else str(spec.modulus)
+            return call("_checksum.Fletcher16", modulus=modulus)
     return _crc(spec)
 
 

@@ -8,14 +8,14 @@ import sys
 from types import ModuleType
 
 from protogen.model.protocol import Protocol
-from protogen.targets.python.emit import source
+from protogen.targets.python.emit import kept_source
 
 _NUMBERS = itertools.count()
 
 
 def module_of(protocol: Protocol) -> ModuleType:
     """Import the module that would be generated for `protocol`."""
-    text = source(protocol)
+    text = kept_source(protocol)
     name = f"protogen_live_{next(_NUMBERS)}_{protocol.name}"
     filename = f"<generated {protocol.name}>"
     module = ModuleType(name)

@@ -16,6 +16,8 @@ from protogen.targets.output import File
 from protogen.targets.python.emit import RUNTIME, source
 
 _COPY = "_runtime"
+_NOQA = re.compile(r"  # noqa\b.*$", re.MULTILINE)
+"""They name rules of this project; elsewhere a linter reports them as unused."""
 _IMPORT = re.compile(rf"^(\s*from ){re.escape(RUNTIME)}(\.| )", re.MULTILINE)
 
 
@@ -39,7 +41,7 @@ def _runtime() -> list[tuple[str, str]]:
     """The modules of the runtime, importing each other as neighbours."""
     modules = sorted(files(RUNTIME).iterdir(), key=lambda item: item.name)
     return [
-        (item.name, _relative(item.read_text("utf-8")))
+        (item.name, _relative(_NOQA.sub("", item.read_text("utf-8"))))
         for item in modules
         if item.name.endswith(".py")
     ]

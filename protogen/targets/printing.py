@@ -1,0 +1,39 @@
+"""How templates are found and printed: the same for every target."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from jinja2 import (
+    BytecodeCache,
+    Environment,
+    FileSystemBytecodeCache,
+    PackageLoader,
+    StrictUndefined,
+)
+
+
+@cache
+def environment(package: str) -> Environment:
+    """The templates of a target's package.
+
+    Nothing is escaped: the views give text that is right for its language already. Compiled
+    templates are kept between runs where there is a place for it, because compiling them takes
+    longer than printing.
+    """
+    return Environment(
+        loader=PackageLoader(package),
+        autoescape=False,  # noqa: S701
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        bytecode_cache=_kept(),
+    )
+
+
+def _kept() -> BytecodeCache | None:
+    try:
+        return FileSystemBytecodeCache(pattern="__protogen_%s.cache")
+    except (OSError, RuntimeError):
+        return None  # No folder that only this user can write to.
