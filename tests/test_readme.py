@@ -5,6 +5,9 @@
     python    statements, run in order; a section shares its names. The comment behind an
               expression, or below it, is its value; `Error: message` is what it raises.
     text      what the Python in front of it prints
+    c         `/* NAME.c */` in the first line: a program, built with the section's schemas; it exits
+              with 0
+    cpp       `// NAME.ino` in the first line: an Arduino sketch
     console   `$ command` lines, each with what it prints
     sh        `make` commands
 
@@ -31,6 +34,7 @@ from pathlib import Path
 
 import pytest
 from cli_support import start
+from tooling import require_tool
 
 from protogen.compiler import compile_file
 from protogen.schema.json_schema import json_schema
@@ -288,6 +292,69 @@ def _value(line: int, comments: dict[int, tuple[str, bool]]) -> str:
     return " ".join(found)
 
 
+# --- C ----------------------------------------------------------------------------------------------
+
+ARDUINO = """\
+// Stands in for the core: the port is standard input and output, the pins are silent.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#define HIGH 1
+#define LOW 0
+#define OUTPUT 1
+#define LED_BUILTIN 13
+static inline void pinMode(int, int) {}
+static inline void digitalWrite(int, int) {}
+struct Port {
+    int next = -1;
+    void begin(long) {}
+    int available() { return next >= 0 || (next = std::getchar()) >= 0; }
+    int read() { int byte = next; next = -1; return byte; }
+    void write(uint8_t byte) { std::putchar(byte); }
+};
+static Port Serial;
+"""
+
+
+class TestC:
+    @pytest.mark.parametrize("section", with_blocks("c"), ids=str)
+    def test_runs(self, section: Section, workspace: Path) -> None:
+        compiler = require_tool("cc")
+        for block in section.blocks:
+            if block.language == "c":
+                name = re.match(r"/\* (\w+\.c) \*/", block.text)[1]  # type: ignore[index]
+                (workspace / name).write_text(block.text)
+                flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Igenerated/c"]
+                sources = [name, "generated/c/rover.c"]
+                done = run([compiler, *flags, *sources, "-o", "program"], workspace)
+                assert done.returncode == 0, done.stdout
+                assert run(["./program"], workspace).returncode == 0
+
+    def test_the_sketch_acknowledges_each_command(self, workspace: Path) -> None:
+        sketch = next(block for block in blocks("cpp") if block.text.startswith("// blink.ino"))
+        main = "int main() { setup(); loop(); return 0; }"
+        (workspace / "Arduino.h").write_text(ARDUINO)
+        (workspace / "sketch.cpp").write_text(f'#include "Arduino.h"\n{sketch.text}\n{main}\n')
+        made = run(
+            [*"protogen generate blink.yaml --target c --events messages -q".split()], workspace
+        )
+        assert made.returncode == 0, made.stdout
+        cc, cpp = require_tool("cc"), require_tool("g++")
+        run([cc, "-std=c99", "-Os", "-c", "generated/c/blink.c", "-o", "blink.o"], workspace)
+        flags = ["-std=c++11", "-Wall", "-Wextra", "-Werror", "-Igenerated/c"]
+        built = run([cpp, *flags, "sketch.cpp", "blink.o", "-o", "sketch"], workspace)
+        assert built.returncode == 0, built.stdout
+        # Noise, then `led` on with counter 7 and off with 8; the sums by hand:
+        # 03 + 07 + 01 + 01 = 0C -> F4, 03 + 08 + 01 + 00 = 0C -> F4.
+        line = bytes.fromhex("AA 55 03 07 01 01 F4 55 03 08 01 00 F4")
+        answer = subprocess.run(
+            ["./sketch"], cwd=workspace, input=line, stdout=subprocess.PIPE, timeout=60, check=True
+        ).stdout
+        # Two acks: 03 + 07 + 02 + 01 = 0D -> F3, 03 + 08 + 02 + 00 = 0D -> F3.
+        assert answer == bytes.fromhex("55 03 07 02 01 F3 55 03 08 02 00 F3")
+
+
 # --- the command line -----------------------------------------------------------------------------
 
 
@@ -324,7 +391,7 @@ class TestMake:
 class TestDocuments:
     def test_no_block_escapes_these_tests(self) -> None:
         languages = {block.language for section in sections() for block in section.blocks}
-        assert languages <= {"yaml", "python", "text", "console", "sh"}
+        assert languages <= {"yaml", "python", "text", "console", "sh", "c", "cpp"}
         for document in DOCUMENTS:
             fences = re.findall(r"^\s*```", text_of(document), re.MULTILINE)
             assert len(fences) == 2 * len(_FENCE.findall(text_of(document)))

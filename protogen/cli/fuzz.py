@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -36,7 +35,8 @@ def fuzz(
     """Take samples of every message there and back.
 
     Values to a payload and back, values to a frame, through a decoder and back; by every engine
-    that there is. The samples hold the boundaries of every field. Exits with 1 if anything comes
+    that there is: generated Python, and generated C where there is a C compiler, which has to make
+    the same frames. The samples hold the boundaries of every field. Exits with 1 if anything comes
     back in another way.
     """
     from random import SystemRandom
@@ -48,8 +48,9 @@ def fuzz(
     if message is not None:
         find_message(codec.protocol, message)
     run = Run(examples, SystemRandom().randrange(_GREATEST_SEED) if seed is None else seed, message)
-    failed = [engine for engine in _engines(codec) if _fuzz(codec, engine, run)]
-    return FINDINGS if failed else CLEAN
+    engines, are_whole = _engines(codec)
+    failed = [engine for engine in engines if _fuzz(codec, engine, run, engines[0])]
+    return FINDINGS if failed or not are_whole else CLEAN
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,27 +62,39 @@ class Run:
     message: str | None
 
 
-def _engines(codec: Codec) -> Iterator[Engine]:
-    """Yield every engine that there is for the schema."""
+def _engines(codec: Codec) -> tuple[list[Engine], bool]:
+    """Return every engine that there is, and whether none is broken. The first is the reference."""
+    from protogen.fuzzing.c_engine import CEngine
+    from protogen.fuzzing.c_library import CompileError, find_compiler
     from protogen.fuzzing.python_engine import PythonEngine
 
-    yield PythonEngine(codec.runtime)
+    python = PythonEngine(codec.runtime)
+    compiler = find_compiler()
+    if compiler is None:
+        typer.echo("c: there is no C compiler (cc, gcc or clang), so generated C is not tried")
+        return [python], True
+    try:
+        return [python, CEngine(codec.protocol, compiler)], True
+    except CompileError as error:
+        typer.echo(f"c: {compiler} refuses the generated C:\n{error}", err=True)
+        return [python], False
 
 
-def _fuzz(codec: Codec, engine: Engine, run: Run) -> bool:
+def _fuzz(codec: Codec, engine: Engine, run: Run, first: Engine) -> bool:
     """Try an engine, and print what became of it; return whether anything failed."""
     from protogen.cli.progress import progress
     from protogen.fuzzing.trips import case_count, cases, smallest, try_case
 
     protocol = codec.protocol
+    reference = None if engine is first else first
     total = case_count(protocol, run.examples, run.message)
     failures: dict[str, Outcome] = {}
     tried = refused = 0
     with progress(f"{protocol.name} through {engine.name}", total) as advance:
         for case in cases(protocol, run.examples, run.seed, run.message):
-            outcome = try_case(engine, protocol, case)
+            outcome = try_case(engine, protocol, case, reference)
             if outcome.problem and case.message not in failures:
-                failures[case.message] = smallest(engine, protocol, outcome)
+                failures[case.message] = smallest(engine, protocol, outcome, reference)
             tried += 1
             refused += bool(outcome.refused)
             advance(1)

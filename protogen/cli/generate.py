@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from protogen.cli import c_options
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
 from protogen.cli.options import Quiet
 from protogen.cli.schemas import print_problems, schema_files
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
-    from protogen.model.protocol import Protocol
     from protogen.targets import Target
     from protogen.targets.output import File, Report
 
@@ -37,7 +37,7 @@ class Job:
     """Whether other files of ours in the folder are stale: not if only some schemas were named."""
 
 
-def generate(
+def generate(  # noqa: PLR0913 - each option is one argument
     schemas: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -61,17 +61,30 @@ def generate(
         bool,
         typer.Option("--standalone", help="Python that carries its runtime along."),
     ] = False,
+    c_style: c_options.Style = None,
+    events: c_options.Events = None,
+    only: c_options.Only = None,
+    sender: c_options.Senders = None,
+    c_stubs: c_options.Stubs = False,
+    depfile: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Also write what was read, in the form that make and ninja take."
+        ),
+    ] = None,
     quiet: Quiet = False,
 ) -> int:
     """Write a codec and a reference for each schema.
 
+    Nothing is written if a schema has an error or one of its examples does not hold.
     Files that are current are not touched. Where only folders of schemas are given, files that were
     generated once and no longer are get removed; where single schemas are given, other files stay.
     """
     paths = schemas or [SCHEMAS]
-    targets = _targets(target, standalone=standalone)
+    choice = c_options.Choice(c_style, events, only, sender, c_stubs)
+    targets = _targets(target, choice, standalone=standalone)
     with _without_garbage_collection():
-        return _run(paths, targets, output, _Mode(check=check, diff=diff, quiet=quiet))
+        return _run(paths, targets, output, _Mode(check, diff, quiet, depfile))
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +92,7 @@ class _Mode:
     check: bool
     diff: bool
     quiet: bool
+    depfile: Path | None
 
 
 @contextmanager
@@ -92,17 +106,22 @@ def _without_garbage_collection() -> Iterator[None]:
 
 
 def _run(paths: Sequence[Path], targets: Sequence[Target], output: Path, mode: _Mode) -> int:
-    protocols = _compile(schema_files(paths))
-    if protocols is None:
+    compilations = _compile(schema_files(paths))
+    protocols = [item.protocol for item in compilations if item.protocol is not None]
+    if len(protocols) < len(compilations):
         return FINDINGS
     prune = all(path.is_dir() for path in paths)
     jobs = [Job(item.emit(protocols), output / item.folder, prune) for item in targets]
+    if mode.depfile is not None:
+        _write_depfile(mode.depfile, jobs, compilations)
     if mode.diff:
         return _print_diff(jobs)
     return _check(jobs, quiet=mode.quiet) if mode.check else _write(jobs, quiet=mode.quiet)
 
 
-def _targets(names: Sequence[str] | None, *, standalone: bool) -> list[Target]:
+def _targets(
+    names: Sequence[str] | None, choice: c_options.Choice, *, standalone: bool
+) -> list[Target]:
     from protogen.problems import hint_for
     from protogen.targets import TARGETS, LazyTarget
 
@@ -116,22 +135,44 @@ def _targets(names: Sequence[str] | None, *, standalone: bool) -> list[Target]:
     if standalone:
         folder = targets[_PYTHON].folder
         targets[_PYTHON] = LazyTarget(_PYTHON, folder, "protogen.targets.python.standalone")
+    if not choice.is_default:
+        if c_options.NAME not in targets:
+            raise UsageError("--c-style, --events, --only, --sender and --c-stubs are for C")
+        targets[c_options.NAME] = c_options.ChosenC(choice)
     return list(targets.values())
 
 
-def _compile(files: Sequence[Path]) -> list[Protocol] | None:
-    """Return the protocols; None, with the problems printed, if any of them has an error."""
+def _compile(files: Sequence[Path]) -> list[Compilation]:
+    """Compile the schemas and print their problems.
+
+    Pages show the examples as verified, so they are verified before anything is written.
+    """
     from protogen.cli.progress import progress
     from protogen.compiler import compile_file
 
     compilations: list[Compilation] = []
     with progress("compiling", len(files)) as advance:
         for file in files:
-            compilations.append(compile_file(file))
+            compilations.append(compile_file(file, examples=True))
             advance(1)
     print_problems(compilations)
-    protocols = [item.protocol for item in compilations if item.protocol is not None]
-    return protocols if len(protocols) == len(compilations) else None
+    return compilations
+
+
+def _write_depfile(path: Path, jobs: Sequence[Job], compilations: Sequence[Compilation]) -> None:
+    """Write a rule of make: the generated files depend on the schemas and those they extend."""
+    made = [str(job.folder / file.path) for job in jobs for file in job.files]
+    read = dict.fromkeys(file for item in compilations for file in item.sources.files)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    rule = f"{_joined(made)}: {_joined(read)}\n"
+    path.write_text(rule, encoding="utf-8", newline="\n")
+
+
+def _joined(paths: Iterable[str]) -> str:
+    """Paths in a rule: `$` stands twice, and a backslash in front of a blank or `#`."""
+    doubled = (path.replace("$", "$$") for path in paths)
+    escaped = (path.replace(" ", "\\ ").replace("#", "\\#") for path in doubled)
+    return " \\\n  ".join(escaped)
 
 
 def _print_diff(jobs: Sequence[Job]) -> int:

@@ -7,6 +7,7 @@ import struct
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from random import Random
 from typing import Any
 
@@ -192,8 +193,8 @@ def _float_choices(field: Field, type: Float) -> Choices:
     if isinstance(field.const, int | float):
         return _only(float(field.const))
     if field.ranged and field.least is not None and field.greatest is not None:
-        low = _fitting(float(field.least), type.bits, math.inf)
-        high = _fitting(float(field.greatest), type.bits, -math.inf)
+        low = _fitting(field.least, type.bits, math.inf)
+        high = _fitting(field.greatest, type.bits, -math.inf)
         # Rounding to 32 bits never leaves two numbers of 32 bits.
         return Choices((low, high), lambda random: _rounded(random.uniform(low, high), type.bits))
     form = "<f" if type.bits == 32 else "<d"
@@ -204,13 +205,15 @@ def _float_choices(field: Field, type: Float) -> Choices:
     )
 
 
-def _fitting(value: float, bits: int, towards: float) -> float:
+def _fitting(value: Fraction, bits: int, towards: float) -> float:
     """A number of so many bits that is `value`, or close to it in this direction."""
-    rounded = _rounded(value, bits)
-    sign = math.copysign(1, towards)
-    if (rounded - value) * sign >= 0:
+    rounded = _rounded(float(value), bits)
+    sign = 1 if towards > 0 else -1
+    if (Fraction(rounded) - value) * sign >= 0:
         return rounded
-    # One or two steps of 32-bit numbers; with 64 bits nothing was rounded.
+    if bits == 64:
+        return math.nextafter(rounded, towards)
+    # One or two steps of 32-bit numbers.
     return _rounded(rounded + sign * max(abs(rounded) * 2**-23, 2**-149), bits)
 
 

@@ -64,8 +64,21 @@ def _messages(protocol: Protocol, only: str | None) -> Iterator[tuple[Sender, Me
                 yield sender, message
 
 
-def try_case(engine: Engine, protocol: Protocol, case: Case) -> Outcome:
-    """Take one case through an engine, there and back."""
+def try_case(
+    engine: Engine, protocol: Protocol, case: Case, reference: Engine | None = None
+) -> Outcome:
+    """Take one case through an engine, there and back; a reference has to make the same frame."""
+    outcome = _try_alone(engine, protocol, case)
+    if reference is None or outcome.problem:
+        return outcome
+    expected = _try_alone(reference, protocol, case)
+    if outcome.frame == expected.frame:
+        return outcome
+    made = f"makes {expected.frame.hex()}" if expected.frame else f"refuses: {expected.refused}"
+    return replace(outcome, problem=f"another engine, {reference.name}, {made}")
+
+
+def _try_alone(engine: Engine, protocol: Protocol, case: Case) -> Outcome:
     try:
         return _trip(engine, protocol.sender(case.sender), case)
     except Refused as error:
@@ -136,17 +149,19 @@ def same(left: Any, right: Any) -> bool:
     return bool(left == right)
 
 
-def smallest(engine: Engine, protocol: Protocol, outcome: Outcome) -> Outcome:
+def smallest(
+    engine: Engine, protocol: Protocol, outcome: Outcome, reference: Engine | None = None
+) -> Outcome:
     """Replace values by plain ones as long as the case fails in the same way."""
     message = protocol.message(outcome.case.message)
     frame = protocol.sender(outcome.case.sender).frame
     plain_values, plain_parts = next(samples(message, frame, Random(0)))  # noqa: S311
     for name, value in plain_values.items():
         case = replace(outcome.case, values={**outcome.case.values, name: value})
-        outcome = _if_alike(try_case(engine, protocol, case), outcome)
+        outcome = _if_alike(try_case(engine, protocol, case, reference), outcome)
     for name, value in plain_parts.items():
         case = replace(outcome.case, parts={**outcome.case.parts, name: value})
-        outcome = _if_alike(try_case(engine, protocol, case), outcome)
+        outcome = _if_alike(try_case(engine, protocol, case, reference), outcome)
     return outcome
 
 

@@ -51,6 +51,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
         target.name: target
         for target in (
             LazyTarget("python", "python", "protogen.targets.python.emit"),
+            LazyTarget("c", "c", "protogen.targets.c.emit"),
             LazyTarget("markdown", "markdown", "protogen.targets.markdown.emit"),
         )
     }

@@ -1,0 +1,238 @@
+"""Requests to a driver of generated C, and what its answers mean.
+
+A call is bytes to send and a function that reads the answer, so that calls can be made one by one,
+or all at once on a machine that takes a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeVar
+
+from protogen.fuzzing.c_driver import DrivenDecoder, DrivenPart, Driver
+from protogen.fuzzing.c_values import Answers, number, pack, unpack
+from protogen.fuzzing.samples import Values
+
+OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
+"""The results of generated functions."""
+RESULTS = {"size": SIZE, "value": VALUE, "encoding": ENCODING}
+"""Reasons of the Python runtime as results."""
+KINDS = ("message", "unknown", "invalid")
+REASONS = (
+    "",
+    "size",
+    "value",
+    "encoding",
+    "noise",
+    "checksum",
+    "length",
+    "stuffing",
+    "truncated",
+)
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Generic[T]):
+    """A request, and what reads its answer."""
+
+    request: bytes
+    read: Callable[[Answers], T]
+
+
+@dataclass(frozen=True, slots=True)
+class Encoded:
+    """What came of encoding."""
+
+    result: int
+    data: bytes
+    intact: bool = True
+    """Nothing was written outside of the buffer, and no size where there is none."""
+    exact: bool = True
+    """No other byte of the buffer was changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """What came of sending byte by byte."""
+
+    result: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Decoded:
+    """What came of decoding; `intact`: where it failed, the struct was left alone."""
+
+    result: int
+    values: Values | None
+    intact: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class CEvent:
+    """An event; what is None is not part of it, or was left out by `--events messages`."""
+
+    kind: str
+    offset: int | None = None
+    size: int | None = None
+    reason: str = ""
+    message: str = ""
+    parts: Values | None = None
+    payload: bytes | None = None
+    values: Values | None = None
+    """What the message's handler was given."""
+
+
+Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush"]]
+"""What is done with a decoder."""
+_STEPS = {"feed": 1, "push": 2, "flush": 3}
+
+
+class Calls:
+    """The calls that a driver takes. `room`: the most bytes that can be fed at once."""
+
+    def __init__(self, driver: Driver, room: int = 1 << 16) -> None:
+        self._driver = driver
+        self._room = room
+
+    # --- payloads -------------------------------------------------------------------------------
+
+    def encode(self, message: str, values: Values, capacity: int | None = None) -> Call[Encoded]:
+        """Encode a payload. Raises Unfit where no struct can have the values."""
+        index = self._driver.message(message)
+        fields = self._driver.messages[index].model
+        room = fields.sizes.greatest if capacity is None else capacity
+        head = b"P" + number(index, 2) + number(room, 4)
+        return Call(head + pack(fields.fields, values), _read_encoded)
+
+    def decode(self, message: str, payload: bytes) -> Call[Decoded]:
+        """Decode a payload."""
+        index = self._driver.message(message)
+        request = b"D" + number(index, 2) + number(len(payload), 4) + payload
+        return Call(request, lambda answers: self._decoded(answers, index))
+
+    def _decoded(self, answers: Answers, index: int) -> Decoded:
+        result = answers.number(1)
+        if result != OK:
+            return Decoded(result, None, bool(answers.number(1)))
+        return Decoded(result, unpack(self._driver.messages[index].model.fields, answers))
+
+    # --- frames ---------------------------------------------------------------------------------
+
+    def frame(
+        self,
+        sender: str,
+        message: str,
+        values: Values,
+        parts: Mapping[str, int],
+        capacity: int | None = None,
+    ) -> Call[Encoded]:
+        """Make a frame; raises Unfit."""
+        frame = self._driver.frame(sender, message)
+        room = frame.room if capacity is None else capacity
+        head = b"F" + number(frame.index, 2) + number(room, 4)
+        return Call(head + self._content(frame.parts, message, values, parts), _read_encoded)
+
+    def sends(self, sender: str, message: str) -> bool:
+        """Whether the message can be sent byte by byte."""
+        return bool(self._driver.frame(sender, message).send)
+
+    def send(
+        self, sender: str, message: str, values: Values, parts: Mapping[str, int]
+    ) -> Call[Sent]:
+        """Send a frame byte by byte; raises Unfit."""
+        frame = self._driver.frame(sender, message)
+        head = b"S" + number(frame.index, 2)
+        return Call(head + self._content(frame.parts, message, values, parts), _read_sent)
+
+    def _content(
+        self,
+        taken: Iterable[DrivenPart],
+        message: str,
+        values: Values,
+        parts: Mapping[str, int],
+    ) -> bytes:
+        numbers = [number(parts[part.name], part.size) for part in taken]
+        model = self._driver.messages[self._driver.message(message)].model
+        return b"".join(numbers) + pack(model.fields, values)
+
+    # --- events ---------------------------------------------------------------------------------
+
+    def events(self, sender: str, steps: Iterable[Step]) -> Call[list[list[CEvent]]]:
+        """Take a new decoder through some steps; the events of each of them."""
+        decoder = self._driver.decoder(sender)
+        request = [b"X", number(decoder.index, 1)]
+        counts = []
+        for step in steps:
+            portions = [b""] if step[0] == "flush" else self._portions(step[1])
+            for portion in portions:
+                request.append(number(_STEPS[step[0]], 1))
+                if step[0] != "flush":
+                    request.append(number(len(portion), 4) + portion)
+            counts.append(len(portions))
+        request.append(b"\0")
+        return Call(b"".join(request), lambda answers: self._events(answers, decoder, counts))
+
+    def _portions(self, data: bytes) -> list[bytes]:
+        places = range(0, max(1, len(data)), self._room)
+        return [data[place : place + self._room] for place in places]
+
+    def _events(
+        self, answers: Answers, decoder: DrivenDecoder, counts: list[int]
+    ) -> list[list[CEvent]]:
+        found = []
+        for count in counts:
+            events: list[CEvent] = []
+            for _ in range(count):
+                while answers.take(1) != b",":
+                    events.append(self._event(answers, decoder))
+            found.append(events)
+        return found
+
+    def _event(self, answers: Answers, decoder: DrivenDecoder) -> CEvent:
+        kind, reason, offset, size = "message", "", None, None
+        if decoder.all_events:
+            kind, reason = KINDS[answers.number(1)], REASONS[answers.number(1)]
+            offset, size = answers.number(4), answers.number(4)
+        index = answers.number(2)
+        if kind == "invalid":
+            return CEvent(kind, offset, size, reason)
+        parts = _parts(answers, decoder)
+        payload = answers.data()
+        message, values = "", None
+        if index < len(self._driver.messages):
+            message = self._driver.messages[index].model.name
+        if answers.take(1) == b"H":
+            values = self._handled(answers, decoder, index, parts)
+            assert answers.take(1) == b"."
+        return CEvent(kind, offset, size, reason, message, parts, payload, values)
+
+    def _handled(
+        self, answers: Answers, decoder: DrivenDecoder, index: int, parts: Values
+    ) -> Values:
+        """The values that a handler was given, which is that of the message."""
+        assert answers.number(1) == 1
+        assert answers.number(2) == index
+        assert _parts(answers, decoder) == parts
+        return unpack(self._driver.messages[index].model.fields, answers)
+
+
+def _parts(answers: Answers, decoder: DrivenDecoder) -> Values:
+    return {part.name: answers.number(part.size) for part in decoder.parts}
+
+
+def _read_encoded(answers: Answers) -> Encoded:
+    result, data = answers.number(1), answers.data()
+    intact, exact = answers.number(1), answers.number(1)
+    return Encoded(result, data, bool(intact), bool(exact))
+
+
+def _read_sent(answers: Answers) -> Sent:
+    data = bytearray()
+    while (mark := answers.number(1)) != 0:
+        assert mark == 1, "the writer was called with something else"
+        data += answers.take(1)
+    return Sent(answers.number(1), bytes(data))

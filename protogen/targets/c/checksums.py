@@ -1,0 +1,119 @@
+"""Checksums as C functions: a register, what a byte does to it, and what is sent in the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.targets.c.expressions import unsigned_type, width_of
+
+
+@dataclass(frozen=True, slots=True)
+class Checksum:
+    """One algorithm.
+
+    CRCs whose bytes enter most significant bit first are kept in the upper bits of the register, so
+    that no width needs a mask.
+    """
+
+    function: str
+    about: str
+    kind: str
+    register: str
+    """The register's type."""
+    result: str
+    """The type of the result."""
+    width: int
+    init: str
+    steps: tuple[str, ...]
+    """Statements that take `byte` into `sum`."""
+    final: str
+    """The result, made of `sum`."""
+    loops: bool
+    """Whether the steps need a counter `bit`."""
+    reverses: bool
+    """Whether the result needs its bits reversed."""
+
+
+def checksum_of(spec: ChecksumSpec, function: str) -> Checksum:
+    """The C of an algorithm, under that name."""
+    makers = {"xor": _xor, "sum": _sum, "fletcher": _fletcher, "crc": _crc}
+    return makers[spec.kind](spec, function)
+
+
+def _xor(spec: ChecksumSpec, function: str) -> Checksum:
+    return _simple(spec, function, "sum = (uint8_t)(sum ^ byte);", "sum")
+
+
+def _sum(spec: ChecksumSpec, function: str) -> Checksum:
+    final = "(uint8_t)(0U - sum)" if spec.negated else "sum"
+    return _simple(spec, function, "sum = (uint8_t)(sum + byte);", final)
+
+
+def _simple(spec: ChecksumSpec, function: str, step: str, final: str) -> Checksum:
+    init = f"0x{spec.init:02X}"
+    return Checksum(
+        function, spec.name, spec.kind, "uint8_t", "uint8_t", 8, init, (step,), final, False, False
+    )
+
+
+def _fletcher(spec: ChecksumSpec, function: str) -> Checksum:
+    """The low byte is the sum of the bytes, the high byte the sum of those sums."""
+    steps = (
+        f"const uint8_t low = (uint8_t)(((sum & 0xFFU) + byte) % {spec.modulus}U);",
+        f"const uint8_t high = (uint8_t)(((sum >> 8) + low) % {spec.modulus}U);",
+        "sum = (uint16_t)((uint16_t)(high << 8) | low);",
+    )
+    return Checksum(
+        function, spec.name, spec.kind, "uint16_t", "uint16_t", 16, "0", steps, "sum", False, False
+    )
+
+
+def _crc(spec: ChecksumSpec, function: str) -> Checksum:
+    bits = width_of(spec.width)
+    type_ = unsigned_type(spec.width)
+    spare = bits - spec.width
+    digits = bits // 4
+    if spec.refin:
+        poly, init = _reversed(spec.poly, spec.width), _reversed(spec.init, spec.width)
+        enter = f"sum = ({type_})(sum ^ byte);"
+        advance = (
+            f"sum = ({type_})((sum & 1U) != 0U ? "
+            f"({type_})(sum >> 1) ^ {_hex(poly, bits, digits)} : ({type_})(sum >> 1));"
+        )
+        register = "sum"
+    else:
+        poly, init = spec.poly << spare, spec.init << spare
+        entering = "byte" if bits == 8 else f"({type_})(({type_})byte << {bits - 8})"
+        enter = f"sum = ({type_})(sum ^ {entering});"
+        top = _hex(1 << (bits - 1), bits, digits)
+        advance = (
+            f"sum = ({type_})((sum & {top}) != 0U ? "
+            f"({type_})(({type_})(sum << 1) ^ {_hex(poly, bits, digits)}) : ({type_})(sum << 1));"
+        )
+        register = f"({type_})(sum >> {spare})" if spare else "sum"
+    reverses = spec.refin != spec.refout
+    result = f"{function}_reversed({register})" if reverses else register
+    if spec.xorout:
+        result = f"({type_})({result} ^ {_hex(spec.xorout, bits, digits)})"
+    return Checksum(
+        function,
+        spec.name,
+        spec.kind,
+        type_,
+        type_,
+        spec.width,
+        _hex(init, bits, digits),
+        (enter, advance),
+        result,
+        True,
+        reverses,
+    )
+
+
+def _hex(value: int, bits: int, digits: int) -> str:
+    return f"UINT{bits}_C(0x{value:0{digits}X})"
+
+
+def _reversed(value: int, width: int) -> int:
+    return int(f"{value:0{width}b}"[::-1], 2)

@@ -1,0 +1,104 @@
+"""Prints a header and a source for each protocol, or one header that holds both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import PurePosixPath
+
+from jinja2 import Environment
+
+from protogen.model.protocol import Protocol
+from protogen.model.selection import select
+from protogen.targets.banner import C, banner
+from protogen.targets.c.framing import FramingView, framing_view
+from protogen.targets.c.lines import prototype
+from protogen.targets.c.module import Module, view
+from protogen.targets.c.options import COptions
+from protogen.targets.c.package import package_files
+from protogen.targets.output import File
+from protogen.targets.printing import environment
+
+_BAUD = 115200
+"""What a sketch uses where the schema does not say."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A protocol with everything that is printed of it."""
+
+    protocol: Protocol
+    module: Module
+    framing: FramingView
+
+
+def emit(protocols: Sequence[Protocol], options: COptions = COptions()) -> tuple[File, ...]:  # noqa: B008
+    """The files of these protocols, and with the split style those that make them a package."""
+    units = [unit_of(protocol, options) for protocol in protocols]
+    files = [file for unit in units for file in _files(unit, options)]
+    if options.style == "split" and units:
+        files += package_files([unit.protocol for unit in units], _environment())
+        files += [_sketch(unit) for unit in units]
+    return tuple(files)
+
+
+def unit_of(protocol: Protocol, options: COptions) -> Unit:
+    """What is printed of the chosen part of a protocol."""
+    chosen = select(protocol, options.only, options.senders)
+    module = view(chosen, options)
+    return Unit(chosen, module, framing_view(chosen, module.messages, module.sinks, options))
+
+
+def _files(unit: Unit, options: COptions) -> tuple[File, ...]:
+    name = unit.protocol.name
+    header, source = _print(unit.module, unit.framing, options)
+    first = banner(C, [unit.protocol])
+    if options.style == "single":
+        text = _environment().get_template("single.h.j2")
+        both = text.render(header=header, source=source, upper=name.upper())
+        return (File(PurePosixPath(f"{name}.h"), both, first),)
+    files = (
+        File(PurePosixPath(f"{name}.c"), source, first),
+        File(PurePosixPath(f"{name}.h"), header, first),
+    )
+    if not options.stubs:
+        return files
+    return (*files, File(PurePosixPath(f"{name}_stubs.c"), _stubs(unit), None, once=True))
+
+
+def texts(protocol: Protocol, options: COptions, *, payloads_only: bool = False) -> tuple[str, str]:
+    """The text of the header and that of the source; with `payloads_only` they know no frames."""
+    unit = unit_of(protocol, options)
+    return _print(unit.module, None if payloads_only else unit.framing, options)
+
+
+def _print(module: Module, framing: FramingView | None, options: COptions) -> tuple[str, str]:
+    given = {"module": module, "options": options, "framing": framing}
+    environment = _environment()
+    return (
+        environment.get_template("header.h.j2").render(given),
+        environment.get_template("source.c.j2").render(given),
+    )
+
+
+def _stubs(unit: Unit) -> str:
+    """A source with an empty body for each handler."""
+    template = _environment().get_template("stubs.c.j2")
+    return template.render(module=unit.module, framing=unit.framing)
+
+
+def _sketch(unit: Unit) -> File:
+    """An Arduino sketch that receives what the first endpoint sends."""
+    name = unit.protocol.name
+    template = _environment().get_template("package/sketch.ino.j2")
+    baud = unit.protocol.link.baud or _BAUD
+    text = template.render(module=unit.module, framing=unit.framing, baud=baud)
+    return File(PurePosixPath("examples", name, f"{name}.ino"), text, banner(C, [unit.protocol]))
+
+
+@cache
+def _environment() -> Environment:
+    found = environment("protogen.targets.c")
+    found.globals["prototype"] = prototype
+    return found

@@ -1,0 +1,70 @@
+"""Small pieces of C: types, constants, integers as bytes."""
+
+from __future__ import annotations
+
+from protogen.model.types import Integer
+
+_WIDTHS = (8, 16, 32, 64)
+
+
+def width_of(bits: int) -> int:
+    """Bits of the smallest standard type that holds so many."""
+    return next(width for width in _WIDTHS if bits <= width)
+
+
+def unsigned_type(bits: int) -> str:
+    """The smallest unsigned type that holds so many bits."""
+    return f"uint{width_of(bits)}_t"
+
+
+def unsigned(value: int, bits: int) -> str:
+    """A constant of the smallest unsigned type with so many bits."""
+    digits = width_of(bits) // 4
+    return constant(value, bits) if value < 10 else f"UINT{width_of(bits)}_C(0x{value:0{digits}X})"
+
+
+def constant(value: int, bits: int) -> str:
+    """A decimal constant of the smallest unsigned type with so many bits."""
+    return f"UINT{width_of(bits)}_C({value})"
+
+
+def octet(value: int) -> str:
+    """One byte."""
+    return f"0x{value:02X}"
+
+
+def octets(data: bytes) -> str:
+    """The bytes of an initialiser."""
+    return ", ".join(octet(byte) for byte in data)
+
+
+def wire_bytes(type_: Integer, value: str) -> tuple[str, ...]:
+    """The bytes of an unsigned `value`, in wire order."""
+    places = range(0, type_.byte_bits * type_.size, type_.byte_bits)
+    mask = " & 0x7F" if type_.byte_bits == 7 else ""
+    items = [_byte_of(value, shift, mask) for shift in places]
+    return tuple(items if type_.byte_order == "little" else reversed(items))
+
+
+def _byte_of(value: str, shift: int, mask: str) -> str:
+    shifted = f"({value} >> {shift})" if shift and mask else f"{value} >> {shift}"
+    if not shift:
+        shifted = value
+    return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
+
+
+def number_of(type_: Integer, at: str, offset: int, less: str = "") -> str:
+    """The unsigned value of the bytes from `at[offset]` on, padding bits included.
+
+    `less` is C that is put behind each index.
+    """
+    if type_.size == 1:
+        return f"{at}[{offset}{less}]"
+    target = unsigned_type(type_.byte_bits * type_.size)
+    order = range(type_.size) if type_.byte_order == "little" else range(type_.size - 1, -1, -1)
+    terms = []
+    for place, index in enumerate(order):
+        shift = place * type_.byte_bits
+        term = f"({target}){at}[{offset + index}{less}]"
+        terms.append(f"({target})({term} << {shift})" if shift else term)
+    return f"({target})({' | '.join(terms)})"

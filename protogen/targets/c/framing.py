@@ -1,0 +1,132 @@
+"""All that is printed around the payloads: frames, decoders, and what these share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.model.protocol import Protocol, Sender
+from protogen.targets.c.checksums import Checksum
+from protogen.targets.c.decoder import DecoderView, decoder_view
+from protogen.targets.c.frames import FrameView, MessageFrame, frame_view, message_frame
+from protogen.targets.c.handlers import Dispatch, dispatches
+from protogen.targets.c.messages import MessageView
+from protogen.targets.c.options import COptions
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """The register of a checksum that is worked out while a frame is written."""
+
+    name: str
+    type: str
+
+
+@dataclass(frozen=True, slots=True)
+class FramingView:
+    """Everything that the templates print of frames and decoders."""
+
+    decoders: tuple[DecoderView, ...]
+    frames: tuple[FrameView, ...]
+    """One of each kind: senders with the same frame share what builds it."""
+    messages: tuple[MessageFrame, ...]
+    checksums: tuple[Checksum, ...]
+    sums: tuple[Sum, ...]
+    sinks: tuple[str, ...]
+    """Functions that the payloads share where they are written byte by byte."""
+    dispatches: tuple[Dispatch, ...]
+
+
+def framing_view(
+    protocol: Protocol,
+    messages: tuple[MessageView, ...],
+    sinks: tuple[str, ...],
+    options: COptions,
+) -> FramingView:
+    """The frames and decoders of the senders that were chosen."""
+    views = {view.name: view for view in messages}
+    senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
+    titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
+    decoders = tuple(
+        decoder_view(
+            protocol.name,
+            sender,
+            titles[sender.name],
+            views,
+            all_events=options.events == "all",
+        )
+        for sender in senders
+    )
+    frames = _frames(senders, decoders)
+    distinct = _distinct(frames)
+    message_frames = tuple(_message_frames(protocol, frames, decoders, views))
+    return FramingView(
+        decoders=decoders,
+        frames=distinct,
+        messages=message_frames,
+        checksums=tuple({c.function: c for d in decoders for c in _checksums(d)}.values()),
+        sums=tuple(
+            Sum(f"{frame.decoder.name}_{item.name}", item.checksum.register)
+            for frame in distinct
+            if frame.streams
+            for item in frame.decoder.checksums
+        ),
+        dispatches=dispatches(decoders, messages, protocol.name),
+        sinks=_used(sinks, [item.put_function for item in message_frames if item.sends]),
+    )
+
+
+def _used(functions: tuple[str, ...], users: list[str]) -> tuple[str, ...]:
+    """Those of the functions that some user, or a used one behind it, calls."""
+    found: list[str] = []
+    for text in reversed(functions):
+        name = text.partition("(")[0].rpartition(" ")[2].lstrip("*")
+        if any(f"{name}(" in user for user in (*users, *found)):
+            found.insert(0, text)
+    return tuple(found)
+
+
+def _frames(senders: list[Sender], decoders: tuple[DecoderView, ...]) -> dict[str, FrameView]:
+    """The frame of each sender; one for all that have the same."""
+    views: list[tuple[Sender, FrameView]] = []
+    frames: dict[str, FrameView] = {}
+    for sender, decoder in zip(senders, decoders, strict=True):
+        known = next((view for other, view in views if other.frame == sender.frame), None)
+        if known is None:
+            known = frame_view(decoder)
+            views.append((sender, known))
+        frames[sender.name] = known
+    return frames
+
+
+def _message_frames(
+    protocol: Protocol,
+    frames: dict[str, FrameView],
+    decoders: tuple[DecoderView, ...],
+    views: dict[str, MessageView],
+) -> Iterator[MessageFrame]:
+    by_name = {decoder.name: decoder for decoder in decoders}
+    streaming = [frame.decoder.name for frame in _distinct(frames) if frame.streams]
+    for message in protocol.messages:
+        own = {frames[name].decoder.name: name for name in message.senders if name in frames}
+        for frame_name in own if message.name in views else ():
+            frame = frames[frame_name]
+            suffix = f"_from_{frame_name}" if len(own) > 1 else ""
+            index = streaming.index(frame_name) if frame.streams else 0
+            decoder = by_name[own[frame_name]]
+            yield message_frame(frame, decoder, message, views[message.name], suffix, index)
+
+
+def _distinct(frames: dict[str, FrameView]) -> tuple[FrameView, ...]:
+    """Each frame once, in the order of the senders."""
+    return tuple({frame.decoder.name: frame for frame in frames.values()}.values())
+
+
+def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions) -> bool:
+    if options.senders is not None and sender.name not in options.senders:
+        return False
+    return any(message.name in views for message in sender.messages)
+
+
+def _checksums(decoder: DecoderView) -> list[Checksum]:
+    return [item.checksum for item in decoder.checksums]

@@ -1,0 +1,60 @@
+"""Handlers: one function for each message that a receiver can get, and what calls it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from protogen.targets.c.decoder import DecoderView
+from protogen.targets.c.messages import MessageView
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """The function for one message of one sender."""
+
+    function: str
+    """`rn1_on_gyro`; with the sender's name behind it where several send the message."""
+    message: MessageView
+    parts: str
+    """The struct of the frame's parts."""
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """What it is called with."""
+        return ("void *user", f"const {self.message.struct} *message", f"const {self.parts} *parts")
+
+
+@dataclass(frozen=True, slots=True)
+class Dispatch:
+    """Calls the handlers for what one endpoint sends."""
+
+    decoder: DecoderView
+    handlers: tuple[Handler, ...]
+
+
+def dispatches(
+    decoders: Sequence[DecoderView], messages: Sequence[MessageView], prefix: str
+) -> tuple[Dispatch, ...]:
+    """The handlers of each decoder's messages, in the schema's order."""
+    names = {d.name: {m.name for group in d.groups for m in group.messages} for d in decoders}
+    return tuple(
+        Dispatch(
+            decoder,
+            tuple(
+                Handler(
+                    _function(prefix, message.name, decoder.name, names),
+                    message,
+                    f"struct {decoder.prefix}_parts",
+                )
+                for message in messages
+                if message.name in names[decoder.name]
+            ),
+        )
+        for decoder in decoders
+    )
+
+
+def _function(prefix: str, message: str, sender: str, names: dict[str, set[str]]) -> str:
+    is_shared = sum(message in received for received in names.values()) > 1
+    return f"{prefix}_on_{message}" + (f"_from_{sender}" if is_shared else "")

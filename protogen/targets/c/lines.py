@@ -1,0 +1,131 @@
+"""Statements of C, one below the other, as clang-format lays them out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+WIDTH = 100
+INDENT = 4
+
+_PLACE = re.compile(
+    r" +(?:const )?(?:uint8_t \*|size_t )(?P<declared>at\w*) = |    (?P<moved>at) \+= "
+)
+"""A line that says where the next value lies; one that moves the place is in no loop."""
+_DECLARATION = re.compile(r"const |size_t |uint8_t \*")
+_OPERATORS = re.compile(r"(?<= (?:\|\||&&)) ")
+
+
+class Lines:
+    """A growing list of lines, each with its indent."""
+
+    def __init__(self, depth: int = 1) -> None:
+        self._lines: list[str] = []
+        self._depth = depth
+
+    def add(self, *lines: str) -> None:
+        """Add lines at the current depth."""
+        self._lines += [" " * (INDENT * self._depth) + line for line in lines]
+
+    @contextmanager
+    def block(self, head: str) -> Iterator[None]:
+        """What stands between braces."""
+        self.add(*self._broken(f"{head} {{"))
+        self._depth += 1
+        yield
+        self._depth -= 1
+        self.add("}")
+
+    def _broken(self, head: str) -> list[str]:
+        """A condition; one that is too long for its line is broken behind its operators."""
+        if INDENT * self._depth + len(head) <= WIDTH:
+            return [head]
+        first, *others = _OPERATORS.split(head)
+        lines = [first]
+        for part in others:
+            lines.append(" " * _open_bracket(lines) + part)
+        return lines
+
+    @contextmanager
+    def indented(self) -> Iterator[None]:
+        """Lines one step further in."""
+        self._depth += 1
+        yield
+        self._depth -= 1
+
+    @contextmanager
+    def switch(self, selector: str) -> Iterator[None]:
+        """A switch, whose labels stand below its own start."""
+        self.add(f"switch ({selector}) {{")
+        yield
+        self.add("}")
+
+    @contextmanager
+    def case(self, label: str) -> Iterator[None]:
+        """A case, with the break that ends it."""
+        start = len(self._lines)
+        self._depth += 1
+        yield
+        if not self._lines[start:] or not self._lines[-1].lstrip().startswith("return "):
+            self.add("break;")
+        self._depth -= 1
+        body, self._lines = self._lines[start:], self._lines[:start]
+        indent = " " * (INDENT * (self._depth + 1))
+        nothing = [f"{indent}break;"]
+        if body == nothing and self._lines[-1:] == nothing and self._lines[-2].endswith(":"):
+            self._lines.pop()
+        declares = any(_DECLARATION.match(line.removeprefix(indent)) for line in body)
+        self.add(f"{label}: {{" if declares else f"{label}:")
+        self._lines += body
+        if declares:
+            self.add("}")
+
+    def drop_unused_places(self) -> None:
+        """Take out what says where something lies that has no bytes."""
+        kept: list[str] = []
+        for line in reversed(self._lines):
+            place = _PLACE.match(line)
+            name = place and (place["declared"] or place["moved"])
+            if not name or any(re.search(rf"\b{name}\b", other) for other in kept):
+                kept.append(line)
+        self._lines = kept[::-1]
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """All lines."""
+        return tuple(self._lines)
+
+    def __bool__(self) -> bool:
+        return bool(self._lines)
+
+
+def _open_bracket(lines: list[str]) -> int:
+    """The column behind the last bracket that is still open."""
+    opened: list[int] = []
+    for line in lines:
+        for column, sign in enumerate(line):
+            if sign == "(":
+                opened.append(column + 1)
+            elif sign == ")":
+                opened.pop()
+    return opened[-1] if opened else 0
+
+
+def function(head: str, arguments: tuple[str, ...], body: Lines) -> str:
+    """A function's definition."""
+    return "\n".join([prototype(head, arguments, " {"), *body.lines, "}"])
+
+
+def prototype(head: str, arguments: tuple[str, ...], end: str = ";") -> str:
+    """A function's head; where it is too long, its arguments go on below each other."""
+    items = [f"{argument}," for argument in arguments[:-1]]
+    items.append(f"{arguments[-1] if arguments else 'void'}){end}")
+    margin = " " * (len(head) + 1)
+    lines = [f"{head}({items[0]}"]
+    for item in items[1:]:
+        if len(lines[-1]) + 1 + len(item) <= WIDTH:
+            lines[-1] += f" {item}"
+        else:
+            lines.append(margin + item)
+    return "\n".join(lines)

@@ -1,0 +1,132 @@
+"""A protocol as the templates print it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from protogen.model.fields import Field
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol
+from protogen.model.types import Array, Enum, Flags, Integer, Struct, Switch, Type
+from protogen.targets.c import comments
+from protogen.targets.c.helpers import Helpers
+from protogen.targets.c.messages import MessagePrinter, MessageView
+from protogen.targets.c.named import (
+    BitsView,
+    EnumView,
+    Macro,
+    bits_views,
+    enum_view,
+    flags_view,
+    meaning,
+    string,
+)
+from protogen.targets.c.options import COptions
+from protogen.targets.c.own_names import claim_own_names
+from protogen.targets.c.records import Records
+from protogen.targets.c.spelling import Names
+from protogen.targets.c.storage import holds_values
+
+
+@dataclass(frozen=True, slots=True)
+class StructView:
+    """A struct, the macros of its fields, and what reads its bits."""
+
+    heading: str
+    definition: str
+    constants: tuple[Macro, ...]
+    bits: tuple[BitsView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """Everything that the templates print of the payloads."""
+
+    name: str
+    upper: str
+    doc: tuple[str, ...]
+    spec_hash: str
+    version: str | None
+    enums: tuple[EnumView, ...]
+    flags: tuple[EnumView, ...]
+    structs: tuple[StructView, ...]
+    messages: tuple[MessageView, ...]
+    helpers: tuple[str, ...]
+    """Functions that the codecs share."""
+    sinks: tuple[str, ...]
+    """Functions that what writes into a writer shares."""
+    floats: frozenset[int]
+    """Bits of the floats that members have."""
+
+    def message(self, name: str) -> MessageView:
+        """The message of that name; raises KeyError."""
+        for message in self.messages:
+            if message.name == name:
+                return message
+        raise KeyError(name)
+
+
+def view(protocol: Protocol, options: COptions) -> Module:
+    """The module of a protocol."""
+    names = Names(protocol.name)
+    claim_own_names(protocol, names)
+    chosen = options.chosen(protocol)
+    used = _Used(chosen)
+    helpers, sinks = Helpers(names), Helpers(names)
+    enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used.names)
+    flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used.names)
+    structs = [item for item in protocol.structs if item.name in used.names and holds_values(item)]
+    tags = {item.name: names.claim(item.name) for item in structs}
+    records = Records(tags, helpers)
+    printer = MessagePrinter(protocol, names, helpers, sinks, records)
+    struct_views = tuple(_struct(item, tags[item.name], records, names) for item in structs)
+    messages = tuple(printer.view(item) for item in chosen)
+    return Module(
+        name=protocol.name,
+        upper=protocol.name.upper(),
+        doc=comments.comment(comments.of_protocol(protocol)),
+        spec_hash=protocol.spec_hash,
+        version=None if protocol.version is None else string(protocol.version),
+        enums=enums,
+        flags=flags,
+        structs=struct_views,
+        messages=messages,
+        helpers=helpers.texts,
+        sinks=sinks.texts,
+        floats=frozenset(helpers.floats | sinks.floats),
+    )
+
+
+def _struct(item: Struct, tag: str, records: Records, names: Names) -> StructView:
+    return StructView(
+        item.name,
+        records.definition(tag, comments.of_named(item.name, item.about), item.fields),
+        meaning(item.name, item.fields, names),
+        tuple(bits for field in item.fields for bits in bits_views(item.name, field, names)),
+    )
+
+
+class _Used:
+    """The names of the types that some messages use."""
+
+    def __init__(self, messages: Sequence[Message]) -> None:
+        self.names = {item.name for message in messages for item in self._of_fields(message.fields)}
+
+    def _of_fields(self, fields: Sequence[Field]) -> Iterator[Enum | Flags | Struct]:
+        for field in fields:
+            yield from self._of_type(field.type)
+
+    def _of_type(self, type_: Type) -> Iterator[Enum | Flags | Struct]:
+        match type_:
+            case Integer(enum=enum, flags=flags, bit_fields=runs):
+                found = (enum, flags, *(run.enum for run in runs))
+                yield from (item for item in found if item is not None)
+            case Struct(fields=fields):
+                yield type_
+                yield from self._of_fields(fields)
+            case Array(element=element):
+                yield from self._of_type(element)
+            case Switch(cases=cases):
+                for case in cases:
+                    yield from self._of_type(case.type)

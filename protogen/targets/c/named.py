@@ -1,0 +1,162 @@
+"""Enums, flags, runs of bits, and the macros that say what raw values mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from protogen.model.fields import Field
+from protogen.model.origin import About
+from protogen.model.types import BitField, Enum, Flags, Float, Integer
+from protogen.targets.c import comments
+from protogen.targets.c.lines import INDENT
+from protogen.targets.c.spelling import (
+    Names,
+    constant,
+    hexadecimal,
+    number,
+    unsigned,
+    unsigned_type,
+)
+from protogen.targets.escape import one_line, paragraphs
+
+_LEAST_INT, _GREATEST_INT = -0x8000, 0x7FFF
+
+
+@dataclass(frozen=True, slots=True)
+class Macro:
+    """A name for a constant."""
+
+    name: str
+    value: str
+    doc: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class EnumView:
+    """Names of values: an enum where each of them fits an `int` of 16 bits, else macros."""
+
+    tag: str
+    doc: tuple[str, ...]
+    values: tuple[Macro, ...]
+    macros: bool
+
+
+def enum_view(item: Enum, names: Names) -> EnumView:
+    """An enum."""
+    fits = all(_LEAST_INT <= entry.value <= _GREATEST_INT for entry in item.values)
+    unsigned_ones = all(entry.value >= 0 for entry in item.values)
+    write = unsigned if unsigned_ones and not fits else number
+    values = tuple(
+        Macro(
+            names.claim_macro(item.name, entry.name),
+            write(entry.value),
+            _remark(entry.about, INDENT),
+        )
+        for entry in item.values
+    )
+    tag = names.claim(item.name)
+    return EnumView(
+        tag, comments.comment(comments.of_named(item.name, item.about)), values, not fits
+    )
+
+
+def flags_view(item: Flags, names: Names) -> EnumView:
+    """A set of flags."""
+    values = tuple(
+        Macro(
+            names.claim_macro(item.name, entry.name),
+            hexadecimal(1 << entry.bit),
+            _remark(entry.about),
+        )
+        for entry in item.bits
+    )
+    doc = comments.comment(comments.of_named(item.name, item.about))
+    return EnumView(item.name, doc, values, True)
+
+
+def _remark(item: About, indent: int = 0) -> tuple[str, ...]:
+    """What is said of a name; nothing where nothing is."""
+    texts = list(paragraphs(item.doc))
+    return comments.comment([comments.sentence(texts[0]), *texts[1:]], indent) if texts else ()
+
+
+@dataclass(frozen=True, slots=True)
+class BitsView:
+    """A run of bits, and the functions that read and write it."""
+
+    doc: tuple[str, ...]
+    mask: Macro
+    shift: Macro
+    type: str
+    get: str
+    set: str
+
+
+def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
+    """The runs of bits of a field's integer."""
+    type_ = comments.element_of(field.type)
+    if not isinstance(type_, Integer):
+        return ()
+    return tuple(_bits(record, field, type_, item, names) for item in type_.bit_fields)
+
+
+def _bits(record: str, field: Field, type_: Integer, item: BitField, names: Names) -> BitsView:
+    words = (record, field.name, item.name)
+    first = next(iter(paragraphs(item.about.doc)), comments.words(item.name))
+    run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
+    return BitsView(
+        comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
+        Macro(names.claim_macro(*words, "mask"), hexadecimal(item.mask)),
+        Macro(names.claim_macro(*words, "shift"), f"{item.low}u"),
+        unsigned_type(type_.bits),
+        names.claim(*words, "get"),
+        names.claim(*words, "set"),
+    )
+
+
+# --- what raw values mean -------------------------------------------------------------------------
+
+
+def meaning(record: str, fields: Sequence[Field], names: Names) -> tuple[Macro, ...]:
+    """The macros of a record's fields."""
+    return tuple(macro for field in fields for macro in _meaning(record, field, names))
+
+
+def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
+    def macro(word: str, value: str, doc: tuple[str, ...] = ()) -> Macro:
+        return Macro(names.claim_macro(record, field.name, word), value, doc)
+
+    if field.scale != 1:
+        yield from _fraction(macro, "scale", field.scale)
+    if field.offset != 0:
+        yield from _fraction(macro, "offset", field.offset)
+    if field.unit:
+        yield macro("unit", string(field.unit))
+    type_ = comments.element_of(field.type)
+    if isinstance(type_, Integer):
+        for item in field.special:
+            yield macro(item.name, constant(item.value, type_), _remark(item.about))
+        if isinstance(field.default, int):
+            yield macro("default", constant(int(field.default), type_))
+    elif isinstance(type_, Float) and isinstance(field.default, int | float):
+        yield macro("default", repr(float(field.default)) + ("f" if type_.bits == 32 else ""))
+
+
+def _fraction(macro: object, word: str, value: Fraction) -> Iterable[Macro]:
+    assert callable(macro)
+    yield macro(f"{word}_num", number(value.numerator))
+    yield macro(f"{word}_den", number(value.denominator))
+
+
+def string(text: str) -> str:
+    """A string literal; what is not ASCII is written as the bytes of UTF-8, in octal digits."""
+    return '"' + "".join(_character(byte) for byte in one_line(text).encode("utf-8")) + '"'
+
+
+def _character(byte: int) -> str:
+    character = chr(byte)
+    if character in '"\\?' or not 0x20 <= byte < 0x7F:
+        return f"\\{byte:03o}"
+    return character

@@ -1,0 +1,39 @@
+"""What the C target can be asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol
+
+Style = Literal["split", "single"]
+Events = Literal["all", "messages"]
+STYLES: tuple[Style, ...] = get_args(Style)
+EVENTS: tuple[Events, ...] = get_args(Events)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class COptions:
+    """How and what to print. None stands for all of them."""
+
+    style: Style = "split"
+    """A header and a source, or one header that holds both."""
+    events: Events = "all"
+    """`messages`: the decoder leaves invalid and unknown frames out."""
+    only: tuple[str, ...] | None = None
+    """The messages to print."""
+    senders: tuple[str, ...] | None = None
+    """The endpoints whose messages are printed."""
+    stubs: bool = False
+    """Whether to make a source with an empty body for each handler, where there is none."""
+
+    def chosen(self, protocol: Protocol) -> tuple[Message, ...]:
+        """The messages to print, in the schema's order."""
+        return tuple(message for message in protocol.messages if self._is_chosen(message))
+
+    def _is_chosen(self, message: Message) -> bool:
+        if self.only is not None and message.name not in self.only:
+            return False
+        return self.senders is None or not set(self.senders).isdisjoint(message.senders)

@@ -1,0 +1,112 @@
+"""How the schema's names and numbers are spelled in C."""
+
+from __future__ import annotations
+
+from protogen.model.types import Float, Integer
+
+_INT_MAX = 0x7FFF
+"""The greatest `int` that every target has."""
+
+
+class Names:
+    """File-scope names, each of which stands for one thing.
+
+    The schema's names are words that C does not reserve, but two of them, joined with others, can
+    come to the same (`robot` with `mode_idle`, `robot_mode` with `idle`). The later one gets a
+    number.
+    """
+
+    def __init__(self, prefix: str) -> None:
+        self.prefix = prefix
+        self._taken: set[str] = set()
+
+    def claim(self, *words: str) -> str:
+        """A function, type or tag: `rn1_gyro_encode`."""
+        return self._claim("_".join((self.prefix, *words)))
+
+    def claim_macro(self, *words: str) -> str:
+        """A macro or a named value: `RN1_GYRO_PAYLOAD_SIZE`."""
+        return self._claim("_".join((self.prefix, *words)).upper())
+
+    def _claim(self, name: str) -> str:
+        free = free_name(name, self._taken)
+        self._taken.add(free)
+        return free
+
+
+def free_name(name: str, taken: set[str] | frozenset[str]) -> str:
+    """The name, or with the first number behind it that makes it one that is not taken."""
+    found, number = name, 2
+    while found in taken:
+        found, number = f"{name}_{number}", number + 1
+    return found
+
+
+# --- types --------------------------------------------------------------------------------------
+
+
+def width(bits: int) -> int:
+    """Bits of the smallest C integer that holds so many."""
+    return next(width for width in (8, 16, 32, 64) if bits <= width)
+
+
+def unsigned_type(bits: int) -> str:
+    """The smallest unsigned type of so many bits."""
+    return f"uint{width(bits)}_t"
+
+
+def integer_type(type_: Integer) -> str:
+    """The type of a member that holds such integers."""
+    if type_.role == "bool":
+        return "bool"
+    return f"{'' if type_.signed else 'u'}int{width(type_.bits)}_t"
+
+
+def counting_type(greatest: int) -> str:
+    """The type of a number of elements or bytes."""
+    return unsigned_type(max(1, greatest.bit_length()))
+
+
+def layout_name(type_: Integer | Float) -> str:
+    """The name of a layout on the wire: `u14le`, `s32be`, `f32le`, `u7`."""
+    if isinstance(type_, Float):
+        return f"f{type_.bits}{_order(type_)}"
+    return f"{'s' if type_.signed else 'u'}{type_.bits}{_order(type_)}"
+
+
+def _order(type_: Integer | Float) -> str:
+    return "" if type_.size == 1 else f"{type_.byte_order[0]}e"
+
+
+# --- numbers ------------------------------------------------------------------------------------
+
+
+def number(value: int) -> str:
+    """A signed constant."""
+    if -_INT_MAX <= value <= _INT_MAX:
+        return str(value)
+    if value == -(1 << 63):
+        return f"(-{(1 << 63) - 1}ll - 1)"
+    suffix = "l" if -(1 << 31) < value < 1 << 31 else "ll"
+    return f"{value}{suffix}"
+
+
+def unsigned(value: int) -> str:
+    """An unsigned constant in decimal digits."""
+    return f"{value}{_suffix(value)}"
+
+
+def hexadecimal(value: int, digits: int = 2) -> str:
+    """An unsigned constant in hexadecimal digits."""
+    return f"0x{value:0{digits}X}{_suffix(value)}"
+
+
+def _suffix(value: int) -> str:
+    if value <= 0xFFFF:
+        return "u"
+    return "ul" if value <= 0xFFFFFFFF else "ull"
+
+
+def constant(value: int, type_: Integer) -> str:
+    """A constant to compare with a value of that type."""
+    return number(value) if type_.signed else unsigned(value)

@@ -1,0 +1,192 @@
+"""Generated C, compiled into a shared library and called through ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from c_structs import Values, fill, read, structure_of
+from tooling import require_tool
+
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol
+from protogen.targets.c.emit import texts
+from protogen.targets.c.messages import MessageView
+from protogen.targets.c.module import Module, view
+from protogen.targets.c.options import COptions
+
+OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
+RESULTS = {"size": SIZE, "value": VALUE, "encoding": ENCODING}
+"""Reasons of the Python runtime as the results of C."""
+
+FLAGS = (
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wsign-conversion",
+    "-Wshadow",
+    "-Werror",
+)
+_GUARD = 0xA5
+_GUARDS = 16
+"""Bytes around each buffer, which nothing may change."""
+
+_SHIM = """#include "{name}.c"
+
+struct {name}_writer {{
+    uint8_t *next;
+}};
+
+void {name}_write(struct {name}_writer *writer, uint8_t byte) {{
+    *writer->next++ = byte;
+}}
+"""
+_PUT = """
+size_t shim_{prefix}_put(const {struct} *message, uint8_t *bytes) {{
+    struct {name}_writer writer = {{bytes}};
+    {put}(message, &writer);
+    return (size_t)(writer.next - bytes);
+}}
+"""
+_CHECK = """
+enum {name}_result shim_{prefix}_check(const uint8_t *payload, size_t size, size_t *need) {{
+    return {check}(payload, size, need);
+}}
+"""
+
+
+def write_sources(protocol: Protocol, folder: Path, *, payloads_only: bool = False) -> None:
+    """Write the header and the source of a protocol, perhaps without its frames and decoders."""
+    header, source = texts(protocol, COptions(), payloads_only=payloads_only)
+    (folder / f"{protocol.name}.h").write_text(header, encoding="utf-8")
+    (folder / f"{protocol.name}.c").write_text(source, encoding="utf-8")
+
+
+def shim_of(module: Module) -> str:
+    """A source that includes the generated one and makes its static functions callable."""
+    parts = [_SHIM.format(name=module.name), *module.sinks]
+    for message in module.messages:
+        given = {
+            "name": module.name,
+            "prefix": message.prefix,
+            "struct": message.struct,
+            "put": message.put,
+            "check": message.check,
+        }
+        parts += [message.put_function, _PUT.format(**given)]
+        parts += [_CHECK.format(**given)] if message.checks else []
+    return "\n".join(parts)
+
+
+@dataclass(frozen=True)
+class Encoded:
+    """What came of encoding; `intact`: nothing was written where nothing may be."""
+
+    result: int
+    payload: bytes
+    intact: bool
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """What came of decoding; `intact`: the struct was left as it was."""
+
+    result: int
+    values: Values | None
+    intact: bool
+
+
+class CLibrary:
+    """The codec of a protocol, in C."""
+
+    def __init__(self, protocol: Protocol, flags: Sequence[str] = ("-O1",)) -> None:
+        self.protocol = protocol
+        self.module = view(protocol, COptions())
+        self._folder = TemporaryDirectory(prefix="protogen-c-")
+        folder = Path(self._folder.name)
+        write_sources(protocol, folder, payloads_only=True)
+        shim = folder / f"{protocol.name}_shim.c"
+        shim.write_text(shim_of(self.module), encoding="utf-8")
+        library = folder / f"{protocol.name}.so"
+        compiler = require_tool("cc")
+        command = [compiler, *FLAGS, *flags, "-fPIC", "-shared", "-o", str(library), str(shim)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        self._library = ctypes.CDLL(str(library))
+        self._codecs = {m.name: _Codec(self._library, m, self._view(m)) for m in protocol.messages}
+
+    def _view(self, message: Message) -> MessageView:
+        return self.module.message(message.name)
+
+    def __getitem__(self, message: str) -> _Codec:
+        return self._codecs[message]
+
+
+class _Codec:
+    """The functions of one message."""
+
+    def __init__(self, library: ctypes.CDLL, message: Message, view: MessageView) -> None:
+        self._message = message
+        self.view = view
+        self.structure = structure_of(message.fields)
+        self._encode = getattr(library, view.encode)
+        self._decode = getattr(library, view.decode)
+        self._put = getattr(library, f"shim_{view.prefix}_put")
+        self._put.restype = ctypes.c_size_t
+        self._check = getattr(library, f"shim_{view.prefix}_check") if view.checks else None
+
+    def record(self, values: Values) -> Any:
+        """The struct that has these values. Raises Unfit."""
+        record = self.structure()
+        fill(record, self._message.fields, values, {})
+        return record
+
+    def encode(self, values: Values, capacity: int | None = None) -> Encoded:
+        """Encode into a buffer of so many bytes; None: as many as any payload needs."""
+        return self.encode_record(self.record(values), capacity)
+
+    def encode_record(self, record: Any, capacity: int | None = None) -> Encoded:
+        """Encode a struct."""
+        room = self.view.greatest if capacity is None else capacity
+        buffer = (ctypes.c_uint8 * (room + 2 * _GUARDS))(*[_GUARD] * (room + 2 * _GUARDS))
+        size = ctypes.c_size_t(12345)
+        payload = ctypes.byref(buffer, _GUARDS)
+        result = self._encode(
+            ctypes.byref(record), payload, ctypes.c_size_t(room), ctypes.byref(size)
+        )
+        written = size.value if result == OK else 0
+        around = bytes(buffer[:_GUARDS]) + bytes(buffer[_GUARDS + written :])
+        intact = set(around) == {_GUARD} and (result == OK or size.value == 12345)
+        return Encoded(result, bytes(buffer[_GUARDS : _GUARDS + written]), intact)
+
+    def put(self, values: Values) -> bytes:
+        """The bytes that a writer is given."""
+        buffer = (ctypes.c_uint8 * (self.view.greatest + 1))()
+        size = self._put(ctypes.byref(self.record(values)), buffer)
+        return bytes(buffer[:size])
+
+    def decode(self, payload: bytes) -> Decoded:
+        """Decode a payload."""
+        record = self.structure()
+        before = bytes([_GUARD]) * ctypes.sizeof(record)
+        ctypes.memmove(ctypes.byref(record), before, len(before))
+        given = (ctypes.c_uint8 * max(1, len(payload)))(*payload)
+        result = self._decode(ctypes.byref(record), given, ctypes.c_size_t(len(payload)))
+        intact = bytes(record) == before
+        values = read(record, self._message.fields, {}) if result == OK else None
+        return Decoded(result, values, intact)
+
+    def check(self, start: bytes) -> tuple[int, int]:
+        """The result of `check` for the start of a payload, and how many bytes it needs."""
+        assert self._check is not None
+        given = (ctypes.c_uint8 * max(1, len(start)))(*start)
+        need = ctypes.c_size_t(0)
+        result = self._check(given, ctypes.c_size_t(len(start)), ctypes.byref(need))
+        return result, need.value

@@ -1,0 +1,184 @@
+"""Payloads read field by field, by the rules of the design: what generated C has to say of bytes.
+
+It differs from the Python runtime in one thing: a number that counts more elements or bytes than
+there can be, or fewer, is wrong as soon as they are due, because no struct of C has room for them.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from typing import Any
+
+from protogen.model.fields import Field
+from protogen.model.messages import Message
+from protogen.model.types import (
+    Array,
+    Counted,
+    Extent,
+    Fill,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+from protogen.runtime.errors import ByteError
+from protogen.runtime.number import Number
+
+Scope = dict[str, int]
+
+
+class Wrong(Exception):  # noqa: N818 - a verdict, not a failure
+    """Bytes are no payload. `missing`: where they have to end at least; 0: more don't help."""
+
+    def __init__(self, reason: str, missing: int = 0, *, count: bool = False) -> None:
+        super().__init__(reason, missing)
+        self.reason = reason
+        self.missing = missing
+        self.count = count
+        """Whether a number counts too many or too few."""
+
+
+def check(message: Message, payload: bytes) -> None:
+    """Raise Wrong unless the bytes are the message's payload."""
+    sizes = message.sizes
+    if sizes.fixed is not None and len(payload) != sizes.fixed:
+        raise Wrong("size")
+    reader = _Reader(payload)
+    reader.fields(message.fields, {})
+    if reader.at != len(payload) or len(payload) not in sizes:
+        raise Wrong("size")
+
+
+class _Reader:
+    def __init__(self, payload: bytes) -> None:
+        self._payload = payload
+        self.at = 0
+
+    def _take(self, size: int) -> bytes:
+        end = self.at + size
+        if end > len(self._payload):
+            raise Wrong("size", end)
+        data, self.at = self._payload[self.at : end], end
+        return data
+
+    @property
+    def _left(self) -> int:
+        return len(self._payload) - self.at
+
+    def fields(self, fields: Sequence[Field], scope: Scope) -> None:
+        inner = dict(scope)
+        for field in fields:
+            found = self._value(field.type, inner, constant=field.const is not None)
+            if field.const is not None and not _is(found, field.const):
+                raise Wrong("value")
+            if isinstance(field.type, Integer):
+                inner[field.name] = found
+
+    def _value(self, type_: Type, scope: Scope, *, constant: bool = False) -> Any:
+        match type_:
+            case Integer() | Float():
+                return self._number(type_, constant=constant)
+            case Text() | Octets():
+                return self._bytes(type_, scope, constant=constant)
+            case Struct(fields=fields):
+                return self.fields(fields, scope)
+            case Array():
+                return self._elements(type_, scope, constant=constant)
+            case Switch():
+                return self._case(type_, scope)
+
+    def _number(self, type_: Integer | Float, *, constant: bool) -> int | float:
+        data = self._take(type_.size)
+        signed = isinstance(type_, Integer) and type_.signed
+        if isinstance(type_, Integer) and type_.role == "bool" and data[0] > 1:
+            raise Wrong("value")
+        number = Number(type_.bits, signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
+        try:
+            value = number.decode(data)
+        except ByteError as error:
+            raise Wrong(error.reason) from None
+        if isinstance(type_, Float):
+            return _float(type_, value)
+        closed = type_.enum is not None and type_.enum.closed
+        if closed and not constant and value not in _names(type_):
+            raise Wrong("value")
+        return value
+
+    def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
+        if isinstance(extent, Fixed):
+            return extent.count
+        if isinstance(extent, Fill):
+            return None
+        count = scope[extent.field]
+        if not constant:
+            _bounded(extent, count)
+        return count
+
+    def _bytes(self, type_: Text | Octets, scope: Scope, *, constant: bool) -> bytes:
+        count = self._count(type_.extent, scope, constant=constant)
+        if count is None:
+            assert isinstance(type_.extent, Fill)
+            if self._left > type_.extent.greatest and not constant:
+                raise Wrong("size")
+            count = self._left
+        data = self._take(count)
+        if type_.byte_bits == 7 and not data.isascii():
+            raise Wrong("encoding")
+        return data.rstrip(b"\0") if isinstance(type_, Text) and _is_fixed(type_) else data
+
+    def _elements(self, type_: Array, scope: Scope, *, constant: bool) -> list[Any]:
+        count = self._count(type_.extent, scope, constant=constant)
+        if count is not None:
+            return [self._value(type_.element, scope) for _ in range(count)]
+        found: list[Any] = []
+        assert isinstance(type_.extent, Fill)
+        while self._left:
+            if len(found) == type_.extent.greatest:
+                raise Wrong("size")
+            found.append(self._value(type_.element, scope))
+        return found
+
+    def _case(self, type_: Switch, scope: Scope) -> None:
+        for case in type_.cases:
+            if case.value == scope[type_.selector]:
+                self._value(case.type, scope)
+                return
+        if type_.rest is None:
+            raise Wrong("value")
+        if self._left > type_.rest:
+            raise Wrong("size")
+        if type_.byte_bits == 7 and not self._payload[self.at :].isascii():
+            raise Wrong("encoding")
+        self.at = len(self._payload)
+
+
+def _bounded(extent: Counted, count: int) -> None:
+    if not extent.least <= count <= extent.greatest:
+        raise Wrong("size", count=True)
+
+
+def _float(type_: Float, bits: int) -> float:
+    form = "<f" if type_.bits == 32 else "<d"
+    value: float = struct.unpack(form, bits.to_bytes(type_.bits // 8, "little"))[0]
+    return value
+
+
+def _is_fixed(type_: Text) -> bool:
+    return isinstance(type_.extent, Fixed)
+
+
+def _names(type_: Integer) -> set[int]:
+    assert type_.enum is not None
+    return {item.value for item in type_.enum.values}
+
+
+def _is(found: Any, constant: Any) -> bool:
+    """Whether what was read is the constant."""
+    if isinstance(constant, str):
+        return bool(found == constant.encode("latin-1"))
+    return bool(found == (list(constant) if isinstance(constant, tuple) else constant))
