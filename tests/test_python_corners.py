@@ -90,3 +90,18 @@ def test_a_field_is_chosen_by_what_stands_in_front_of_it(compiled: ModuleType) -
     # kind 2, so two numbers, then the inner kind.
     assert counted.to_payload() == bytes.fromhex("02 08 09 03")
     assert compiled.Ping.from_payload(bytes.fromhex("02 08 09 03")) == counted
+
+
+FLAGS = """\
+messages:
+  ping: {id: 1, from: a, fields: {state: {type: uint7, flags: {on: 0, hot: 1}}}}
+"""
+
+
+@pytest.mark.parametrize("compiled", [FLAGS], indirect=True)
+def test_flags_are_never_negative(compiled: ModuleType) -> None:
+    """Python takes -1 for all flags; on the wire that would be another value."""
+    with pytest.raises(ValueError, match=r"state: -1 is not in 0\.\.127"):
+        compiled.Ping.from_dict({"state": -1})
+    with pytest.raises(ValueError, match="state"):
+        compiled.Ping(state=-1).to_payload()

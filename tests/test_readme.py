@@ -5,8 +5,8 @@
     python    statements, run in order; a section shares its names. The comment behind an
               expression, or below it, is its value; `Error: message` is what it raises.
     text      what the Python in front of it prints
-    c         `/* NAME.c */` in the first line: a program, built with the section's schemas; it exits
-              with 0
+    c         `/* NAME.c */` in the first line: a program, built with the C of `rover.yaml`; it
+              exits with 0
     cpp       `// NAME.ino` in the first line: an Arduino sketch
     console   `$ command` lines, each with what it prints
     sh        `make` commands
@@ -292,7 +292,7 @@ def _value(line: int, comments: dict[int, tuple[str, bool]]) -> str:
     return " ".join(found)
 
 
-# --- C ----------------------------------------------------------------------------------------------
+# --- C --------------------------------------------------------------------------------------------
 
 ARDUINO = """\
 // Stands in for the core: the port is standard input and output, the pins are silent.
@@ -337,7 +337,7 @@ class TestC:
         (workspace / "Arduino.h").write_text(ARDUINO)
         (workspace / "sketch.cpp").write_text(f'#include "Arduino.h"\n{sketch.text}\n{main}\n')
         made = run(
-            [*"protogen generate blink.yaml --target c --events messages -q".split()], workspace
+            ["sh", "-c", "protogen generate blink.yaml --target c --events messages -q"], workspace
         )
         assert made.returncode == 0, made.stdout
         cc, cpp = require_tool("cc"), require_tool("g++")

@@ -151,6 +151,7 @@ def _integer_choices(field: Field, type: Integer, need: Need | None) -> Choices:
     if need is not None:
         least, greatest = max(least, need.least), min(greatest, need.greatest)
         values = [value for value in values if least <= value <= greatest]
+        values = values if values or closed else _distinct([least, greatest])
         greatest = min(greatest, least + _USUAL_COUNT)
     if closed:
         return Choices(values, lambda random: random.choice(values))

@@ -139,6 +139,9 @@ class IntegerRule(Rule):
             return self.from_wire(flags, scope)
         if not isinstance(data, int) or isinstance(data, bool):
             raise EncodeError("", f"must be an integer, not {data!r}")
+        if data < 0 and self._is_flags():
+            # Python's flags would take a negative number for all bits but some.
+            raise EncodeError("", self._out_of_range(data, *self._capacity()))
         return self.from_wire(data, scope)
 
     def physical(self, raw: int) -> Fraction | None:
