@@ -8,6 +8,7 @@ documents that people read.
     protocol = protogen.load("schemas/rn1.yaml")           # the resolved model
     protogen.generate(["schemas"], "generated")            # all targets
     module = protogen.module_of(protocol)                  # its Python codec, from memory
+    small = protogen.select(protocol, messages=["gyro"])   # what a small receiver takes of it
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from protogen.version import VERSION
 if TYPE_CHECKING:
     from protogen.api import SchemaError, generate, load, module_of
     from protogen.compiler import Compilation, compile_file
+    from protogen.model.selection import select
     from protogen.problems import Problem
     from protogen.schema.files import NoSchemaError
 
@@ -34,6 +36,7 @@ __all__ = [
     "generate",
     "load",
     "module_of",
+    "select",
 ]
 
 _HOMES = {
@@ -45,6 +48,7 @@ _HOMES = {
     "generate": "protogen.api",
     "load": "protogen.api",
     "module_of": "protogen.api",
+    "select": "protogen.model.selection",
 }
 
 

@@ -81,3 +81,32 @@ def test_module_of_is_the_codec(schema: Path) -> None:
     module = protogen.module_of(protogen.load(schema))
     # By hand: 01 + 02 = 03.
     assert module.encode(module.Ping(number=2)) == bytes.fromhex("55 01 02 03")
+
+
+SECOND = "  pong: {id: 2, from: a, fields: {data: {type: bytes, size: 9}}}\n"
+
+
+def test_select_leaves_some_messages(schema: Path) -> None:
+    schema.write_text(schema.read_text().replace("decisions:", f"{SECOND}decisions:"))
+    protocol = protogen.load(schema)
+    small = protogen.select(protocol, messages=["ping"])
+    assert [message.name for message in small.messages] == ["ping"]
+    assert protocol.sender("a").framing.greatest == 12  # 55, identity, 9 bytes, sum
+    assert small.sender("a").framing.greatest == 4  # 55, identity, 1 byte, sum
+    assert small.spec_hash == protocol.spec_hash
+    assert protogen.select(protocol) is protocol
+    with pytest.raises(KeyError):
+        protogen.select(protocol, messages=["pang"])
+    with pytest.raises(KeyError):
+        protogen.select(protocol, senders=["b"])
+
+
+def test_a_decoder_of_a_selection_does_not_know_the_rest(schema: Path) -> None:
+    schema.write_text(schema.read_text().replace("decisions:", f"{SECOND}decisions:"))
+    module = protogen.module_of(protogen.select(protogen.load(schema), messages=["ping"]))
+    decoder = module.Decoder(sender="a")
+    # By hand: a pong of nine bytes 00, whose sum is 02; then a ping.
+    data = bytes.fromhex("55 02 00 00 00 00 00 00 00 00 00 02 55 01 07 08")
+    events = [*decoder.feed(data), *decoder.flush()]
+    assert b"".join(event.raw for event in events) == data
+    assert [event.message.number for event in events if event.kind == "message"] == [7]

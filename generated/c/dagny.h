@@ -604,7 +604,10 @@ struct dagny_host_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_host_handler)(void *user, const struct dagny_host_event *event);
 
-/** Cuts what host sends into events. Its members are nobody's business. */
+/**
+ * Cuts what host sends into events. Its members are nobody's business. It takes
+ * 545 bytes where pointers have two, as on an ATmega.
+ */
 struct dagny_host_decoder {
     dagny_host_handler handler;
     void *user;
@@ -668,7 +671,10 @@ struct dagny_robot_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_robot_handler)(void *user, const struct dagny_robot_event *event);
 
-/** Cuts what robot sends into events. Its members are nobody's business. */
+/**
+ * Cuts what robot sends into events. Its members are nobody's business. It takes
+ * 545 bytes where pointers have two, as on an ATmega.
+ */
 struct dagny_robot_decoder {
     dagny_robot_handler handler;
     void *user;

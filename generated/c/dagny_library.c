@@ -1322,13 +1322,6 @@ static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *dec
 
 /* A byte that begins no delimiter. */
 static uint8_t dagny_library_host_pass(struct dagny_library_host_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0x0D) {
-            return dagny_library_host_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? dagny_library_host_complete(decoder) : (uint8_t)DAGNY_LIBRARY_NO_REASON;
-    }
     return dagny_library_host_unstuff(decoder, byte);
 }
 
@@ -1406,7 +1399,6 @@ static void dagny_library_host_open(struct dagny_library_host_decoder *decoder) 
     decoder->limit = UINT16_MAX;
     decoder->flags = 0;
     decoder->behind = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 
@@ -1716,13 +1708,6 @@ static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *d
 
 /* A byte that begins no delimiter. */
 static uint8_t dagny_library_robot_pass(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0x0D) {
-            return dagny_library_robot_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? dagny_library_robot_complete(decoder) : (uint8_t)DAGNY_LIBRARY_NO_REASON;
-    }
     return dagny_library_robot_unstuff(decoder, byte);
 }
 
@@ -1800,7 +1785,6 @@ static void dagny_library_robot_open(struct dagny_library_robot_decoder *decoder
     decoder->limit = UINT16_MAX;
     decoder->flags = 0;
     decoder->behind = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 

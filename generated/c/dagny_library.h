@@ -628,7 +628,10 @@ struct dagny_library_host_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_library_host_handler)(void *user, const struct dagny_library_host_event *event);
 
-/** Cuts what host sends into events. Its members are nobody's business. */
+/**
+ * Cuts what host sends into events. Its members are nobody's business. It takes
+ * 1050 bytes where pointers have two, as on an ATmega.
+ */
 struct dagny_library_host_decoder {
     dagny_library_host_handler handler;
     void *user;
@@ -638,13 +641,10 @@ struct dagny_library_host_decoder {
     uint16_t content;
     uint16_t payload;
     uint16_t limit;
-    uint16_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t flags;
     uint8_t behind;
     uint8_t match;
-    uint8_t end_left;
     uint8_t node;
     uint8_t buffer[1027];
 };
@@ -691,7 +691,10 @@ struct dagny_library_robot_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_library_robot_handler)(void *user, const struct dagny_library_robot_event *event);
 
-/** Cuts what robot sends into events. Its members are nobody's business. */
+/**
+ * Cuts what robot sends into events. Its members are nobody's business. It takes
+ * 1050 bytes where pointers have two, as on an ATmega.
+ */
 struct dagny_library_robot_decoder {
     dagny_library_robot_handler handler;
     void *user;
@@ -701,13 +704,10 @@ struct dagny_library_robot_decoder {
     uint16_t content;
     uint16_t payload;
     uint16_t limit;
-    uint16_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t flags;
     uint8_t behind;
     uint8_t match;
-    uint8_t end_left;
     uint8_t node;
     uint8_t buffer[1027];
 };

@@ -500,7 +500,10 @@ struct matty_pc_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_pc_handler)(void *user, const struct matty_pc_event *event);
 
-/** Cuts what pc sends into events. Its members are nobody's business. */
+/**
+ * Cuts what pc sends into events. Its members are nobody's business. It takes
+ * 141 bytes where pointers have two, as on an ATmega.
+ */
 struct matty_pc_decoder {
     matty_pc_handler handler;
     void *user;
@@ -509,9 +512,7 @@ struct matty_pc_decoder {
     uint8_t wire;
     uint8_t content;
     uint8_t payload;
-    uint8_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t behind;
     uint8_t node;
     uint8_t buffer[126];
@@ -560,7 +561,10 @@ struct matty_esp_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_esp_handler)(void *user, const struct matty_esp_event *event);
 
-/** Cuts what esp sends into events. Its members are nobody's business. */
+/**
+ * Cuts what esp sends into events. Its members are nobody's business. It takes
+ * 141 bytes where pointers have two, as on an ATmega.
+ */
 struct matty_esp_decoder {
     matty_esp_handler handler;
     void *user;
@@ -569,9 +573,7 @@ struct matty_esp_decoder {
     uint8_t wire;
     uint8_t content;
     uint8_t payload;
-    uint8_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t behind;
     uint8_t node;
     uint8_t buffer[126];

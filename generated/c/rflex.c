@@ -2038,14 +2038,6 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
 
 /* A byte that begins no delimiter. */
 static uint8_t rflex_linux_pass(struct rflex_linux_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        const uint8_t due = (uint8_t)(2U - decoder->end_left);
-        if (byte != (due == 0U ? 0x1B : 0x03)) {
-            return rflex_linux_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rflex_linux_complete(decoder) : (uint8_t)RFLEX_NO_REASON;
-    }
     if (decoder->content >= 2U) {
         return rflex_linux_unstuff(decoder, byte);
     }
@@ -2126,7 +2118,6 @@ static void rflex_linux_open(struct rflex_linux_decoder *decoder) {
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 
@@ -2558,14 +2549,6 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
 
 /* A byte that begins no delimiter. */
 static uint8_t rflex_flex_pass(struct rflex_flex_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        const uint8_t due = (uint8_t)(2U - decoder->end_left);
-        if (byte != (due == 0U ? 0x1B : 0x03)) {
-            return rflex_flex_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rflex_flex_complete(decoder) : (uint8_t)RFLEX_NO_REASON;
-    }
     if (decoder->content >= 2U) {
         return rflex_flex_unstuff(decoder, byte);
     }
@@ -2646,7 +2629,6 @@ static void rflex_flex_open(struct rflex_flex_decoder *decoder) {
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 

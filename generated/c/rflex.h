@@ -926,7 +926,10 @@ struct rflex_linux_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_linux_handler)(void *user, const struct rflex_linux_event *event);
 
-/** Cuts what linux sends into events. Its members are nobody's business. */
+/**
+ * Cuts what linux sends into events. Its members are nobody's business. It takes
+ * 288 bytes where pointers have two, as on an ATmega.
+ */
 struct rflex_linux_decoder {
     rflex_linux_handler handler;
     void *user;
@@ -942,7 +945,6 @@ struct rflex_linux_decoder {
     uint8_t behind;
     uint8_t match;
     uint8_t held;
-    uint8_t end_left;
     uint8_t node;
     uint8_t buffer[262];
 };
@@ -991,7 +993,10 @@ struct rflex_flex_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_flex_handler)(void *user, const struct rflex_flex_event *event);
 
-/** Cuts what flex sends into events. Its members are nobody's business. */
+/**
+ * Cuts what flex sends into events. Its members are nobody's business. It takes
+ * 288 bytes where pointers have two, as on an ATmega.
+ */
 struct rflex_flex_decoder {
     rflex_flex_handler handler;
     void *user;
@@ -1007,7 +1012,6 @@ struct rflex_flex_decoder {
     uint8_t behind;
     uint8_t match;
     uint8_t held;
-    uint8_t end_left;
     uint8_t node;
     uint8_t buffer[262];
 };

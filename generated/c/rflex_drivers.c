@@ -2538,14 +2538,6 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
 
 /* A byte that begins no delimiter. */
 static uint8_t rflex_drivers_linux_pass(struct rflex_drivers_linux_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        const uint8_t due = (uint8_t)(2U - decoder->end_left);
-        if (byte != (due == 0U ? 0x1B : 0x03)) {
-            return rflex_drivers_linux_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rflex_drivers_linux_complete(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
-    }
     if (decoder->content >= 2U) {
         return rflex_drivers_linux_unstuff(decoder, byte);
     }
@@ -2626,7 +2618,6 @@ static void rflex_drivers_linux_open(struct rflex_drivers_linux_decoder *decoder
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 
@@ -3064,14 +3055,6 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
 
 /* A byte that begins no delimiter. */
 static uint8_t rflex_drivers_flex_pass(struct rflex_drivers_flex_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        const uint8_t due = (uint8_t)(2U - decoder->end_left);
-        if (byte != (due == 0U ? 0x1B : 0x03)) {
-            return rflex_drivers_flex_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rflex_drivers_flex_complete(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
-    }
     if (decoder->content >= 2U) {
         return rflex_drivers_flex_unstuff(decoder, byte);
     }
@@ -3152,7 +3135,6 @@ static void rflex_drivers_flex_open(struct rflex_drivers_flex_decoder *decoder) 
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 

@@ -1646,13 +1646,6 @@ static uint8_t rn1_host_accept(struct rn1_host_decoder *decoder, uint8_t byte) {
 
 /* A byte that begins no delimiter. */
 static uint8_t rn1_host_pass(struct rn1_host_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0xFF) {
-            return rn1_host_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rn1_host_complete(decoder) : (uint8_t)RN1_NO_REASON;
-    }
     if (((decoder->flags & RN1_KNOWN) != 0U && decoder->content == decoder->limit)) {
         return rn1_host_surplus(decoder);
     }
@@ -1727,7 +1720,6 @@ static void rn1_host_open(struct rn1_host_decoder *decoder) {
     decoder->limit = UINT8_MAX;
     decoder->flags = 0;
     decoder->behind = 0;
-    decoder->end_left = 0;
 }
 
 /* Look for the next start. */

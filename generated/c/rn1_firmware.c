@@ -1992,13 +1992,6 @@ static uint8_t rn1_firmware_host_accept(struct rn1_firmware_host_decoder *decode
 
 /* A byte that begins no delimiter. */
 static uint8_t rn1_firmware_host_pass(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0xFF) {
-            return rn1_firmware_host_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? rn1_firmware_host_complete(decoder) : (uint8_t)RN1_FIRMWARE_NO_REASON;
-    }
     if (((decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && decoder->content == decoder->limit)) {
         return rn1_firmware_host_surplus(decoder);
     }
@@ -2073,7 +2066,6 @@ static void rn1_firmware_host_open(struct rn1_firmware_host_decoder *decoder) {
     decoder->limit = UINT8_MAX;
     decoder->flags = 0;
     decoder->behind = 0;
-    decoder->end_left = 0;
 }
 
 /* Look for the next start. */

@@ -613,13 +613,6 @@ static uint8_t uherobot_daemon_unstuff(struct uherobot_daemon_decoder *decoder, 
 
 /* A byte that begins no delimiter. */
 static uint8_t uherobot_daemon_pass(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0x65) {
-            return uherobot_daemon_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? uherobot_daemon_complete(decoder) : (uint8_t)UHEROBOT_NO_REASON;
-    }
     if (decoder->content >= 1U) {
         return uherobot_daemon_unstuff(decoder, byte);
     }
@@ -686,7 +679,6 @@ static void uherobot_daemon_open(struct uherobot_daemon_decoder *decoder) {
     decoder->content = 0;
     decoder->payload = UINT16_MAX;
     decoder->behind = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 
@@ -952,13 +944,6 @@ static uint8_t uherobot_board_unstuff(struct uherobot_board_decoder *decoder, ui
 
 /* A byte that begins no delimiter. */
 static uint8_t uherobot_board_pass(struct uherobot_board_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0x65) {
-            return uherobot_board_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? uherobot_board_complete(decoder) : (uint8_t)UHEROBOT_NO_REASON;
-    }
     if (decoder->content >= 1U) {
         return uherobot_board_unstuff(decoder, byte);
     }
@@ -1025,7 +1010,6 @@ static void uherobot_board_open(struct uherobot_board_decoder *decoder) {
     decoder->content = 0;
     decoder->payload = UINT16_MAX;
     decoder->behind = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 

@@ -610,13 +610,6 @@ static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_deco
 
 /* A byte that begins no delimiter. */
 static uint8_t uherobot_daemon_daemon_pass(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        if (byte != 0x0A) {
-            return uherobot_daemon_daemon_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? uherobot_daemon_daemon_complete(decoder) : (uint8_t)UHEROBOT_DAEMON_NO_REASON;
-    }
     if (decoder->content >= 1U) {
         return uherobot_daemon_daemon_unstuff(decoder, byte);
     }
@@ -683,7 +676,6 @@ static void uherobot_daemon_daemon_open(struct uherobot_daemon_daemon_decoder *d
     decoder->content = 0;
     decoder->payload = UINT16_MAX;
     decoder->behind = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 
@@ -973,14 +965,6 @@ static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decode
 
 /* A byte that begins no delimiter. */
 static uint8_t uherobot_daemon_board_pass(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
-    if (decoder->end_left != 0U) {
-        const uint8_t due = (uint8_t)(2U - decoder->end_left);
-        if (byte != (due == 0U ? 0x0D : 0x0A)) {
-            return uherobot_daemon_board_surplus(decoder);
-        }
-        decoder->end_left--;
-        return decoder->end_left == 0U ? uherobot_daemon_board_complete(decoder) : (uint8_t)UHEROBOT_DAEMON_NO_REASON;
-    }
     if (decoder->content >= 1U) {
         return uherobot_daemon_board_unstuff(decoder, byte);
     }
@@ -1059,7 +1043,6 @@ static void uherobot_daemon_board_open(struct uherobot_daemon_board_decoder *dec
     decoder->payload = UINT16_MAX;
     decoder->behind = 0;
     decoder->held = 0;
-    decoder->end_left = 0;
     decoder->node = 0;
 }
 

@@ -245,7 +245,10 @@ struct uherobot_daemon_daemon_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_daemon_handler)(void *user, const struct uherobot_daemon_daemon_event *event);
 
-/** Cuts what daemon sends into events. Its members are nobody's business. */
+/**
+ * Cuts what daemon sends into events. Its members are nobody's business. It takes
+ * 276 bytes where pointers have two, as on an ATmega.
+ */
 struct uherobot_daemon_daemon_decoder {
     uherobot_daemon_daemon_handler handler;
     void *user;
@@ -254,11 +257,8 @@ struct uherobot_daemon_daemon_decoder {
     uint16_t wire;
     uint16_t content;
     uint16_t payload;
-    uint16_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t behind;
-    uint8_t end_left;
     uint8_t node;
     uint8_t code;
     uint8_t buffer[256];
@@ -306,7 +306,10 @@ struct uherobot_daemon_board_event {
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_board_handler)(void *user, const struct uherobot_daemon_board_event *event);
 
-/** Cuts what board sends into events. Its members are nobody's business. */
+/**
+ * Cuts what board sends into events. Its members are nobody's business. It takes
+ * 279 bytes where pointers have two, as on an ATmega.
+ */
 struct uherobot_daemon_board_decoder {
     uherobot_daemon_board_handler handler;
     void *user;
@@ -315,12 +318,9 @@ struct uherobot_daemon_board_decoder {
     uint16_t wire;
     uint16_t content;
     uint16_t payload;
-    uint16_t failed;
     uint8_t state;
-    uint8_t reason;
     uint8_t behind;
     uint8_t held;
-    uint8_t end_left;
     uint8_t node;
     uint8_t code;
     uint8_t buffer[258];

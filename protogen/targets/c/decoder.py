@@ -297,6 +297,21 @@ class DecoderView:
         return len(self.matches) > 1 or self.start == "after_end"
 
     @property
+    def decides_later(self) -> bool:
+        """Whether the bytes behind a failed candidate may tell that its last ones are a start."""
+        return (
+            self.all_events
+            and not self.keeps_wire
+            and self.start == "literal"
+            and self.start_size > 1
+        )
+
+    @property
+    def awaits_end(self) -> bool:
+        """Whether the end is due in one place, and not looked for."""
+        return bool(self.geometry.end) and not self.end_protected
+
+    @property
     def start_decides(self) -> bool:
         """Whether a candidate may be over with its start."""
         least = self.geometry.sender.framing.least

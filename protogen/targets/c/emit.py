@@ -14,6 +14,7 @@ from protogen.model.selection import select
 from protogen.targets.banner import C, banner
 from protogen.targets.c.framing import FramingView, framing_view
 from protogen.targets.c.lines import prototype
+from protogen.targets.c.members import members_of, memory_of
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
@@ -101,4 +102,6 @@ def _sketch(unit: Unit) -> File:
 def _environment() -> Environment:
     found = environment("protogen.targets.c")
     found.globals["prototype"] = prototype
+    found.globals["members"] = members_of
+    found.globals["memory"] = memory_of
     return found

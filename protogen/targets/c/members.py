@@ -1,0 +1,94 @@
+"""What a decoder remembers between bytes: the members of its struct."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.targets.c.decoder import DecoderView
+
+_POINTERS = 2
+"""The handler and what it is given."""
+_SMALL_POINTER = 2
+"""Bytes of a pointer on a small target, which aligns nothing."""
+_SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member of the struct."""
+
+    type: str
+    name: str
+    count: int | None = None
+    """Elements of an array."""
+
+    @property
+    def declaration(self) -> str:
+        """The member in C."""
+        return f"{self.type} {self.name}" + ("" if self.count is None else f"[{self.count}]")
+
+    @property
+    def size(self) -> int:
+        """Bytes of memory."""
+        return _SIZES[self.type] * (1 if self.count is None else self.count)
+
+
+def members_of(view: DecoderView) -> tuple[Member, ...]:
+    """The members behind the handler and its `user`, the buffers last."""
+    return (*_counters(view), *_states(view), *_buffers(view))
+
+
+def memory_of(members: tuple[Member, ...]) -> int:
+    """Bytes that the decoder takes on an 8-bit controller."""
+    return _POINTERS * _SMALL_POINTER + sum(member.size for member in members)
+
+
+def _counters(view: DecoderView) -> Iterator[Member]:
+    type_ = view.counter
+    if view.all_events:
+        yield Member("uint32_t", "offset")
+    named = {
+        "noise": view.all_events,
+        "wire": view.counts_wire,
+        "content": True,
+        "payload": True,
+        "limit": not view.simple,
+        "count": view.keeps_wire,
+        "next": view.keeps_wire,
+        "failed": view.keeps_wire or view.decides_later,
+        "extra": view.decides_later,
+        "due": view.can_measure,
+        "open_from": view.ends_at_start,
+        "passed": view.wire_ends,
+    }
+    yield from (Member(type_, name) for name, is_there in named.items() if is_there)
+
+
+def _states(view: DecoderView) -> Iterator[Member]:
+    stuffing = view.stuffing
+    named = {
+        "state": True,
+        "reason": view.all_events and (view.keeps_wire or view.decides_later),
+        "flags": view.has_flags,
+        "group": view.can_measure,
+        "behind": view.keeps_behind,
+        "match": view.keeps_match,
+        "shared": view.shares,
+        "held": view.searches and len(view.delimiter) > 1,
+        "end_left": view.awaits_end,
+        "region": stuffing is not None and not view.region_to_end,
+        "node": stuffing is not None,
+        "code": stuffing is not None and stuffing.kind in ("base16", "cobs"),
+    }
+    yield from (Member("uint8_t", name) for name, is_there in named.items() if is_there)
+    if stuffing is not None and stuffing.kind == "lenient_codes":
+        yield Member("uint8_t", "sequence", stuffing.longest)
+
+
+def _buffers(view: DecoderView) -> Iterator[Member]:
+    yield Member("uint8_t", "buffer", view.buffer_size)
+    if view.store == "both":
+        yield Member("uint8_t", "unstuffed", view.greatest)
+    if view.wire_ends:
+        yield Member(view.counter, "ends", view.greatest)
