@@ -1582,12 +1582,6 @@ static uint8_t dagny_host_take(struct dagny_host_decoder *decoder, uint8_t byte)
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t dagny_host_close_at_flush(struct dagny_host_decoder *decoder) {
-    (void)decoder;
-    return DAGNY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void dagny_host_open(struct dagny_host_decoder *decoder) {
     dagny_host_end_noise(decoder);
@@ -1721,7 +1715,7 @@ void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_hand
 void dagny_host_decoder_flush(struct dagny_host_decoder *decoder) {
     dagny_host_run(decoder, true);
     while (decoder->state == DAGNY_TAKING && decoder->wire != 0U) {
-        dagny_host_judge(decoder, dagny_host_close_at_flush(decoder));
+        dagny_host_judge(decoder, DAGNY_TRUNCATED);
         dagny_host_run(decoder, true);
     }
     dagny_host_end_noise(decoder);
@@ -2026,12 +2020,6 @@ static uint8_t dagny_robot_take(struct dagny_robot_decoder *decoder, uint8_t byt
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t dagny_robot_close_at_flush(struct dagny_robot_decoder *decoder) {
-    (void)decoder;
-    return DAGNY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void dagny_robot_open(struct dagny_robot_decoder *decoder) {
     dagny_robot_end_noise(decoder);
@@ -2165,7 +2153,7 @@ void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_h
 void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder) {
     dagny_robot_run(decoder, true);
     while (decoder->state == DAGNY_TAKING && decoder->wire != 0U) {
-        dagny_robot_judge(decoder, dagny_robot_close_at_flush(decoder));
+        dagny_robot_judge(decoder, DAGNY_TRUNCATED);
         dagny_robot_run(decoder, true);
     }
     dagny_robot_end_noise(decoder);

@@ -1383,12 +1383,6 @@ static uint8_t dagny_library_host_take(struct dagny_library_host_decoder *decode
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t dagny_library_host_close_at_flush(struct dagny_library_host_decoder *decoder) {
-    (void)decoder;
-    return DAGNY_LIBRARY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void dagny_library_host_open(struct dagny_library_host_decoder *decoder) {
     dagny_library_host_end_noise(decoder);
@@ -1460,10 +1454,7 @@ void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
 
 void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder) {
     if (decoder->state == DAGNY_LIBRARY_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = dagny_library_host_close_at_flush(decoder);
-        if (reason != DAGNY_LIBRARY_FRAME) {
-            dagny_library_host_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        dagny_library_host_invalid(decoder, DAGNY_LIBRARY_TRUNCATED, (uint16_t)(decoder->wire));
     }
     dagny_library_host_end_noise(decoder);
     dagny_library_host_reset(decoder);
@@ -1769,12 +1760,6 @@ static uint8_t dagny_library_robot_take(struct dagny_library_robot_decoder *deco
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t dagny_library_robot_close_at_flush(struct dagny_library_robot_decoder *decoder) {
-    (void)decoder;
-    return DAGNY_LIBRARY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void dagny_library_robot_open(struct dagny_library_robot_decoder *decoder) {
     dagny_library_robot_end_noise(decoder);
@@ -1846,10 +1831,7 @@ void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decode
 
 void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decoder) {
     if (decoder->state == DAGNY_LIBRARY_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = dagny_library_robot_close_at_flush(decoder);
-        if (reason != DAGNY_LIBRARY_FRAME) {
-            dagny_library_robot_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        dagny_library_robot_invalid(decoder, DAGNY_LIBRARY_TRUNCATED, (uint16_t)(decoder->wire));
     }
     dagny_library_robot_end_noise(decoder);
     dagny_library_robot_reset(decoder);

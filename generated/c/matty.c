@@ -923,7 +923,7 @@ enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counte
 
 /* Events. */
 
-static void matty_pc_invalid(struct matty_pc_decoder *decoder, uint8_t reason, uint8_t size) {
+static void matty_pc_invalid(struct matty_pc_decoder *decoder, uint8_t reason, uint16_t size) {
     struct matty_pc_event event;
     event.kind = MATTY_INVALID;
     event.reason = (enum matty_reason)reason;
@@ -939,14 +939,14 @@ static void matty_pc_invalid(struct matty_pc_decoder *decoder, uint8_t reason, u
 }
 
 static void matty_pc_end_noise(struct matty_pc_decoder *decoder) {
-    const uint8_t size = decoder->noise;
+    const uint16_t size = decoder->noise;
     if (size != 0U) {
         decoder->noise = 0;
         matty_pc_invalid(decoder, MATTY_NOISE, size);
     }
 }
 
-static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint8_t size) {
+static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -958,7 +958,7 @@ static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint8_t size) {
 
 /* The message of a valid frame. */
 
-static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload, uint8_t size, uint8_t *message) {
+static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
     *message = MATTY_NO_MESSAGE;
     (void)payload;
     (void)size;
@@ -1019,7 +1019,7 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
-    event.size = (uint8_t)(decoder->wire - decoder->behind);
+    event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
     event.message = (enum matty_message)message;
     event.payload_size = decoder->payload;
@@ -1029,18 +1029,12 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_pc_surplus(const struct matty_pc_decoder *decoder) {
-    return decoder->payload != UINT8_MAX ? MATTY_LENGTH : MATTY_SIZE;
+    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_LENGTH : MATTY_SIZE;
 }
 
 /* From now on the payload's size is known. */
-static void matty_pc_set_payload(struct matty_pc_decoder *decoder, uint8_t size) {
+static void matty_pc_set_payload(struct matty_pc_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t matty_pc_enter_payload(struct matty_pc_decoder *decoder) {
-    (void)decoder;
-    return MATTY_NO_REASON;
 }
 
 static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t length) {
@@ -1048,12 +1042,12 @@ static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t l
     if (length < 2U || length > 123U || size < 2U || size - 2U > 121U) {
         return MATTY_LENGTH;
     }
-    matty_pc_set_payload(decoder, (uint8_t)(size - 2U));
+    matty_pc_set_payload(decoder, (uint16_t)(size - 2U));
     return MATTY_NO_REASON;
 }
 
 /* A byte in front of the payload. */
-static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint8_t index, uint8_t byte) {
+static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
     (void)byte;
@@ -1069,15 +1063,12 @@ static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint8_t inde
     default:
         break;
     }
-    if (reason == MATTY_NO_REASON && index == 3U) {
-        reason = matty_pc_enter_payload(decoder);
-    }
     return reason;
 }
 
 /* Something is due between two parts. */
 static uint8_t matty_pc_cross(struct matty_pc_decoder *decoder) {
-    if ((decoder->payload != UINT8_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_pc_complete(decoder);
     }
     return MATTY_NO_REASON;
@@ -1085,18 +1076,18 @@ static uint8_t matty_pc_cross(struct matty_pc_decoder *decoder) {
 
 /* One byte of content. */
 static uint8_t matty_pc_accept(struct matty_pc_decoder *decoder, uint8_t byte) {
-    const uint8_t index = decoder->content;
+    const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = MATTY_NO_REASON;
     if (index >= decoder->payload + 5U) {
         return matty_pc_surplus(decoder);
     }
     decoder->buffer[index] = byte;
-    decoder->content = (uint8_t)(index + 1U);
+    decoder->content = (uint16_t)(index + 1U);
     if (index < 4U) {
         reason = matty_pc_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT8_MAX || index < 4U + decoder->payload) {
-        crosses = decoder->payload != UINT8_MAX && index + 1U == 4U + decoder->payload;
+    } else if (index < 4U + decoder->payload) {
+        crosses = index + 1U == 4U + decoder->payload;
     }
     if (reason == MATTY_NO_REASON && crosses) {
         reason = matty_pc_cross(decoder);
@@ -1140,7 +1131,7 @@ static uint8_t matty_pc_pass(struct matty_pc_decoder *decoder, uint8_t byte) {
     if (decoder->content >= 1U) {
         return matty_pc_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT8_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_pc_surplus(decoder);
     }
     return matty_pc_accept(decoder, byte);
@@ -1162,19 +1153,13 @@ static uint8_t matty_pc_take(struct matty_pc_decoder *decoder, uint8_t byte) {
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t matty_pc_close_at_flush(struct matty_pc_decoder *decoder) {
-    (void)decoder;
-    return MATTY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void matty_pc_open(struct matty_pc_decoder *decoder) {
     matty_pc_end_noise(decoder);
     decoder->state = MATTY_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT8_MAX;
+    decoder->payload = (UINT16_MAX - 5U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1191,14 +1176,14 @@ static void matty_pc_reopen(struct matty_pc_decoder *decoder) {
 }
 
 static void matty_pc_judge(struct matty_pc_decoder *decoder, uint8_t reason, uint8_t byte) {
-    const uint8_t size = (uint8_t)(decoder->wire);
+    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
     (void)reason;
     if (reason == MATTY_FRAME) {
         matty_pc_seek_on(decoder);
     } else if (byte == 0x55 && decoder->wire > 1U) {
         if (size > 1U) {
-            matty_pc_invalid(decoder, reason, (uint8_t)(size - 1U));
+            matty_pc_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
         matty_pc_reopen(decoder);
     } else {
@@ -1248,10 +1233,7 @@ void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler ha
 
 void matty_pc_decoder_flush(struct matty_pc_decoder *decoder) {
     if (decoder->state == MATTY_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = matty_pc_close_at_flush(decoder);
-        if (reason != MATTY_FRAME) {
-            matty_pc_invalid(decoder, reason, (uint8_t)(decoder->wire));
-        }
+        matty_pc_invalid(decoder, MATTY_TRUNCATED, (uint16_t)(decoder->wire));
     }
     matty_pc_end_noise(decoder);
     matty_pc_reset(decoder);
@@ -1261,7 +1243,7 @@ void matty_pc_decoder_flush(struct matty_pc_decoder *decoder) {
 
 /* Events. */
 
-static void matty_esp_invalid(struct matty_esp_decoder *decoder, uint8_t reason, uint8_t size) {
+static void matty_esp_invalid(struct matty_esp_decoder *decoder, uint8_t reason, uint16_t size) {
     struct matty_esp_event event;
     event.kind = MATTY_INVALID;
     event.reason = (enum matty_reason)reason;
@@ -1277,14 +1259,14 @@ static void matty_esp_invalid(struct matty_esp_decoder *decoder, uint8_t reason,
 }
 
 static void matty_esp_end_noise(struct matty_esp_decoder *decoder) {
-    const uint8_t size = decoder->noise;
+    const uint16_t size = decoder->noise;
     if (size != 0U) {
         decoder->noise = 0;
         matty_esp_invalid(decoder, MATTY_NOISE, size);
     }
 }
 
-static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint8_t size) {
+static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -1296,7 +1278,7 @@ static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint8_t size)
 
 /* The message of a valid frame. */
 
-static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload, uint8_t size, uint8_t *message) {
+static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
     *message = MATTY_NO_MESSAGE;
     (void)payload;
     (void)size;
@@ -1348,7 +1330,7 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
-    event.size = (uint8_t)(decoder->wire - decoder->behind);
+    event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
     event.message = (enum matty_message)message;
     event.payload_size = decoder->payload;
@@ -1358,18 +1340,12 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_esp_surplus(const struct matty_esp_decoder *decoder) {
-    return decoder->payload != UINT8_MAX ? MATTY_LENGTH : MATTY_SIZE;
+    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_LENGTH : MATTY_SIZE;
 }
 
 /* From now on the payload's size is known. */
-static void matty_esp_set_payload(struct matty_esp_decoder *decoder, uint8_t size) {
+static void matty_esp_set_payload(struct matty_esp_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t matty_esp_enter_payload(struct matty_esp_decoder *decoder) {
-    (void)decoder;
-    return MATTY_NO_REASON;
 }
 
 static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t length) {
@@ -1377,12 +1353,12 @@ static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t
     if (length < 2U || length > 123U || size < 2U || size - 2U > 121U) {
         return MATTY_LENGTH;
     }
-    matty_esp_set_payload(decoder, (uint8_t)(size - 2U));
+    matty_esp_set_payload(decoder, (uint16_t)(size - 2U));
     return MATTY_NO_REASON;
 }
 
 /* A byte in front of the payload. */
-static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint8_t index, uint8_t byte) {
+static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
     (void)byte;
@@ -1398,15 +1374,12 @@ static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint8_t in
     default:
         break;
     }
-    if (reason == MATTY_NO_REASON && index == 3U) {
-        reason = matty_esp_enter_payload(decoder);
-    }
     return reason;
 }
 
 /* Something is due between two parts. */
 static uint8_t matty_esp_cross(struct matty_esp_decoder *decoder) {
-    if ((decoder->payload != UINT8_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_esp_complete(decoder);
     }
     return MATTY_NO_REASON;
@@ -1414,18 +1387,18 @@ static uint8_t matty_esp_cross(struct matty_esp_decoder *decoder) {
 
 /* One byte of content. */
 static uint8_t matty_esp_accept(struct matty_esp_decoder *decoder, uint8_t byte) {
-    const uint8_t index = decoder->content;
+    const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = MATTY_NO_REASON;
     if (index >= decoder->payload + 5U) {
         return matty_esp_surplus(decoder);
     }
     decoder->buffer[index] = byte;
-    decoder->content = (uint8_t)(index + 1U);
+    decoder->content = (uint16_t)(index + 1U);
     if (index < 4U) {
         reason = matty_esp_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT8_MAX || index < 4U + decoder->payload) {
-        crosses = decoder->payload != UINT8_MAX && index + 1U == 4U + decoder->payload;
+    } else if (index < 4U + decoder->payload) {
+        crosses = index + 1U == 4U + decoder->payload;
     }
     if (reason == MATTY_NO_REASON && crosses) {
         reason = matty_esp_cross(decoder);
@@ -1469,7 +1442,7 @@ static uint8_t matty_esp_pass(struct matty_esp_decoder *decoder, uint8_t byte) {
     if (decoder->content >= 1U) {
         return matty_esp_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT8_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_esp_surplus(decoder);
     }
     return matty_esp_accept(decoder, byte);
@@ -1491,19 +1464,13 @@ static uint8_t matty_esp_take(struct matty_esp_decoder *decoder, uint8_t byte) {
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t matty_esp_close_at_flush(struct matty_esp_decoder *decoder) {
-    (void)decoder;
-    return MATTY_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void matty_esp_open(struct matty_esp_decoder *decoder) {
     matty_esp_end_noise(decoder);
     decoder->state = MATTY_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT8_MAX;
+    decoder->payload = (UINT16_MAX - 5U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1520,14 +1487,14 @@ static void matty_esp_reopen(struct matty_esp_decoder *decoder) {
 }
 
 static void matty_esp_judge(struct matty_esp_decoder *decoder, uint8_t reason, uint8_t byte) {
-    const uint8_t size = (uint8_t)(decoder->wire);
+    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
     (void)reason;
     if (reason == MATTY_FRAME) {
         matty_esp_seek_on(decoder);
     } else if (byte == 0x55 && decoder->wire > 1U) {
         if (size > 1U) {
-            matty_esp_invalid(decoder, reason, (uint8_t)(size - 1U));
+            matty_esp_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
         matty_esp_reopen(decoder);
     } else {
@@ -1577,10 +1544,7 @@ void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler
 
 void matty_esp_decoder_flush(struct matty_esp_decoder *decoder) {
     if (decoder->state == MATTY_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = matty_esp_close_at_flush(decoder);
-        if (reason != MATTY_FRAME) {
-            matty_esp_invalid(decoder, reason, (uint8_t)(decoder->wire));
-        }
+        matty_esp_invalid(decoder, MATTY_TRUNCATED, (uint16_t)(decoder->wire));
     }
     matty_esp_end_noise(decoder);
     matty_esp_reset(decoder);

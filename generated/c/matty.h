@@ -488,10 +488,10 @@ struct matty_pc_event {
     /** Where the first byte is in the input, modulo 2^32. */
     uint32_t offset;
     /** Bytes on the wire. */
-    uint8_t size;
+    uint16_t size;
     /** MATTY_NO_MESSAGE where there is none. */
     enum matty_message message;
-    uint8_t payload_size;
+    uint16_t payload_size;
     /** Of a valid frame; it is there during the call. */
     const uint8_t *payload;
     struct matty_pc_parts parts;
@@ -502,16 +502,16 @@ typedef void (*matty_pc_handler)(void *user, const struct matty_pc_event *event)
 
 /**
  * Cuts what pc sends into events. Its members are nobody's business. It takes
- * 141 bytes where pointers have two, as on an ATmega.
+ * 145 bytes where pointers have two, as on an ATmega.
  */
 struct matty_pc_decoder {
     matty_pc_handler handler;
     void *user;
     uint32_t offset;
-    uint8_t noise;
-    uint8_t wire;
-    uint8_t content;
-    uint8_t payload;
+    uint16_t noise;
+    uint16_t wire;
+    uint16_t content;
+    uint16_t payload;
     uint8_t state;
     uint8_t behind;
     uint8_t node;
@@ -549,10 +549,10 @@ struct matty_esp_event {
     /** Where the first byte is in the input, modulo 2^32. */
     uint32_t offset;
     /** Bytes on the wire. */
-    uint8_t size;
+    uint16_t size;
     /** MATTY_NO_MESSAGE where there is none. */
     enum matty_message message;
-    uint8_t payload_size;
+    uint16_t payload_size;
     /** Of a valid frame; it is there during the call. */
     const uint8_t *payload;
     struct matty_esp_parts parts;
@@ -563,16 +563,16 @@ typedef void (*matty_esp_handler)(void *user, const struct matty_esp_event *even
 
 /**
  * Cuts what esp sends into events. Its members are nobody's business. It takes
- * 141 bytes where pointers have two, as on an ATmega.
+ * 145 bytes where pointers have two, as on an ATmega.
  */
 struct matty_esp_decoder {
     matty_esp_handler handler;
     void *user;
     uint32_t offset;
-    uint8_t noise;
-    uint8_t wire;
-    uint8_t content;
-    uint8_t payload;
+    uint16_t noise;
+    uint16_t wire;
+    uint16_t content;
+    uint16_t payload;
     uint8_t state;
     uint8_t behind;
     uint8_t node;

@@ -1274,18 +1274,12 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_v4_pc_surplus(const struct matty_v4_pc_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
+    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void matty_v4_pc_set_payload(struct matty_v4_pc_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t matty_v4_pc_enter_payload(struct matty_v4_pc_decoder *decoder) {
-    (void)decoder;
-    return MATTY_V4_NO_REASON;
 }
 
 static uint8_t matty_v4_pc_read_length(struct matty_v4_pc_decoder *decoder, uint16_t length) {
@@ -1314,15 +1308,12 @@ static uint8_t matty_v4_pc_take_head(struct matty_v4_pc_decoder *decoder, uint16
     default:
         break;
     }
-    if (reason == MATTY_V4_NO_REASON && index == 3U) {
-        reason = matty_v4_pc_enter_payload(decoder);
-    }
     return reason;
 }
 
 /* Something is due between two parts. */
 static uint8_t matty_v4_pc_cross(struct matty_v4_pc_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_v4_pc_complete(decoder);
     }
     return MATTY_V4_NO_REASON;
@@ -1340,8 +1331,8 @@ static uint8_t matty_v4_pc_accept(struct matty_v4_pc_decoder *decoder, uint8_t b
     decoder->content = (uint16_t)(index + 1U);
     if (index < 4U) {
         reason = matty_v4_pc_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 4U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 4U + decoder->payload;
+    } else if (index < 4U + decoder->payload) {
+        crosses = index + 1U == 4U + decoder->payload;
     }
     if (reason == MATTY_V4_NO_REASON && crosses) {
         reason = matty_v4_pc_cross(decoder);
@@ -1385,7 +1376,7 @@ static uint8_t matty_v4_pc_pass(struct matty_v4_pc_decoder *decoder, uint8_t byt
     if (decoder->content >= 1U) {
         return matty_v4_pc_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_v4_pc_surplus(decoder);
     }
     return matty_v4_pc_accept(decoder, byte);
@@ -1407,19 +1398,13 @@ static uint8_t matty_v4_pc_take(struct matty_v4_pc_decoder *decoder, uint8_t byt
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t matty_v4_pc_close_at_flush(struct matty_v4_pc_decoder *decoder) {
-    (void)decoder;
-    return MATTY_V4_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void matty_v4_pc_open(struct matty_v4_pc_decoder *decoder) {
     matty_v4_pc_end_noise(decoder);
     decoder->state = MATTY_V4_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 5U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1493,10 +1478,7 @@ void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_h
 
 void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder) {
     if (decoder->state == MATTY_V4_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = matty_v4_pc_close_at_flush(decoder);
-        if (reason != MATTY_V4_FRAME) {
-            matty_v4_pc_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        matty_v4_pc_invalid(decoder, MATTY_V4_TRUNCATED, (uint16_t)(decoder->wire));
     }
     matty_v4_pc_end_noise(decoder);
     matty_v4_pc_reset(decoder);
@@ -1606,18 +1588,12 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_v4_esp_surplus(const struct matty_v4_esp_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
+    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void matty_v4_esp_set_payload(struct matty_v4_esp_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t matty_v4_esp_enter_payload(struct matty_v4_esp_decoder *decoder) {
-    (void)decoder;
-    return MATTY_V4_NO_REASON;
 }
 
 static uint8_t matty_v4_esp_read_length(struct matty_v4_esp_decoder *decoder, uint16_t length) {
@@ -1646,15 +1622,12 @@ static uint8_t matty_v4_esp_take_head(struct matty_v4_esp_decoder *decoder, uint
     default:
         break;
     }
-    if (reason == MATTY_V4_NO_REASON && index == 3U) {
-        reason = matty_v4_esp_enter_payload(decoder);
-    }
     return reason;
 }
 
 /* Something is due between two parts. */
 static uint8_t matty_v4_esp_cross(struct matty_v4_esp_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_v4_esp_complete(decoder);
     }
     return MATTY_V4_NO_REASON;
@@ -1672,8 +1645,8 @@ static uint8_t matty_v4_esp_accept(struct matty_v4_esp_decoder *decoder, uint8_t
     decoder->content = (uint16_t)(index + 1U);
     if (index < 4U) {
         reason = matty_v4_esp_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 4U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 4U + decoder->payload;
+    } else if (index < 4U + decoder->payload) {
+        crosses = index + 1U == 4U + decoder->payload;
     }
     if (reason == MATTY_V4_NO_REASON && crosses) {
         reason = matty_v4_esp_cross(decoder);
@@ -1717,7 +1690,7 @@ static uint8_t matty_v4_esp_pass(struct matty_v4_esp_decoder *decoder, uint8_t b
     if (decoder->content >= 1U) {
         return matty_v4_esp_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 5U)) {
+    if (decoder->content == decoder->payload + 5U) {
         return matty_v4_esp_surplus(decoder);
     }
     return matty_v4_esp_accept(decoder, byte);
@@ -1739,19 +1712,13 @@ static uint8_t matty_v4_esp_take(struct matty_v4_esp_decoder *decoder, uint8_t b
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t matty_v4_esp_close_at_flush(struct matty_v4_esp_decoder *decoder) {
-    (void)decoder;
-    return MATTY_V4_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void matty_v4_esp_open(struct matty_v4_esp_decoder *decoder) {
     matty_v4_esp_end_noise(decoder);
     decoder->state = MATTY_V4_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 5U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1825,10 +1792,7 @@ void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_es
 
 void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder) {
     if (decoder->state == MATTY_V4_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = matty_v4_esp_close_at_flush(decoder);
-        if (reason != MATTY_V4_FRAME) {
-            matty_v4_esp_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        matty_v4_esp_invalid(decoder, MATTY_V4_TRUNCATED, (uint16_t)(decoder->wire));
     }
     matty_v4_esp_end_noise(decoder);
     matty_v4_esp_reset(decoder);

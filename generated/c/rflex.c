@@ -1901,18 +1901,12 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rflex_linux_surplus(const struct rflex_linux_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? RFLEX_LENGTH : RFLEX_SIZE;
+    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_LENGTH : RFLEX_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void rflex_linux_set_payload(struct rflex_linux_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t rflex_linux_enter_payload(struct rflex_linux_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_NO_REASON;
 }
 
 static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint16_t length) {
@@ -1946,9 +1940,6 @@ static uint8_t rflex_linux_take_head(struct rflex_linux_decoder *decoder, uint16
     default:
         break;
     }
-    if (reason == RFLEX_NO_REASON && index == 5U) {
-        reason = rflex_linux_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -1959,7 +1950,7 @@ static uint8_t rflex_linux_finish_region(struct rflex_linux_decoder *decoder) {
 
 /* Something is due between two parts. */
 static uint8_t rflex_linux_cross(struct rflex_linux_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         /* The end is looked for, and closes the frame. */
     }
     return RFLEX_NO_REASON;
@@ -1977,8 +1968,8 @@ static uint8_t rflex_linux_accept(struct rflex_linux_decoder *decoder, uint8_t b
     decoder->content = (uint16_t)(index + 1U);
     if (index < 6U) {
         reason = rflex_linux_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 6U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 6U + decoder->payload;
+    } else if (index < 6U + decoder->payload) {
+        crosses = index + 1U == 6U + decoder->payload;
     }
     if (reason == RFLEX_NO_REASON && crosses) {
         reason = rflex_linux_cross(decoder);
@@ -1993,10 +1984,10 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
         switch (byte) {
         case 0x1B:
             decoder->node = 1;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         case 0x7C:
             decoder->node = 2;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         default:
             break;
         }
@@ -2014,7 +2005,7 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
         switch (byte) {
         case 0x1B:
             decoder->node = 3;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         default:
             return RFLEX_STUFFING;
         }
@@ -2030,7 +2021,7 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
         break;
     }
     decoder->node = 0;
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_linux_surplus(decoder);
     }
     return rflex_linux_accept(decoder, value);
@@ -2041,7 +2032,7 @@ static uint8_t rflex_linux_pass(struct rflex_linux_decoder *decoder, uint8_t byt
     if (decoder->content >= 2U) {
         return rflex_linux_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_linux_surplus(decoder);
     }
     return rflex_linux_accept(decoder, byte);
@@ -2056,7 +2047,7 @@ static uint8_t rflex_linux_close(struct rflex_linux_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 7U)) {
         reason = RFLEX_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_LENGTH;
@@ -2102,19 +2093,13 @@ static uint8_t rflex_linux_take(struct rflex_linux_decoder *decoder, uint8_t byt
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rflex_linux_close_at_flush(struct rflex_linux_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rflex_linux_open(struct rflex_linux_decoder *decoder) {
     rflex_linux_end_noise(decoder);
     decoder->state = RFLEX_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 7U);
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2225,10 +2210,7 @@ void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder) {
         rflex_linux_seek_on(decoder);
     }
     if (decoder->state == RFLEX_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rflex_linux_close_at_flush(decoder);
-        if (reason != RFLEX_FRAME) {
-            rflex_linux_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        rflex_linux_invalid(decoder, RFLEX_TRUNCATED, (uint16_t)(decoder->wire));
     }
     if (decoder->state == RFLEX_SEEKING) {
         rflex_linux_add_noise(decoder, decoder->match);
@@ -2412,18 +2394,12 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rflex_flex_surplus(const struct rflex_flex_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? RFLEX_LENGTH : RFLEX_SIZE;
+    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_LENGTH : RFLEX_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void rflex_flex_set_payload(struct rflex_flex_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t rflex_flex_enter_payload(struct rflex_flex_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_NO_REASON;
 }
 
 static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16_t length) {
@@ -2457,9 +2433,6 @@ static uint8_t rflex_flex_take_head(struct rflex_flex_decoder *decoder, uint16_t
     default:
         break;
     }
-    if (reason == RFLEX_NO_REASON && index == 5U) {
-        reason = rflex_flex_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -2470,7 +2443,7 @@ static uint8_t rflex_flex_finish_region(struct rflex_flex_decoder *decoder) {
 
 /* Something is due between two parts. */
 static uint8_t rflex_flex_cross(struct rflex_flex_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         /* The end is looked for, and closes the frame. */
     }
     return RFLEX_NO_REASON;
@@ -2488,8 +2461,8 @@ static uint8_t rflex_flex_accept(struct rflex_flex_decoder *decoder, uint8_t byt
     decoder->content = (uint16_t)(index + 1U);
     if (index < 6U) {
         reason = rflex_flex_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 6U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 6U + decoder->payload;
+    } else if (index < 6U + decoder->payload) {
+        crosses = index + 1U == 6U + decoder->payload;
     }
     if (reason == RFLEX_NO_REASON && crosses) {
         reason = rflex_flex_cross(decoder);
@@ -2504,10 +2477,10 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
         switch (byte) {
         case 0x1B:
             decoder->node = 1;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         case 0x7C:
             decoder->node = 2;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         default:
             break;
         }
@@ -2525,7 +2498,7 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
         switch (byte) {
         case 0x1B:
             decoder->node = 3;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
         default:
             return RFLEX_STUFFING;
         }
@@ -2541,7 +2514,7 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
         break;
     }
     decoder->node = 0;
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_flex_surplus(decoder);
     }
     return rflex_flex_accept(decoder, value);
@@ -2552,7 +2525,7 @@ static uint8_t rflex_flex_pass(struct rflex_flex_decoder *decoder, uint8_t byte)
     if (decoder->content >= 2U) {
         return rflex_flex_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_flex_surplus(decoder);
     }
     return rflex_flex_accept(decoder, byte);
@@ -2567,7 +2540,7 @@ static uint8_t rflex_flex_close(struct rflex_flex_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 7U)) {
         reason = RFLEX_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_LENGTH;
@@ -2613,19 +2586,13 @@ static uint8_t rflex_flex_take(struct rflex_flex_decoder *decoder, uint8_t byte)
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rflex_flex_close_at_flush(struct rflex_flex_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rflex_flex_open(struct rflex_flex_decoder *decoder) {
     rflex_flex_end_noise(decoder);
     decoder->state = RFLEX_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 7U);
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2736,10 +2703,7 @@ void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder) {
         rflex_flex_seek_on(decoder);
     }
     if (decoder->state == RFLEX_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rflex_flex_close_at_flush(decoder);
-        if (reason != RFLEX_FRAME) {
-            rflex_flex_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        rflex_flex_invalid(decoder, RFLEX_TRUNCATED, (uint16_t)(decoder->wire));
     }
     if (decoder->state == RFLEX_SEEKING) {
         rflex_flex_add_noise(decoder, decoder->match);

@@ -2401,18 +2401,12 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
 
 /* A byte more than there can be. */
 static uint8_t rflex_drivers_linux_surplus(const struct rflex_drivers_linux_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
+    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t rflex_drivers_linux_enter_payload(struct rflex_drivers_linux_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_DRIVERS_NO_REASON;
 }
 
 static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder, uint16_t length) {
@@ -2446,9 +2440,6 @@ static uint8_t rflex_drivers_linux_take_head(struct rflex_drivers_linux_decoder 
     default:
         break;
     }
-    if (reason == RFLEX_DRIVERS_NO_REASON && index == 5U) {
-        reason = rflex_drivers_linux_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -2459,7 +2450,7 @@ static uint8_t rflex_drivers_linux_finish_region(struct rflex_drivers_linux_deco
 
 /* Something is due between two parts. */
 static uint8_t rflex_drivers_linux_cross(struct rflex_drivers_linux_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         /* The end is looked for, and closes the frame. */
     }
     return RFLEX_DRIVERS_NO_REASON;
@@ -2477,8 +2468,8 @@ static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *de
     decoder->content = (uint16_t)(index + 1U);
     if (index < 6U) {
         reason = rflex_drivers_linux_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 6U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 6U + decoder->payload;
+    } else if (index < 6U + decoder->payload) {
+        crosses = index + 1U == 6U + decoder->payload;
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
         reason = rflex_drivers_linux_cross(decoder);
@@ -2493,10 +2484,10 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
         switch (byte) {
         case 0x1B:
             decoder->node = 1;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         case 0x7C:
             decoder->node = 2;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         default:
             break;
         }
@@ -2514,7 +2505,7 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
         switch (byte) {
         case 0x1B:
             decoder->node = 3;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
@@ -2530,7 +2521,7 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
         break;
     }
     decoder->node = 0;
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_drivers_linux_surplus(decoder);
     }
     return rflex_drivers_linux_accept(decoder, value);
@@ -2541,7 +2532,7 @@ static uint8_t rflex_drivers_linux_pass(struct rflex_drivers_linux_decoder *deco
     if (decoder->content >= 2U) {
         return rflex_drivers_linux_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_drivers_linux_surplus(decoder);
     }
     return rflex_drivers_linux_accept(decoder, byte);
@@ -2556,7 +2547,7 @@ static uint8_t rflex_drivers_linux_close(struct rflex_drivers_linux_decoder *dec
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 7U)) {
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -2602,19 +2593,13 @@ static uint8_t rflex_drivers_linux_take(struct rflex_drivers_linux_decoder *deco
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rflex_drivers_linux_close_at_flush(struct rflex_drivers_linux_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_DRIVERS_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rflex_drivers_linux_open(struct rflex_drivers_linux_decoder *decoder) {
     rflex_drivers_linux_end_noise(decoder);
     decoder->state = RFLEX_DRIVERS_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 7U);
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2725,10 +2710,7 @@ void rflex_drivers_linux_decoder_flush(struct rflex_drivers_linux_decoder *decod
         rflex_drivers_linux_seek_on(decoder);
     }
     if (decoder->state == RFLEX_DRIVERS_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rflex_drivers_linux_close_at_flush(decoder);
-        if (reason != RFLEX_DRIVERS_FRAME) {
-            rflex_drivers_linux_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        rflex_drivers_linux_invalid(decoder, RFLEX_DRIVERS_TRUNCATED, (uint16_t)(decoder->wire));
     }
     if (decoder->state == RFLEX_DRIVERS_SEEKING) {
         rflex_drivers_linux_add_noise(decoder, decoder->match);
@@ -2918,18 +2900,12 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
 
 /* A byte more than there can be. */
 static uint8_t rflex_drivers_flex_surplus(const struct rflex_drivers_flex_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
+    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t rflex_drivers_flex_enter_payload(struct rflex_drivers_flex_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_DRIVERS_NO_REASON;
 }
 
 static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder, uint16_t length) {
@@ -2963,9 +2939,6 @@ static uint8_t rflex_drivers_flex_take_head(struct rflex_drivers_flex_decoder *d
     default:
         break;
     }
-    if (reason == RFLEX_DRIVERS_NO_REASON && index == 5U) {
-        reason = rflex_drivers_flex_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -2976,7 +2949,7 @@ static uint8_t rflex_drivers_flex_finish_region(struct rflex_drivers_flex_decode
 
 /* Something is due between two parts. */
 static uint8_t rflex_drivers_flex_cross(struct rflex_drivers_flex_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         /* The end is looked for, and closes the frame. */
     }
     return RFLEX_DRIVERS_NO_REASON;
@@ -2994,8 +2967,8 @@ static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *deco
     decoder->content = (uint16_t)(index + 1U);
     if (index < 6U) {
         reason = rflex_drivers_flex_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 6U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 6U + decoder->payload;
+    } else if (index < 6U + decoder->payload) {
+        crosses = index + 1U == 6U + decoder->payload;
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
         reason = rflex_drivers_flex_cross(decoder);
@@ -3010,10 +2983,10 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
         switch (byte) {
         case 0x1B:
             decoder->node = 1;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         case 0x7C:
             decoder->node = 2;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         default:
             break;
         }
@@ -3031,7 +3004,7 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
         switch (byte) {
         case 0x1B:
             decoder->node = 3;
-            return (decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U) ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
@@ -3047,7 +3020,7 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
         break;
     }
     decoder->node = 0;
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_drivers_flex_surplus(decoder);
     }
     return rflex_drivers_flex_accept(decoder, value);
@@ -3058,7 +3031,7 @@ static uint8_t rflex_drivers_flex_pass(struct rflex_drivers_flex_decoder *decode
     if (decoder->content >= 2U) {
         return rflex_drivers_flex_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 7U)) {
+    if (decoder->content == decoder->payload + 7U) {
         return rflex_drivers_flex_surplus(decoder);
     }
     return rflex_drivers_flex_accept(decoder, byte);
@@ -3073,7 +3046,7 @@ static uint8_t rflex_drivers_flex_close(struct rflex_drivers_flex_decoder *decod
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 7U)) {
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -3119,19 +3092,13 @@ static uint8_t rflex_drivers_flex_take(struct rflex_drivers_flex_decoder *decode
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rflex_drivers_flex_close_at_flush(struct rflex_drivers_flex_decoder *decoder) {
-    (void)decoder;
-    return RFLEX_DRIVERS_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rflex_drivers_flex_open(struct rflex_drivers_flex_decoder *decoder) {
     rflex_drivers_flex_end_noise(decoder);
     decoder->state = RFLEX_DRIVERS_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 7U);
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -3242,10 +3209,7 @@ void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder
         rflex_drivers_flex_seek_on(decoder);
     }
     if (decoder->state == RFLEX_DRIVERS_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rflex_drivers_flex_close_at_flush(decoder);
-        if (reason != RFLEX_DRIVERS_FRAME) {
-            rflex_drivers_flex_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        rflex_drivers_flex_invalid(decoder, RFLEX_DRIVERS_TRUNCATED, (uint16_t)(decoder->wire));
     }
     if (decoder->state == RFLEX_DRIVERS_SEEKING) {
         rflex_drivers_flex_add_noise(decoder, decoder->match);

@@ -1704,12 +1704,6 @@ static uint8_t rn1_host_take(struct rn1_host_decoder *decoder, uint8_t byte) {
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rn1_host_close_at_flush(struct rn1_host_decoder *decoder) {
-    (void)decoder;
-    return RN1_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rn1_host_open(struct rn1_host_decoder *decoder) {
     rn1_host_end_noise(decoder);
@@ -1795,10 +1789,7 @@ void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler ha
 
 void rn1_host_decoder_flush(struct rn1_host_decoder *decoder) {
     if (decoder->state == RN1_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rn1_host_close_at_flush(decoder);
-        if (reason != RN1_FRAME) {
-            rn1_host_invalid(decoder, reason, (uint8_t)(decoder->wire));
-        }
+        rn1_host_invalid(decoder, RN1_TRUNCATED, (uint8_t)(decoder->wire));
     }
     rn1_host_end_noise(decoder);
     rn1_host_reset(decoder);

@@ -2050,12 +2050,6 @@ static uint8_t rn1_firmware_host_take(struct rn1_firmware_host_decoder *decoder,
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t rn1_firmware_host_close_at_flush(struct rn1_firmware_host_decoder *decoder) {
-    (void)decoder;
-    return RN1_FIRMWARE_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void rn1_firmware_host_open(struct rn1_firmware_host_decoder *decoder) {
     rn1_firmware_host_end_noise(decoder);
@@ -2141,10 +2135,7 @@ void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder, r
 
 void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder) {
     if (decoder->state == RN1_FIRMWARE_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = rn1_firmware_host_close_at_flush(decoder);
-        if (reason != RN1_FIRMWARE_FRAME) {
-            rn1_firmware_host_invalid(decoder, reason, (uint8_t)(decoder->wire));
-        }
+        rn1_firmware_host_invalid(decoder, RN1_FIRMWARE_TRUNCATED, (uint8_t)(decoder->wire));
     }
     rn1_firmware_host_end_noise(decoder);
     rn1_firmware_host_reset(decoder);

@@ -510,18 +510,12 @@ static uint8_t uherobot_daemon_complete(struct uherobot_daemon_decoder *decoder)
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_surplus(const struct uherobot_daemon_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
+    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void uherobot_daemon_set_payload(struct uherobot_daemon_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t uherobot_daemon_enter_payload(struct uherobot_daemon_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_NO_REASON;
 }
 
 static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decoder, uint16_t length) {
@@ -550,9 +544,6 @@ static uint8_t uherobot_daemon_take_head(struct uherobot_daemon_decoder *decoder
     default:
         break;
     }
-    if (reason == UHEROBOT_NO_REASON && index == 2U) {
-        reason = uherobot_daemon_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -563,7 +554,7 @@ static uint8_t uherobot_daemon_finish_region(struct uherobot_daemon_decoder *dec
 
 /* Something is due between two parts. */
 static uint8_t uherobot_daemon_cross(struct uherobot_daemon_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         /* The end is looked for, and closes the frame. */
     }
     return UHEROBOT_NO_REASON;
@@ -581,8 +572,8 @@ static uint8_t uherobot_daemon_accept(struct uherobot_daemon_decoder *decoder, u
     decoder->content = (uint16_t)(index + 1U);
     if (index < 3U) {
         reason = uherobot_daemon_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 3U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 3U + decoder->payload;
+    } else if (index < 3U + decoder->payload) {
+        crosses = index + 1U == 3U + decoder->payload;
     }
     if (reason == UHEROBOT_NO_REASON && crosses) {
         reason = uherobot_daemon_cross(decoder);
@@ -599,7 +590,7 @@ static uint8_t uherobot_daemon_unstuff(struct uherobot_daemon_decoder *decoder, 
     } else {
         return UHEROBOT_ENCODING;
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_surplus(decoder);
     }
     if (decoder->node == 0U) {
@@ -616,7 +607,7 @@ static uint8_t uherobot_daemon_pass(struct uherobot_daemon_decoder *decoder, uin
     if (decoder->content >= 1U) {
         return uherobot_daemon_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_surplus(decoder);
     }
     return uherobot_daemon_accept(decoder, byte);
@@ -631,7 +622,7 @@ static uint8_t uherobot_daemon_close(struct uherobot_daemon_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 3U)) {
         reason = UHEROBOT_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_LENGTH;
@@ -665,19 +656,13 @@ static uint8_t uherobot_daemon_take(struct uherobot_daemon_decoder *decoder, uin
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t uherobot_daemon_close_at_flush(struct uherobot_daemon_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void uherobot_daemon_open(struct uherobot_daemon_decoder *decoder) {
     uherobot_daemon_end_noise(decoder);
     decoder->state = UHEROBOT_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 3U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -751,10 +736,7 @@ void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder, uhero
 
 void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder) {
     if (decoder->state == UHEROBOT_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = uherobot_daemon_close_at_flush(decoder);
-        if (reason != UHEROBOT_FRAME) {
-            uherobot_daemon_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        uherobot_daemon_invalid(decoder, UHEROBOT_TRUNCATED, (uint16_t)(decoder->wire));
     }
     uherobot_daemon_end_noise(decoder);
     uherobot_daemon_reset(decoder);
@@ -841,18 +823,12 @@ static uint8_t uherobot_board_complete(struct uherobot_board_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t uherobot_board_surplus(const struct uherobot_board_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
+    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void uherobot_board_set_payload(struct uherobot_board_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t uherobot_board_enter_payload(struct uherobot_board_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_NO_REASON;
 }
 
 static uint8_t uherobot_board_read_length(struct uherobot_board_decoder *decoder, uint16_t length) {
@@ -881,9 +857,6 @@ static uint8_t uherobot_board_take_head(struct uherobot_board_decoder *decoder, 
     default:
         break;
     }
-    if (reason == UHEROBOT_NO_REASON && index == 2U) {
-        reason = uherobot_board_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -894,7 +867,7 @@ static uint8_t uherobot_board_finish_region(struct uherobot_board_decoder *decod
 
 /* Something is due between two parts. */
 static uint8_t uherobot_board_cross(struct uherobot_board_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         /* The end is looked for, and closes the frame. */
     }
     return UHEROBOT_NO_REASON;
@@ -912,8 +885,8 @@ static uint8_t uherobot_board_accept(struct uherobot_board_decoder *decoder, uin
     decoder->content = (uint16_t)(index + 1U);
     if (index < 3U) {
         reason = uherobot_board_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 3U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 3U + decoder->payload;
+    } else if (index < 3U + decoder->payload) {
+        crosses = index + 1U == 3U + decoder->payload;
     }
     if (reason == UHEROBOT_NO_REASON && crosses) {
         reason = uherobot_board_cross(decoder);
@@ -930,7 +903,7 @@ static uint8_t uherobot_board_unstuff(struct uherobot_board_decoder *decoder, ui
     } else {
         return UHEROBOT_ENCODING;
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_board_surplus(decoder);
     }
     if (decoder->node == 0U) {
@@ -947,7 +920,7 @@ static uint8_t uherobot_board_pass(struct uherobot_board_decoder *decoder, uint8
     if (decoder->content >= 1U) {
         return uherobot_board_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_board_surplus(decoder);
     }
     return uherobot_board_accept(decoder, byte);
@@ -962,7 +935,7 @@ static uint8_t uherobot_board_close(struct uherobot_board_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 3U)) {
         reason = UHEROBOT_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_LENGTH;
@@ -996,19 +969,13 @@ static uint8_t uherobot_board_take(struct uherobot_board_decoder *decoder, uint8
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t uherobot_board_close_at_flush(struct uherobot_board_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void uherobot_board_open(struct uherobot_board_decoder *decoder) {
     uherobot_board_end_noise(decoder);
     decoder->state = UHEROBOT_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 3U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1082,10 +1049,7 @@ void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder, uherobo
 
 void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder) {
     if (decoder->state == UHEROBOT_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = uherobot_board_close_at_flush(decoder);
-        if (reason != UHEROBOT_FRAME) {
-            uherobot_board_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        uherobot_board_invalid(decoder, UHEROBOT_TRUNCATED, (uint16_t)(decoder->wire));
     }
     uherobot_board_end_noise(decoder);
     uherobot_board_reset(decoder);

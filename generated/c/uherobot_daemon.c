@@ -507,18 +507,12 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_daemon_surplus(const struct uherobot_daemon_daemon_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
+    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void uherobot_daemon_daemon_set_payload(struct uherobot_daemon_daemon_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t uherobot_daemon_daemon_enter_payload(struct uherobot_daemon_daemon_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_DAEMON_NO_REASON;
 }
 
 static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_decoder *decoder, uint16_t length) {
@@ -547,9 +541,6 @@ static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_de
     default:
         break;
     }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && index == 2U) {
-        reason = uherobot_daemon_daemon_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -560,7 +551,7 @@ static uint8_t uherobot_daemon_daemon_finish_region(struct uherobot_daemon_daemo
 
 /* Something is due between two parts. */
 static uint8_t uherobot_daemon_daemon_cross(struct uherobot_daemon_daemon_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         /* The end is looked for, and closes the frame. */
     }
     return UHEROBOT_DAEMON_NO_REASON;
@@ -578,8 +569,8 @@ static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decod
     decoder->content = (uint16_t)(index + 1U);
     if (index < 3U) {
         reason = uherobot_daemon_daemon_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 3U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 3U + decoder->payload;
+    } else if (index < 3U + decoder->payload) {
+        crosses = index + 1U == 3U + decoder->payload;
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
         reason = uherobot_daemon_daemon_cross(decoder);
@@ -596,7 +587,7 @@ static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_deco
     } else {
         return UHEROBOT_DAEMON_ENCODING;
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_daemon_surplus(decoder);
     }
     if (decoder->node == 0U) {
@@ -613,7 +604,7 @@ static uint8_t uherobot_daemon_daemon_pass(struct uherobot_daemon_daemon_decoder
     if (decoder->content >= 1U) {
         return uherobot_daemon_daemon_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_daemon_surplus(decoder);
     }
     return uherobot_daemon_daemon_accept(decoder, byte);
@@ -628,7 +619,7 @@ static uint8_t uherobot_daemon_daemon_close(struct uherobot_daemon_daemon_decode
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 3U)) {
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -662,19 +653,13 @@ static uint8_t uherobot_daemon_daemon_take(struct uherobot_daemon_daemon_decoder
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t uherobot_daemon_daemon_close_at_flush(struct uherobot_daemon_daemon_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_DAEMON_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void uherobot_daemon_daemon_open(struct uherobot_daemon_daemon_decoder *decoder) {
     uherobot_daemon_daemon_end_noise(decoder);
     decoder->state = UHEROBOT_DAEMON_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 3U);
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -748,10 +733,7 @@ void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *
 
 void uherobot_daemon_daemon_decoder_flush(struct uherobot_daemon_daemon_decoder *decoder) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = uherobot_daemon_daemon_close_at_flush(decoder);
-        if (reason != UHEROBOT_DAEMON_FRAME) {
-            uherobot_daemon_daemon_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        uherobot_daemon_daemon_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED, (uint16_t)(decoder->wire));
     }
     uherobot_daemon_daemon_end_noise(decoder);
     uherobot_daemon_daemon_reset(decoder);
@@ -862,18 +844,12 @@ static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decod
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_board_surplus(const struct uherobot_daemon_board_decoder *decoder) {
-    return decoder->payload != UINT16_MAX ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
+    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
 }
 
 /* From now on the payload's size is known. */
 static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-}
-
-/* The payload begins. */
-static uint8_t uherobot_daemon_board_enter_payload(struct uherobot_daemon_board_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_DAEMON_NO_REASON;
 }
 
 static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder, uint16_t length) {
@@ -902,9 +878,6 @@ static uint8_t uherobot_daemon_board_take_head(struct uherobot_daemon_board_deco
     default:
         break;
     }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && index == 2U) {
-        reason = uherobot_daemon_board_enter_payload(decoder);
-    }
     return reason;
 }
 
@@ -915,7 +888,7 @@ static uint8_t uherobot_daemon_board_finish_region(struct uherobot_daemon_board_
 
 /* Something is due between two parts. */
 static uint8_t uherobot_daemon_board_cross(struct uherobot_daemon_board_decoder *decoder) {
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         /* The end is looked for, and closes the frame. */
     }
     return UHEROBOT_DAEMON_NO_REASON;
@@ -933,8 +906,8 @@ static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder
     decoder->content = (uint16_t)(index + 1U);
     if (index < 3U) {
         reason = uherobot_daemon_board_take_head(decoder, index, byte);
-    } else if (decoder->payload == UINT16_MAX || index < 3U + decoder->payload) {
-        crosses = decoder->payload != UINT16_MAX && index + 1U == 3U + decoder->payload;
+    } else if (index < 3U + decoder->payload) {
+        crosses = index + 1U == 3U + decoder->payload;
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
         reason = uherobot_daemon_board_cross(decoder);
@@ -951,7 +924,7 @@ static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decode
     } else {
         return UHEROBOT_DAEMON_ENCODING;
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_board_surplus(decoder);
     }
     if (decoder->node == 0U) {
@@ -968,7 +941,7 @@ static uint8_t uherobot_daemon_board_pass(struct uherobot_daemon_board_decoder *
     if (decoder->content >= 1U) {
         return uherobot_daemon_board_unstuff(decoder, byte);
     }
-    if ((decoder->payload != UINT16_MAX && decoder->content == decoder->payload + 3U)) {
+    if (decoder->content == decoder->payload + 3U) {
         return uherobot_daemon_board_surplus(decoder);
     }
     return uherobot_daemon_board_accept(decoder, byte);
@@ -983,7 +956,7 @@ static uint8_t uherobot_daemon_board_close(struct uherobot_daemon_board_decoder 
             return reason;
         }
     }
-    if (decoder->payload == UINT16_MAX) {
+    if (decoder->payload == (UINT16_MAX - 3U)) {
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -1028,19 +1001,13 @@ static uint8_t uherobot_daemon_board_take(struct uherobot_daemon_board_decoder *
     return reason;
 }
 
-/* The end of the input comes inside a candidate. */
-static uint8_t uherobot_daemon_board_close_at_flush(struct uherobot_daemon_board_decoder *decoder) {
-    (void)decoder;
-    return UHEROBOT_DAEMON_TRUNCATED;
-}
-
 /* A frame may start here. */
 static void uherobot_daemon_board_open(struct uherobot_daemon_board_decoder *decoder) {
     uherobot_daemon_board_end_noise(decoder);
     decoder->state = UHEROBOT_DAEMON_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = UINT16_MAX;
+    decoder->payload = (UINT16_MAX - 3U);
     decoder->behind = 0;
     decoder->held = 0;
     decoder->node = 0;
@@ -1115,10 +1082,7 @@ void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *de
 
 void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *decoder) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING && decoder->wire != 0U) {
-        const uint8_t reason = uherobot_daemon_board_close_at_flush(decoder);
-        if (reason != UHEROBOT_DAEMON_FRAME) {
-            uherobot_daemon_board_invalid(decoder, reason, (uint16_t)(decoder->wire));
-        }
+        uherobot_daemon_board_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED, (uint16_t)(decoder->wire));
     }
     uherobot_daemon_board_end_noise(decoder);
     uherobot_daemon_board_reset(decoder);

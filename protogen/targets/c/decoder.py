@@ -176,6 +176,8 @@ class DecoderView:
     counter: str
     """The type of sizes."""
     unlimited: str
+    unknown: str
+    """Stands for a payload whose size is not known yet; what is around it can be added to it."""
     start: str
     """`literal`, `set`, `after_end` or `anywhere`."""
     start_protected: bool
@@ -363,7 +365,8 @@ class _Builder:
     def view(self) -> DecoderView:
         geometry, framing = self._geometry, self._sender.framing
         start = framing.start
-        bits = _counter_bits(framing.greatest + len(geometry.start) + len(geometry.end))
+        around = geometry.head_size + geometry.tail_size + len(geometry.start) + len(geometry.end)
+        bits = _counter_bits(framing.greatest + around)
         head = self._numbers(geometry.head)
         groups = self._groups()
         is_open, measures = self._opens(groups), self._measures(groups)
@@ -379,6 +382,7 @@ class _Builder:
             greatest=framing.greatest,
             counter=f"uint{bits}_t",
             unlimited=f"UINT{bits}_MAX",
+            unknown=f"(UINT{bits}_MAX - {geometry.head_size + geometry.tail_size}U)",
             start=_start_kind(start),
             start_protected=isinstance(start, StartLiteral | StartSet) and start.protected,
             least_start=start.least if isinstance(start, StartSet) else 0,
