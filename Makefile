@@ -30,7 +30,7 @@ test: check
 
 # Thousands of random schemas; takes a quarter of an hour. The tests try some hundreds.
 fuzz: $(INSTALLED)
-	@HYPOTHESIS_PROFILE=thorough $(BIN)/python -m pytest -n auto --timeout 7200 tests/test_schema_fuzzing.py
+	@HYPOTHESIS_PROFILE=thorough $(BIN)/python -m pytest -n auto --timeout 7200 tests/test_schema_fuzzing.py tests/test_c_schemas.py
 
 bench: $(INSTALLED)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[bench]'

@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, settings
 
 # Deadlines measure the machine rather than the code; the CPU is shared with other workers.
 settings.register_profile(
-    "default", max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "default", max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile(
-    "ci", settings.get_profile("default"), max_examples=100, derandomize=True, print_blob=True
+    "ci", settings.get_profile("default"), max_examples=50, derandomize=True, print_blob=True
 )
 settings.register_profile("thorough", settings.get_profile("default"), max_examples=5000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))

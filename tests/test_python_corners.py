@@ -105,3 +105,23 @@ def test_flags_are_never_negative(compiled: ModuleType) -> None:
         compiled.Ping.from_dict({"state": -1})
     with pytest.raises(ValueError, match="state"):
         compiled.Ping(state=-1).to_payload()
+
+
+COUNTED = """\
+messages:
+  ping:
+    id: 1
+    from: a
+    fields:
+      number: {type: uint8, range: [0, 2]}
+      data: {type: uint8, count: number}
+      rest: {type: uint8, count: {fill: true, max: 4}}
+"""
+
+
+@pytest.mark.parametrize("compiled", [COUNTED], indirect=True)
+def test_a_number_counts_no_more_than_its_range(compiled: ModuleType) -> None:
+    """A receiver in C has room for no more, so no receiver takes it."""
+    assert compiled.Ping.from_payload(bytes.fromhex("02 07 08")).data == [7, 8]
+    with pytest.raises(ValueError, match="number counts 0 to 2, not 3"):
+        compiled.Ping.from_payload(bytes.fromhex("03 07 08 09"))

@@ -1462,6 +1462,8 @@ static uint8_t dagny_host_enter_payload(struct dagny_host_decoder *decoder) {
 static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1900,6 +1902,8 @@ static uint8_t dagny_robot_enter_payload(struct dagny_robot_decoder *decoder) {
 static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2167,44 +2171,38 @@ void dagny_host_dispatch(void *user, const struct dagny_host_event *event) {
     switch (event->message) {
     case DAGNY_MESSAGE_MOTOR: {
         struct dagny_motor message;
-        if (dagny_motor_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_motor(user, &message, &event->parts);
-        }
+        dagny_motor_load(&message, event->payload);
+        dagny_on_motor(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_STEERING: {
         struct dagny_steering message;
-        if (dagny_steering_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_steering(user, &message, &event->parts);
-        }
+        dagny_steering_load(&message, event->payload);
+        dagny_on_steering(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_REFLEX: {
         struct dagny_reflex message;
-        if (dagny_reflex_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_reflex(user, &message, &event->parts);
-        }
+        dagny_reflex_load(&message, event->payload);
+        dagny_on_reflex(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_POWER: {
         struct dagny_power message;
-        if (dagny_power_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_power(user, &message, &event->parts);
-        }
+        dagny_power_load(&message, event->payload);
+        dagny_on_power(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_LASER: {
         struct dagny_laser message;
-        if (dagny_laser_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_laser_from_host(user, &message, &event->parts);
-        }
+        dagny_laser_load(&message, event->payload, event->payload_size);
+        dagny_on_laser_from_host(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_COMMAND: {
         struct dagny_command message;
-        if (dagny_command_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_command_from_host(user, &message, &event->parts);
-        }
+        dagny_command_load(&message, event->payload, event->payload_size);
+        dagny_on_command_from_host(user, &message, &event->parts);
         break;
     }
     default:
@@ -2216,72 +2214,62 @@ void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event) {
     switch (event->message) {
     case DAGNY_MESSAGE_SONAR: {
         struct dagny_sonar message;
-        if (dagny_sonar_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_sonar(user, &message, &event->parts);
-        }
+        dagny_sonar_load(&message, event->payload, event->payload_size);
+        dagny_on_sonar(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_GPS: {
         struct dagny_gps message;
-        if (dagny_gps_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_gps(user, &message, &event->parts);
-        }
+        dagny_gps_load(&message, event->payload, event->payload_size);
+        dagny_on_gps(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_BUMP: {
         struct dagny_bump message;
-        if (dagny_bump_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_bump(user, &message, &event->parts);
-        }
+        dagny_bump_load(&message, event->payload, event->payload_size);
+        dagny_on_bump(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_ODOMETRY: {
         struct dagny_odometry message;
-        if (dagny_odometry_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_odometry(user, &message, &event->parts);
-        }
+        dagny_odometry_load(&message, event->payload, event->payload_size);
+        dagny_on_odometry(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_WHEEL_SLIP: {
         struct dagny_wheel_slip message;
-        if (dagny_wheel_slip_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_wheel_slip(user, &message, &event->parts);
-        }
+        dagny_wheel_slip_load(&message, event->payload, event->payload_size);
+        dagny_on_wheel_slip(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_BATTERY: {
         struct dagny_battery message;
-        if (dagny_battery_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_battery(user, &message, &event->parts);
-        }
+        dagny_battery_load(&message, event->payload, event->payload_size);
+        dagny_on_battery(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_REFLEX_SETTINGS: {
         struct dagny_reflex_settings message;
-        if (dagny_reflex_settings_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_reflex_settings(user, &message, &event->parts);
-        }
+        dagny_reflex_settings_load(&message, event->payload, event->payload_size);
+        dagny_on_reflex_settings(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_HARDWARE_STATUS: {
         struct dagny_hardware_status message;
-        if (dagny_hardware_status_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_hardware_status(user, &message, &event->parts);
-        }
+        dagny_hardware_status_load(&message, event->payload, event->payload_size);
+        dagny_on_hardware_status(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_LASER: {
         struct dagny_laser message;
-        if (dagny_laser_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_laser_from_robot(user, &message, &event->parts);
-        }
+        dagny_laser_load(&message, event->payload, event->payload_size);
+        dagny_on_laser_from_robot(user, &message, &event->parts);
         break;
     }
     case DAGNY_MESSAGE_COMMAND: {
         struct dagny_command message;
-        if (dagny_command_decode(&message, event->payload, event->payload_size) == DAGNY_OK) {
-            dagny_on_command_from_robot(user, &message, &event->parts);
-        }
+        dagny_command_load(&message, event->payload, event->payload_size);
+        dagny_on_command_from_robot(user, &message, &event->parts);
         break;
     }
     default:

@@ -1234,6 +1234,8 @@ static uint8_t dagny_library_host_enter_payload(struct dagny_library_host_decode
 static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1611,6 +1613,8 @@ static uint8_t dagny_library_robot_enter_payload(struct dagny_library_robot_deco
 static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1844,51 +1848,44 @@ void dagny_library_host_dispatch(void *user, const struct dagny_library_host_eve
     switch (event->message) {
     case DAGNY_LIBRARY_MESSAGE_MOTOR: {
         struct dagny_library_motor message;
-        if (dagny_library_motor_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_motor(user, &message, &event->parts);
-        }
+        dagny_library_motor_load(&message, event->payload);
+        dagny_library_on_motor(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_DRIVE: {
         struct dagny_library_drive message;
-        if (dagny_library_drive_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_drive(user, &message, &event->parts);
-        }
+        dagny_library_drive_load(&message, event->payload);
+        dagny_library_on_drive(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_STEERING: {
         struct dagny_library_steering message;
-        if (dagny_library_steering_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_steering(user, &message, &event->parts);
-        }
+        dagny_library_steering_load(&message, event->payload);
+        dagny_library_on_steering(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_POWER: {
         struct dagny_library_power message;
-        if (dagny_library_power_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_power(user, &message, &event->parts);
-        }
+        dagny_library_power_load(&message, event->payload);
+        dagny_library_on_power(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_GPS_POSITION: {
         struct dagny_library_gps_position message;
-        if (dagny_library_gps_position_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_gps_position(user, &message, &event->parts);
-        }
+        dagny_library_gps_position_load(&message, event->payload);
+        dagny_library_on_gps_position(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_LASER: {
         struct dagny_library_laser message;
-        if (dagny_library_laser_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_laser_from_host(user, &message, &event->parts);
-        }
+        dagny_library_laser_load(&message, event->payload, event->payload_size);
+        dagny_library_on_laser_from_host(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_SHUTDOWN: {
         struct dagny_library_shutdown message;
-        if (dagny_library_shutdown_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_shutdown_from_host(user, &message, &event->parts);
-        }
+        dagny_library_shutdown_load(&message, event->payload);
+        dagny_library_on_shutdown_from_host(user, &message, &event->parts);
         break;
     }
     default:
@@ -1900,51 +1897,44 @@ void dagny_library_robot_dispatch(void *user, const struct dagny_library_robot_e
     switch (event->message) {
     case DAGNY_LIBRARY_MESSAGE_SONAR: {
         struct dagny_library_sonar message;
-        if (dagny_library_sonar_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_sonar(user, &message, &event->parts);
-        }
+        dagny_library_sonar_load(&message, event->payload);
+        dagny_library_on_sonar(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_GPS: {
         struct dagny_library_gps message;
-        if (dagny_library_gps_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_gps(user, &message, &event->parts);
-        }
+        dagny_library_gps_load(&message, event->payload, event->payload_size);
+        dagny_library_on_gps(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_ODOMETRY: {
         struct dagny_library_odometry message;
-        if (dagny_library_odometry_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_odometry(user, &message, &event->parts);
-        }
+        dagny_library_odometry_load(&message, event->payload);
+        dagny_library_on_odometry(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_BATTERY: {
         struct dagny_library_battery message;
-        if (dagny_library_battery_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_battery(user, &message, &event->parts);
-        }
+        dagny_library_battery_load(&message, event->payload);
+        dagny_library_on_battery(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_COMPASS: {
         struct dagny_library_compass message;
-        if (dagny_library_compass_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_compass(user, &message, &event->parts);
-        }
+        dagny_library_compass_load(&message, event->payload);
+        dagny_library_on_compass(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_LASER: {
         struct dagny_library_laser message;
-        if (dagny_library_laser_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_laser_from_robot(user, &message, &event->parts);
-        }
+        dagny_library_laser_load(&message, event->payload, event->payload_size);
+        dagny_library_on_laser_from_robot(user, &message, &event->parts);
         break;
     }
     case DAGNY_LIBRARY_MESSAGE_SHUTDOWN: {
         struct dagny_library_shutdown message;
-        if (dagny_library_shutdown_decode(&message, event->payload, event->payload_size) == DAGNY_LIBRARY_OK) {
-            dagny_library_on_shutdown_from_robot(user, &message, &event->parts);
-        }
+        dagny_library_shutdown_load(&message, event->payload);
+        dagny_library_on_shutdown_from_robot(user, &message, &event->parts);
         break;
     }
     default:

@@ -1050,6 +1050,8 @@ static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t l
 static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1361,6 +1363,8 @@ static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t
 static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1557,51 +1561,44 @@ void matty_pc_dispatch(void *user, const struct matty_pc_event *event) {
     switch (event->message) {
     case MATTY_MESSAGE_STOP: {
         struct matty_stop message;
-        if (matty_stop_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_stop(user, &message, &event->parts);
-        }
+        matty_stop_load(&message, event->payload);
+        matty_on_stop(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_RESET: {
         struct matty_reset message;
-        if (matty_reset_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_reset(user, &message, &event->parts);
-        }
+        matty_reset_load(&message, event->payload);
+        matty_on_reset(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_MODE: {
         struct matty_mode message;
-        if (matty_mode_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_mode(user, &message, &event->parts);
-        }
+        matty_mode_load(&message, event->payload);
+        matty_on_mode(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_GO: {
         struct matty_go message;
-        if (matty_go_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_go(user, &message, &event->parts);
-        }
+        matty_go_load(&message, event->payload);
+        matty_on_go(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_LIMITS: {
         struct matty_limits message;
-        if (matty_limits_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_limits(user, &message, &event->parts);
-        }
+        matty_limits_load(&message, event->payload);
+        matty_on_limits(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_TIMING: {
         struct matty_timing message;
-        if (matty_timing_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_timing(user, &message, &event->parts);
-        }
+        matty_timing_load(&message, event->payload);
+        matty_on_timing(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_GPS_MODE: {
         struct matty_gps_mode message;
-        if (matty_gps_mode_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_gps_mode(user, &message, &event->parts);
-        }
+        matty_gps_mode_load(&message, event->payload);
+        matty_on_gps_mode(user, &message, &event->parts);
         break;
     }
     default:
@@ -1613,30 +1610,26 @@ void matty_esp_dispatch(void *user, const struct matty_esp_event *event) {
     switch (event->message) {
     case MATTY_MESSAGE_ACK: {
         struct matty_ack message;
-        if (matty_ack_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_ack(user, &message, &event->parts);
-        }
+        matty_ack_load(&message, event->payload);
+        matty_on_ack(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_NACK: {
         struct matty_nack message;
-        if (matty_nack_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_nack(user, &message, &event->parts);
-        }
+        matty_nack_load(&message, event->payload);
+        matty_on_nack(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_STATUS: {
         struct matty_status message;
-        if (matty_status_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_status(user, &message, &event->parts);
-        }
+        matty_status_load(&message, event->payload);
+        matty_on_status(user, &message, &event->parts);
         break;
     }
     case MATTY_MESSAGE_GPS: {
         struct matty_gps message;
-        if (matty_gps_decode(&message, event->payload, event->payload_size) == MATTY_OK) {
-            matty_on_gps(user, &message, &event->parts);
-        }
+        matty_gps_load(&message, event->payload, event->payload_size);
+        matty_on_gps(user, &message, &event->parts);
         break;
     }
     default:

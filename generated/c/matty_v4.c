@@ -1295,6 +1295,8 @@ static uint8_t matty_v4_pc_read_length(struct matty_v4_pc_decoder *decoder, uint
 static uint8_t matty_v4_pc_take_head(struct matty_v4_pc_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_V4_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1609,6 +1611,8 @@ static uint8_t matty_v4_esp_read_length(struct matty_v4_esp_decoder *decoder, ui
 static uint8_t matty_v4_esp_take_head(struct matty_v4_esp_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_V4_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1805,65 +1809,56 @@ void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event) {
     switch (event->message) {
     case MATTY_V4_MESSAGE_STOP: {
         struct matty_v4_stop message;
-        if (matty_v4_stop_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_stop(user, &message, &event->parts);
-        }
+        matty_v4_stop_load(&message, event->payload);
+        matty_v4_on_stop(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_RESET: {
         struct matty_v4_reset message;
-        if (matty_v4_reset_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_reset(user, &message, &event->parts);
-        }
+        matty_v4_reset_load(&message, event->payload);
+        matty_v4_on_reset(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_MODE: {
         struct matty_v4_mode message;
-        if (matty_v4_mode_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_mode(user, &message, &event->parts);
-        }
+        matty_v4_mode_load(&message, event->payload);
+        matty_v4_on_mode(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_GO: {
         struct matty_v4_go message;
-        if (matty_v4_go_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_go(user, &message, &event->parts);
-        }
+        matty_v4_go_load(&message, event->payload);
+        matty_v4_on_go(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_LIMITS: {
         struct matty_v4_limits message;
-        if (matty_v4_limits_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_limits(user, &message, &event->parts);
-        }
+        matty_v4_limits_load(&message, event->payload);
+        matty_v4_on_limits(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_TIMING: {
         struct matty_v4_timing message;
-        if (matty_v4_timing_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_timing(user, &message, &event->parts);
-        }
+        matty_v4_timing_load(&message, event->payload);
+        matty_v4_on_timing(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_GPS_MODE: {
         struct matty_v4_gps_mode message;
-        if (matty_v4_gps_mode_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_gps_mode(user, &message, &event->parts);
-        }
+        matty_v4_gps_mode_load(&message, event->payload);
+        matty_v4_on_gps_mode(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_VERSION_QUERY: {
         struct matty_v4_version_query message;
-        if (matty_v4_version_query_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_version_query(user, &message, &event->parts);
-        }
+        matty_v4_version_query_load(&message, event->payload);
+        matty_v4_on_version_query(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_LED: {
         struct matty_v4_led message;
-        if (matty_v4_led_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_led(user, &message, &event->parts);
-        }
+        matty_v4_led_load(&message, event->payload);
+        matty_v4_on_led(user, &message, &event->parts);
         break;
     }
     default:
@@ -1875,37 +1870,32 @@ void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event) {
     switch (event->message) {
     case MATTY_V4_MESSAGE_ACK: {
         struct matty_v4_ack message;
-        if (matty_v4_ack_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_ack(user, &message, &event->parts);
-        }
+        matty_v4_ack_load(&message, event->payload);
+        matty_v4_on_ack(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_NACK: {
         struct matty_v4_nack message;
-        if (matty_v4_nack_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_nack(user, &message, &event->parts);
-        }
+        matty_v4_nack_load(&message, event->payload);
+        matty_v4_on_nack(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_STATUS: {
         struct matty_v4_status message;
-        if (matty_v4_status_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_status(user, &message, &event->parts);
-        }
+        matty_v4_status_load(&message, event->payload);
+        matty_v4_on_status(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_GPS: {
         struct matty_v4_gps message;
-        if (matty_v4_gps_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_gps(user, &message, &event->parts);
-        }
+        matty_v4_gps_load(&message, event->payload, event->payload_size);
+        matty_v4_on_gps(user, &message, &event->parts);
         break;
     }
     case MATTY_V4_MESSAGE_VERSION: {
         struct matty_v4_version message;
-        if (matty_v4_version_decode(&message, event->payload, event->payload_size) == MATTY_V4_OK) {
-            matty_v4_on_version(user, &message, &event->parts);
-        }
+        matty_v4_version_load(&message, event->payload);
+        matty_v4_on_version(user, &message, &event->parts);
         break;
     }
     default:

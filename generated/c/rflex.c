@@ -1922,6 +1922,8 @@ static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint
 static uint8_t rflex_linux_take_head(struct rflex_linux_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2415,6 +2417,8 @@ static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16
 static uint8_t rflex_flex_take_head(struct rflex_flex_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2719,72 +2723,62 @@ void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event) {
     switch (event->message) {
     case RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS: {
         struct rflex_request_system_status message;
-        if (rflex_request_system_status_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_request_system_status(user, &message, &event->parts);
-        }
+        rflex_request_system_status_load(&message, event->payload);
+        rflex_on_request_system_status(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_MOTOR_00: {
         struct rflex_motor_00 message;
-        if (rflex_motor_00_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_motor_00(user, &message, &event->parts);
-        }
+        rflex_motor_00_load(&message, event->payload);
+        rflex_on_motor_00(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_MOTOR_COMMAND: {
         struct rflex_motor_command message;
-        if (rflex_motor_command_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_motor_command(user, &message, &event->parts);
-        }
+        rflex_motor_command_load(&message, event->payload);
+        rflex_on_motor_command(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_MOTOR_0A: {
         struct rflex_motor_0a message;
-        if (rflex_motor_0a_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_motor_0a(user, &message, &event->parts);
-        }
+        rflex_motor_0a_load(&message, event->payload);
+        rflex_on_motor_0a(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_MOTOR_0C: {
         struct rflex_motor_0c message;
-        if (rflex_motor_0c_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_motor_0c(user, &message, &event->parts);
-        }
+        rflex_motor_0c_load(&message, event->payload);
+        rflex_on_motor_0c(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_START_STOP_MOTOR_PACKETS: {
         struct rflex_start_stop_motor_packets message;
-        if (rflex_start_stop_motor_packets_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_start_stop_motor_packets(user, &message, &event->parts);
-        }
+        rflex_start_stop_motor_packets_load(&message, event->payload);
+        rflex_on_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA: {
         struct rflex_request_joystick_data message;
-        if (rflex_request_joystick_data_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_request_joystick_data(user, &message, &event->parts);
-        }
+        rflex_request_joystick_data_load(&message, event->payload);
+        rflex_on_request_joystick_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_START_STOP_SONAR_PACKETS: {
         struct rflex_start_stop_sonar_packets message;
-        if (rflex_start_stop_sonar_packets_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_start_stop_sonar_packets(user, &message, &event->parts);
-        }
+        rflex_start_stop_sonar_packets_load(&message, event->payload);
+        rflex_on_start_stop_sonar_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_INITIALIZE_DIGITAL_IO: {
         struct rflex_initialize_digital_io message;
-        if (rflex_initialize_digital_io_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_initialize_digital_io(user, &message, &event->parts);
-        }
+        rflex_initialize_digital_io_load(&message, event->payload);
+        rflex_on_initialize_digital_io(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CHECK_IO_CHANGED: {
         struct rflex_check_io_changed message;
-        if (rflex_check_io_changed_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_check_io_changed(user, &message, &event->parts);
-        }
+        rflex_check_io_changed_load(&message, event->payload);
+        rflex_on_check_io_changed(user, &message, &event->parts);
         break;
     }
     default:
@@ -2796,86 +2790,74 @@ void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event) {
     switch (event->message) {
     case RFLEX_MESSAGE_SYSTEM_STATUS: {
         struct rflex_system_status message;
-        if (rflex_system_status_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_system_status(user, &message, &event->parts);
-        }
+        rflex_system_status_load(&message, event->payload);
+        rflex_on_system_status(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CONFIRM_MOTOR_COMMAND: {
         struct rflex_confirm_motor_command message;
-        if (rflex_confirm_motor_command_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_confirm_motor_command(user, &message, &event->parts);
-        }
+        rflex_confirm_motor_command_load(&message, event->payload);
+        rflex_on_confirm_motor_command(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_MOTOR_0C_ANSWER: {
         struct rflex_motor_0c_answer message;
-        if (rflex_motor_0c_answer_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_motor_0c_answer(user, &message, &event->parts);
-        }
+        rflex_motor_0c_answer_load(&message, event->payload);
+        rflex_on_motor_0c_answer(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_READ_MOTOR: {
         struct rflex_read_motor message;
-        if (rflex_read_motor_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_read_motor(user, &message, &event->parts);
-        }
+        rflex_read_motor_load(&message, event->payload);
+        rflex_on_read_motor(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS: {
         struct rflex_confirm_start_stop_motor_packets message;
-        if (rflex_confirm_start_stop_motor_packets_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_confirm_start_stop_motor_packets(user, &message, &event->parts);
-        }
+        rflex_confirm_start_stop_motor_packets_load(&message, event->payload);
+        rflex_on_confirm_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_JOYSTICK_DATA: {
         struct rflex_joystick_data message;
-        if (rflex_joystick_data_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_joystick_data(user, &message, &event->parts);
-        }
+        rflex_joystick_data_load(&message, event->payload);
+        rflex_on_joystick_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS: {
         struct rflex_confirm_start_stop_sonar_packets message;
-        if (rflex_confirm_start_stop_sonar_packets_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_confirm_start_stop_sonar_packets(user, &message, &event->parts);
-        }
+        rflex_confirm_start_stop_sonar_packets_load(&message, event->payload);
+        rflex_on_confirm_start_stop_sonar_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_SONAR_DATA: {
         struct rflex_sonar_data message;
-        if (rflex_sonar_data_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_sonar_data(user, &message, &event->parts);
-        }
+        rflex_sonar_data_load(&message, event->payload, event->payload_size);
+        rflex_on_sonar_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO: {
         struct rflex_confirm_initialize_digital_io message;
-        if (rflex_confirm_initialize_digital_io_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_confirm_initialize_digital_io(user, &message, &event->parts);
-        }
+        rflex_confirm_initialize_digital_io_load(&message, event->payload);
+        rflex_on_confirm_initialize_digital_io(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CHANGED_BUMPERS: {
         struct rflex_changed_bumpers message;
-        if (rflex_changed_bumpers_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_changed_bumpers(user, &message, &event->parts);
-        }
+        rflex_changed_bumpers_load(&message, event->payload);
+        rflex_on_changed_bumpers(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CHECK_IO_CHANGED_ANSWER: {
         struct rflex_check_io_changed_answer message;
-        if (rflex_check_io_changed_answer_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_check_io_changed_answer(user, &message, &event->parts);
-        }
+        rflex_check_io_changed_answer_load(&message, event->payload);
+        rflex_on_check_io_changed_answer(user, &message, &event->parts);
         break;
     }
     case RFLEX_MESSAGE_CHANGED_BYTE: {
         struct rflex_changed_byte message;
-        if (rflex_changed_byte_decode(&message, event->payload, event->payload_size) == RFLEX_OK) {
-            rflex_on_changed_byte(user, &message, &event->parts);
-        }
+        rflex_changed_byte_load(&message, event->payload);
+        rflex_on_changed_byte(user, &message, &event->parts);
         break;
     }
     default:

@@ -2422,6 +2422,8 @@ static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decode
 static uint8_t rflex_drivers_linux_take_head(struct rflex_drivers_linux_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2921,6 +2923,8 @@ static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder 
 static uint8_t rflex_drivers_flex_take_head(struct rflex_drivers_flex_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -3225,86 +3229,74 @@ void rflex_drivers_linux_dispatch(void *user, const struct rflex_drivers_linux_e
     switch (event->message) {
     case RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS: {
         struct rflex_drivers_request_system_status message;
-        if (rflex_drivers_request_system_status_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_request_system_status(user, &message, &event->parts);
-        }
+        rflex_drivers_request_system_status_load(&message, event->payload);
+        rflex_drivers_on_request_system_status(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_AXIS_GET_SYSTEM: {
         struct rflex_drivers_axis_get_system message;
-        if (rflex_drivers_axis_get_system_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_axis_get_system(user, &message, &event->parts);
-        }
+        rflex_drivers_axis_get_system_load(&message, event->payload);
+        rflex_drivers_on_axis_get_system(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_MOTOR_COMMAND: {
         struct rflex_drivers_motor_command message;
-        if (rflex_drivers_motor_command_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_motor_command(user, &message, &event->parts);
-        }
+        rflex_drivers_motor_command_load(&message, event->payload);
+        rflex_drivers_on_motor_command(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS: {
         struct rflex_drivers_set_defaults message;
-        if (rflex_drivers_set_defaults_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_set_defaults(user, &message, &event->parts);
-        }
+        rflex_drivers_set_defaults_load(&message, event->payload);
+        rflex_drivers_on_set_defaults(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_BRAKE_SET: {
         struct rflex_drivers_brake_set message;
-        if (rflex_drivers_brake_set_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_brake_set(user, &message, &event->parts);
-        }
+        rflex_drivers_brake_set_load(&message, event->payload);
+        rflex_drivers_on_brake_set(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE: {
         struct rflex_drivers_brake_release message;
-        if (rflex_drivers_brake_release_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_brake_release(user, &message, &event->parts);
-        }
+        rflex_drivers_brake_release_load(&message, event->payload);
+        rflex_drivers_on_brake_release(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_START_STOP_MOTOR_PACKETS: {
         struct rflex_drivers_start_stop_motor_packets message;
-        if (rflex_drivers_start_stop_motor_packets_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_start_stop_motor_packets(user, &message, &event->parts);
-        }
+        rflex_drivers_start_stop_motor_packets_load(&message, event->payload);
+        rflex_drivers_on_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA: {
         struct rflex_drivers_request_joystick_data message;
-        if (rflex_drivers_request_joystick_data_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_request_joystick_data(user, &message, &event->parts);
-        }
+        rflex_drivers_request_joystick_data_load(&message, event->payload);
+        rflex_drivers_on_request_joystick_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_START_STOP_SONAR_PACKETS: {
         struct rflex_drivers_start_stop_sonar_packets message;
-        if (rflex_drivers_start_stop_sonar_packets_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_start_stop_sonar_packets(user, &message, &event->parts);
-        }
+        rflex_drivers_start_stop_sonar_packets_load(&message, event->payload);
+        rflex_drivers_on_start_stop_sonar_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_INITIALIZE_DIGITAL_IO: {
         struct rflex_drivers_initialize_digital_io message;
-        if (rflex_drivers_initialize_digital_io_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_initialize_digital_io(user, &message, &event->parts);
-        }
+        rflex_drivers_initialize_digital_io_load(&message, event->payload);
+        rflex_drivers_on_initialize_digital_io(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED: {
         struct rflex_drivers_check_io_changed message;
-        if (rflex_drivers_check_io_changed_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_check_io_changed(user, &message, &event->parts);
-        }
+        rflex_drivers_check_io_changed_load(&message, event->payload);
+        rflex_drivers_on_check_io_changed(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_IR_RUN: {
         struct rflex_drivers_ir_run message;
-        if (rflex_drivers_ir_run_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_ir_run(user, &message, &event->parts);
-        }
+        rflex_drivers_ir_run_load(&message, event->payload);
+        rflex_drivers_on_ir_run(user, &message, &event->parts);
         break;
     }
     default:
@@ -3316,100 +3308,86 @@ void rflex_drivers_flex_dispatch(void *user, const struct rflex_drivers_flex_eve
     switch (event->message) {
     case RFLEX_DRIVERS_MESSAGE_SYSTEM_STATUS: {
         struct rflex_drivers_system_status message;
-        if (rflex_drivers_system_status_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_system_status(user, &message, &event->parts);
-        }
+        rflex_drivers_system_status_load(&message, event->payload);
+        rflex_drivers_on_system_status(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_LCD_DUMP: {
         struct rflex_drivers_lcd_dump message;
-        if (rflex_drivers_lcd_dump_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_lcd_dump(user, &message, &event->parts);
-        }
+        rflex_drivers_lcd_dump_load(&message, event->payload, event->payload_size);
+        rflex_drivers_on_lcd_dump(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CONFIRM_MOTOR_COMMAND: {
         struct rflex_drivers_confirm_motor_command message;
-        if (rflex_drivers_confirm_motor_command_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_confirm_motor_command(user, &message, &event->parts);
-        }
+        rflex_drivers_confirm_motor_command_load(&message, event->payload);
+        rflex_drivers_on_confirm_motor_command(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE_ANSWER: {
         struct rflex_drivers_brake_release_answer message;
-        if (rflex_drivers_brake_release_answer_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_brake_release_answer(user, &message, &event->parts);
-        }
+        rflex_drivers_brake_release_answer_load(&message, event->payload);
+        rflex_drivers_on_brake_release_answer(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_READ_MOTOR: {
         struct rflex_drivers_read_motor message;
-        if (rflex_drivers_read_motor_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_read_motor(user, &message, &event->parts);
-        }
+        rflex_drivers_read_motor_load(&message, event->payload);
+        rflex_drivers_on_read_motor(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS: {
         struct rflex_drivers_confirm_start_stop_motor_packets message;
-        if (rflex_drivers_confirm_start_stop_motor_packets_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_confirm_start_stop_motor_packets(user, &message, &event->parts);
-        }
+        rflex_drivers_confirm_start_stop_motor_packets_load(&message, event->payload);
+        rflex_drivers_on_confirm_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_JOYSTICK_DATA: {
         struct rflex_drivers_joystick_data message;
-        if (rflex_drivers_joystick_data_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_joystick_data(user, &message, &event->parts);
-        }
+        rflex_drivers_joystick_data_load(&message, event->payload);
+        rflex_drivers_on_joystick_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS: {
         struct rflex_drivers_confirm_start_stop_sonar_packets message;
-        if (rflex_drivers_confirm_start_stop_sonar_packets_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_confirm_start_stop_sonar_packets(user, &message, &event->parts);
-        }
+        rflex_drivers_confirm_start_stop_sonar_packets_load(&message, event->payload);
+        rflex_drivers_on_confirm_start_stop_sonar_packets(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_SONAR_DATA: {
         struct rflex_drivers_sonar_data message;
-        if (rflex_drivers_sonar_data_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_sonar_data(user, &message, &event->parts);
-        }
+        rflex_drivers_sonar_data_load(&message, event->payload, event->payload_size);
+        rflex_drivers_on_sonar_data(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO: {
         struct rflex_drivers_confirm_initialize_digital_io message;
-        if (rflex_drivers_confirm_initialize_digital_io_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_confirm_initialize_digital_io(user, &message, &event->parts);
-        }
+        rflex_drivers_confirm_initialize_digital_io_load(&message, event->payload);
+        rflex_drivers_on_confirm_initialize_digital_io(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CHANGED_BUMPERS: {
         struct rflex_drivers_changed_bumpers message;
-        if (rflex_drivers_changed_bumpers_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_changed_bumpers(user, &message, &event->parts);
-        }
+        rflex_drivers_changed_bumpers_load(&message, event->payload);
+        rflex_drivers_on_changed_bumpers(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED_ANSWER: {
         struct rflex_drivers_check_io_changed_answer message;
-        if (rflex_drivers_check_io_changed_answer_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_check_io_changed_answer(user, &message, &event->parts);
-        }
+        rflex_drivers_check_io_changed_answer_load(&message, event->payload);
+        rflex_drivers_on_check_io_changed_answer(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_CHANGED_BYTE: {
         struct rflex_drivers_changed_byte message;
-        if (rflex_drivers_changed_byte_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_changed_byte(user, &message, &event->parts);
-        }
+        rflex_drivers_changed_byte_load(&message, event->payload);
+        rflex_drivers_on_changed_byte(user, &message, &event->parts);
         break;
     }
     case RFLEX_DRIVERS_MESSAGE_IR_REPORT: {
         struct rflex_drivers_ir_report message;
-        if (rflex_drivers_ir_report_decode(&message, event->payload, event->payload_size) == RFLEX_DRIVERS_OK) {
-            rflex_drivers_on_ir_report(user, &message, &event->parts);
-        }
+        rflex_drivers_ir_report_load(&message, event->payload, event->payload_size);
+        rflex_drivers_on_ir_report(user, &message, &event->parts);
         break;
     }
     default:

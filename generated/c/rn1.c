@@ -1506,13 +1506,13 @@ static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8
     switch (parts->start) {
     case UINT8_C(0x80):
         *message = RN1_MESSAGE_MOVE_MANUAL;
-        return (uint8_t)(size == 2U ? (int)rn1_move_manual_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 2U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x81):
         *message = RN1_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        return (uint8_t)(size == 4U ? (int)rn1_move_relative_twostep_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 4U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x82):
         *message = RN1_MESSAGE_MOVE_RELATIVE_ARC;
-        return (uint8_t)(size == 4U ? (int)rn1_move_relative_arc_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 4U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0xFE):
         *message = RN1_MESSAGE_MAINTENANCE;
         return (uint8_t)((size >= 4U && size <= 7U) ? (int)rn1_maintenance_check(payload, size, NULL) : (int)RN1_SIZE);
@@ -1594,6 +1594,8 @@ static uint8_t rn1_host_enter_payload(struct rn1_host_decoder *decoder) {
 static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1840,25 +1842,25 @@ static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uin
     switch (parts->start) {
     case UINT8_C(0x80):
         *message = RN1_MESSAGE_GYRO;
-        return (uint8_t)(size == 7U ? (int)rn1_gyro_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x81):
         *message = RN1_MESSAGE_XCEL;
-        return (uint8_t)(size == 7U ? (int)rn1_xcel_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x82):
         *message = RN1_MESSAGE_COMPASS;
-        return (uint8_t)(size == 7U ? (int)rn1_compass_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x83):
         *message = RN1_MESSAGE_OPTFLOW;
-        return (uint8_t)(size == 6U ? (int)rn1_optflow_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 6U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x84):
         *message = RN1_MESSAGE_LIDAR;
-        return (uint8_t)(size == 721U ? (int)rn1_lidar_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 721U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0x85):
         *message = RN1_MESSAGE_SONAR;
-        return (uint8_t)(size == 15U ? (int)rn1_sonar_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 15U ? RN1_NO_REASON : RN1_SIZE;
     case UINT8_C(0xA0):
         *message = RN1_MESSAGE_FACING;
-        return (uint8_t)(size == 5U ? (int)rn1_facing_check(payload, size, NULL) : (int)RN1_SIZE);
+        return size == 5U ? RN1_NO_REASON : RN1_SIZE;
     default:
         return RN1_NO_REASON;
     }
@@ -1946,6 +1948,8 @@ static uint8_t rn1_brain_enter_payload(struct rn1_brain_decoder *decoder) {
 static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2170,30 +2174,26 @@ void rn1_host_dispatch(void *user, const struct rn1_host_event *event) {
     switch (event->message) {
     case RN1_MESSAGE_MOVE_MANUAL: {
         struct rn1_move_manual message;
-        if (rn1_move_manual_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_move_manual(user, &message, &event->parts);
-        }
+        rn1_move_manual_load(&message, event->payload);
+        rn1_on_move_manual(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_MOVE_RELATIVE_TWOSTEP: {
         struct rn1_move_relative_twostep message;
-        if (rn1_move_relative_twostep_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_move_relative_twostep(user, &message, &event->parts);
-        }
+        rn1_move_relative_twostep_load(&message, event->payload);
+        rn1_on_move_relative_twostep(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_MOVE_RELATIVE_ARC: {
         struct rn1_move_relative_arc message;
-        if (rn1_move_relative_arc_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_move_relative_arc(user, &message, &event->parts);
-        }
+        rn1_move_relative_arc_load(&message, event->payload);
+        rn1_on_move_relative_arc(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_MAINTENANCE: {
         struct rn1_maintenance message;
-        if (rn1_maintenance_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_maintenance(user, &message, &event->parts);
-        }
+        rn1_maintenance_load(&message, event->payload, event->payload_size);
+        rn1_on_maintenance(user, &message, &event->parts);
         break;
     }
     default:
@@ -2205,51 +2205,44 @@ void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event) {
     switch (event->message) {
     case RN1_MESSAGE_GYRO: {
         struct rn1_gyro message;
-        if (rn1_gyro_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_gyro(user, &message, &event->parts);
-        }
+        rn1_gyro_load(&message, event->payload);
+        rn1_on_gyro(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_XCEL: {
         struct rn1_xcel message;
-        if (rn1_xcel_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_xcel(user, &message, &event->parts);
-        }
+        rn1_xcel_load(&message, event->payload);
+        rn1_on_xcel(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_COMPASS: {
         struct rn1_compass message;
-        if (rn1_compass_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_compass(user, &message, &event->parts);
-        }
+        rn1_compass_load(&message, event->payload);
+        rn1_on_compass(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_OPTFLOW: {
         struct rn1_optflow message;
-        if (rn1_optflow_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_optflow(user, &message, &event->parts);
-        }
+        rn1_optflow_load(&message, event->payload);
+        rn1_on_optflow(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_LIDAR: {
         struct rn1_lidar message;
-        if (rn1_lidar_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_lidar(user, &message, &event->parts);
-        }
+        rn1_lidar_load(&message, event->payload);
+        rn1_on_lidar(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_SONAR: {
         struct rn1_sonar message;
-        if (rn1_sonar_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_sonar(user, &message, &event->parts);
-        }
+        rn1_sonar_load(&message, event->payload);
+        rn1_on_sonar(user, &message, &event->parts);
         break;
     }
     case RN1_MESSAGE_FACING: {
         struct rn1_facing message;
-        if (rn1_facing_decode(&message, event->payload, event->payload_size) == RN1_OK) {
-            rn1_on_facing(user, &message, &event->parts);
-        }
+        rn1_facing_load(&message, event->payload);
+        rn1_on_facing(user, &message, &event->parts);
         break;
     }
     default:

@@ -1846,16 +1846,16 @@ static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *
     switch (parts->start) {
     case UINT8_C(0x80):
         *message = RN1_FIRMWARE_MESSAGE_MOVE_MANUAL;
-        return (uint8_t)(size == 2U ? (int)rn1_firmware_move_manual_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 2U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0x81):
         *message = RN1_FIRMWARE_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        return (uint8_t)(size == 4U ? (int)rn1_firmware_move_relative_twostep_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 4U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xD1):
         *message = RN1_FIRMWARE_MESSAGE_DECREASE_PHASE_ANGLE;
-        return (uint8_t)(size == 1U ? (int)rn1_firmware_decrease_phase_angle_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 1U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xD2):
         *message = RN1_FIRMWARE_MESSAGE_INCREASE_PHASE_ANGLE;
-        return (uint8_t)(size == 1U ? (int)rn1_firmware_increase_phase_angle_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 1U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xFE):
         *message = RN1_FIRMWARE_MESSAGE_MAINTENANCE;
         return (uint8_t)((size >= 4U && size <= 5U) ? (int)rn1_firmware_maintenance_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
@@ -1940,6 +1940,8 @@ static uint8_t rn1_firmware_host_enter_payload(struct rn1_firmware_host_decoder 
 static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *decoder, uint8_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2186,28 +2188,28 @@ static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts
     switch (parts->start) {
     case UINT8_C(0x80):
         *message = RN1_FIRMWARE_MESSAGE_GYRO;
-        return (uint8_t)(size == 7U ? (int)rn1_firmware_gyro_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0x81):
         *message = RN1_FIRMWARE_MESSAGE_XCEL;
-        return (uint8_t)(size == 7U ? (int)rn1_firmware_xcel_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0x82):
         *message = RN1_FIRMWARE_MESSAGE_COMPASS;
-        return (uint8_t)(size == 7U ? (int)rn1_firmware_compass_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0x84):
         *message = RN1_FIRMWARE_MESSAGE_LIDAR;
-        return (uint8_t)(size == 721U ? (int)rn1_firmware_lidar_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 721U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0x85):
         *message = RN1_FIRMWARE_MESSAGE_SONAR;
-        return (uint8_t)(size == 7U ? (int)rn1_firmware_sonar_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xA0):
         *message = RN1_FIRMWARE_MESSAGE_FACING;
-        return (uint8_t)(size == 5U ? (int)rn1_firmware_facing_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 5U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xA1):
         *message = RN1_FIRMWARE_MESSAGE_OPTFLOW_INTEGRAL;
-        return (uint8_t)(size == 5U ? (int)rn1_firmware_optflow_integral_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 5U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xD1):
         *message = RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE;
-        return (uint8_t)(size == 2U ? (int)rn1_firmware_motor_controller_message_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        return size == 2U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
     case UINT8_C(0xD2):
         *message = RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS;
         return (uint8_t)(size == 20U ? (int)rn1_firmware_debug_numbers_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
@@ -2304,6 +2306,8 @@ static uint8_t rn1_firmware_brain_enter_payload(struct rn1_firmware_brain_decode
 static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2528,37 +2532,32 @@ void rn1_firmware_host_dispatch(void *user, const struct rn1_firmware_host_event
     switch (event->message) {
     case RN1_FIRMWARE_MESSAGE_MOVE_MANUAL: {
         struct rn1_firmware_move_manual message;
-        if (rn1_firmware_move_manual_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_move_manual(user, &message, &event->parts);
-        }
+        rn1_firmware_move_manual_load(&message, event->payload);
+        rn1_firmware_on_move_manual(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_MOVE_RELATIVE_TWOSTEP: {
         struct rn1_firmware_move_relative_twostep message;
-        if (rn1_firmware_move_relative_twostep_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_move_relative_twostep(user, &message, &event->parts);
-        }
+        rn1_firmware_move_relative_twostep_load(&message, event->payload);
+        rn1_firmware_on_move_relative_twostep(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_DECREASE_PHASE_ANGLE: {
         struct rn1_firmware_decrease_phase_angle message;
-        if (rn1_firmware_decrease_phase_angle_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_decrease_phase_angle(user, &message, &event->parts);
-        }
+        rn1_firmware_decrease_phase_angle_load(&message, event->payload);
+        rn1_firmware_on_decrease_phase_angle(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_INCREASE_PHASE_ANGLE: {
         struct rn1_firmware_increase_phase_angle message;
-        if (rn1_firmware_increase_phase_angle_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_increase_phase_angle(user, &message, &event->parts);
-        }
+        rn1_firmware_increase_phase_angle_load(&message, event->payload);
+        rn1_firmware_on_increase_phase_angle(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_MAINTENANCE: {
         struct rn1_firmware_maintenance message;
-        if (rn1_firmware_maintenance_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_maintenance(user, &message, &event->parts);
-        }
+        rn1_firmware_maintenance_load(&message, event->payload, event->payload_size);
+        rn1_firmware_on_maintenance(user, &message, &event->parts);
         break;
     }
     default:
@@ -2570,65 +2569,56 @@ void rn1_firmware_brain_dispatch(void *user, const struct rn1_firmware_brain_eve
     switch (event->message) {
     case RN1_FIRMWARE_MESSAGE_GYRO: {
         struct rn1_firmware_gyro message;
-        if (rn1_firmware_gyro_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_gyro(user, &message, &event->parts);
-        }
+        rn1_firmware_gyro_load(&message, event->payload);
+        rn1_firmware_on_gyro(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_XCEL: {
         struct rn1_firmware_xcel message;
-        if (rn1_firmware_xcel_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_xcel(user, &message, &event->parts);
-        }
+        rn1_firmware_xcel_load(&message, event->payload);
+        rn1_firmware_on_xcel(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_COMPASS: {
         struct rn1_firmware_compass message;
-        if (rn1_firmware_compass_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_compass(user, &message, &event->parts);
-        }
+        rn1_firmware_compass_load(&message, event->payload);
+        rn1_firmware_on_compass(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_LIDAR: {
         struct rn1_firmware_lidar message;
-        if (rn1_firmware_lidar_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_lidar(user, &message, &event->parts);
-        }
+        rn1_firmware_lidar_load(&message, event->payload);
+        rn1_firmware_on_lidar(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_SONAR: {
         struct rn1_firmware_sonar message;
-        if (rn1_firmware_sonar_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_sonar(user, &message, &event->parts);
-        }
+        rn1_firmware_sonar_load(&message, event->payload);
+        rn1_firmware_on_sonar(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_FACING: {
         struct rn1_firmware_facing message;
-        if (rn1_firmware_facing_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_facing(user, &message, &event->parts);
-        }
+        rn1_firmware_facing_load(&message, event->payload);
+        rn1_firmware_on_facing(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_OPTFLOW_INTEGRAL: {
         struct rn1_firmware_optflow_integral message;
-        if (rn1_firmware_optflow_integral_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_optflow_integral(user, &message, &event->parts);
-        }
+        rn1_firmware_optflow_integral_load(&message, event->payload);
+        rn1_firmware_on_optflow_integral(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE: {
         struct rn1_firmware_motor_controller_message message;
-        if (rn1_firmware_motor_controller_message_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_motor_controller_message(user, &message, &event->parts);
-        }
+        rn1_firmware_motor_controller_message_load(&message, event->payload);
+        rn1_firmware_on_motor_controller_message(user, &message, &event->parts);
         break;
     }
     case RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS: {
         struct rn1_firmware_debug_numbers message;
-        if (rn1_firmware_debug_numbers_decode(&message, event->payload, event->payload_size) == RN1_FIRMWARE_OK) {
-            rn1_firmware_on_debug_numbers(user, &message, &event->parts);
-        }
+        rn1_firmware_debug_numbers_load(&message, event->payload);
+        rn1_firmware_on_debug_numbers(user, &message, &event->parts);
         break;
     }
     default:

@@ -531,6 +531,8 @@ static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decod
 static uint8_t uherobot_daemon_take_head(struct uherobot_daemon_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -844,6 +846,8 @@ static uint8_t uherobot_board_read_length(struct uherobot_board_decoder *decoder
 static uint8_t uherobot_board_take_head(struct uherobot_board_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1062,23 +1066,20 @@ void uherobot_daemon_dispatch(void *user, const struct uherobot_daemon_event *ev
     switch (event->message) {
     case UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS: {
         struct uherobot_motors_servos_leds message;
-        if (uherobot_motors_servos_leds_decode(&message, event->payload, event->payload_size) == UHEROBOT_OK) {
-            uherobot_on_motors_servos_leds(user, &message, &event->parts);
-        }
+        uherobot_motors_servos_leds_load(&message, event->payload);
+        uherobot_on_motors_servos_leds(user, &message, &event->parts);
         break;
     }
     case UHEROBOT_MESSAGE_MOTORS_TWO_SERVOS: {
         struct uherobot_motors_two_servos message;
-        if (uherobot_motors_two_servos_decode(&message, event->payload, event->payload_size) == UHEROBOT_OK) {
-            uherobot_on_motors_two_servos(user, &message, &event->parts);
-        }
+        uherobot_motors_two_servos_load(&message, event->payload);
+        uherobot_on_motors_two_servos(user, &message, &event->parts);
         break;
     }
     case UHEROBOT_MESSAGE_MOTOR_TEST: {
         struct uherobot_motor_test message;
-        if (uherobot_motor_test_decode(&message, event->payload, event->payload_size) == UHEROBOT_OK) {
-            uherobot_on_motor_test(user, &message, &event->parts);
-        }
+        uherobot_motor_test_load(&message, event->payload);
+        uherobot_on_motor_test(user, &message, &event->parts);
         break;
     }
     default:
@@ -1090,9 +1091,8 @@ void uherobot_board_dispatch(void *user, const struct uherobot_board_event *even
     switch (event->message) {
     case UHEROBOT_MESSAGE_STATUS: {
         struct uherobot_status message;
-        if (uherobot_status_decode(&message, event->payload, event->payload_size) == UHEROBOT_OK) {
-            uherobot_on_status(user, &message, &event->parts);
-        }
+        uherobot_status_load(&message, event->payload);
+        uherobot_on_status(user, &message, &event->parts);
         break;
     }
     default:

@@ -528,6 +528,8 @@ static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_
 static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -865,6 +867,8 @@ static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_de
 static uint8_t uherobot_daemon_board_take_head(struct uherobot_daemon_board_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    (void)decoder;
+    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1095,9 +1099,8 @@ void uherobot_daemon_daemon_dispatch(void *user, const struct uherobot_daemon_da
     switch (event->message) {
     case UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS: {
         struct uherobot_daemon_motors_servos_leds message;
-        if (uherobot_daemon_motors_servos_leds_decode(&message, event->payload, event->payload_size) == UHEROBOT_DAEMON_OK) {
-            uherobot_daemon_on_motors_servos_leds(user, &message, &event->parts);
-        }
+        uherobot_daemon_motors_servos_leds_load(&message, event->payload);
+        uherobot_daemon_on_motors_servos_leds(user, &message, &event->parts);
         break;
     }
     default:
@@ -1109,9 +1112,8 @@ void uherobot_daemon_board_dispatch(void *user, const struct uherobot_daemon_boa
     switch (event->message) {
     case UHEROBOT_DAEMON_MESSAGE_STATUS: {
         struct uherobot_daemon_status message;
-        if (uherobot_daemon_status_decode(&message, event->payload, event->payload_size) == UHEROBOT_DAEMON_OK) {
-            uherobot_daemon_on_status(user, &message, &event->parts);
-        }
+        uherobot_daemon_status_load(&message, event->payload);
+        uherobot_daemon_on_status(user, &message, &event->parts);
         break;
     }
     default:

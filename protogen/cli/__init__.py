@@ -12,7 +12,8 @@ from typing import Annotated
 
 import typer
 
-from protogen.cli import check, decode, encode, explain, fuzz, generate, schema_json
+from protogen.cli import check, decode, encode, explain, fuzz, generate, schema_json, size
+from protogen.cli.command import Command
 from protogen.cli.exits import guarded
 
 app = typer.Typer(
@@ -25,13 +26,16 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-app.command("check", epilog=check.EXAMPLE)(guarded(check.check))
-app.command("generate", epilog=generate.EXAMPLE)(guarded(generate.generate))
-app.command("decode", epilog=decode.EXAMPLE)(guarded(decode.decode))
-app.command("encode", epilog=encode.EXAMPLE)(guarded(encode.encode))
-app.command("explain", epilog=explain.EXAMPLE)(guarded(explain.explain))
-app.command("fuzz", epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
-app.command("schema-json", epilog=schema_json.EXAMPLE)(guarded(schema_json.schema_json))
+app.command("check", cls=Command, epilog=check.EXAMPLE)(guarded(check.check))
+app.command("generate", cls=Command, epilog=generate.EXAMPLE)(guarded(generate.generate))
+app.command("decode", cls=Command, epilog=decode.EXAMPLE)(guarded(decode.decode))
+app.command("encode", cls=Command, epilog=encode.EXAMPLE)(guarded(encode.encode))
+app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.explain))
+app.command("fuzz", cls=Command, epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
+app.command("size", cls=Command, epilog=size.EXAMPLE)(guarded(size.size))
+app.command("schema-json", cls=Command, epilog=schema_json.EXAMPLE)(
+    guarded(schema_json.schema_json)
+)
 
 
 def _print_version(asked: bool) -> None:

@@ -35,13 +35,21 @@ def find_compiler() -> str | None:
 class CLibrary:
     """A driver that runs in this process. Raises CompileError."""
 
-    def __init__(self, driver: Driver, compiler: str, flags: Sequence[str] = _FLAGS) -> None:
+    def __init__(self, driver: Driver, compiler: str, flags: Sequence[str] | None = None) -> None:
+        self.driver = driver
         self.calls = Calls(driver)
         self._folder = TemporaryDirectory(prefix="protogen-c-")
         folder = Path(self._folder.name)
         library = folder / "driver.so"
         sources = [*driver.write(folder), TEMPLATES / "driver_memory.c"]
-        command = [compiler, *flags, f"-I{folder}", "-o", str(library), *map(str, sources)]
+        command = [
+            compiler,
+            *(flags or _FLAGS),
+            f"-I{folder}",
+            "-o",
+            str(library),
+            *map(str, sources),
+        ]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise CompileError(done.stderr)

@@ -89,19 +89,27 @@ class Need:
         )
 
 
-def needs_of(fields: Iterable[Field]) -> dict[str, Need]:
-    """What these fields and those inside need of numbers, by the numbers' names."""
+def needs_of(fields: Sequence[Field]) -> dict[str, Need]:
+    """What those behind them and inside of these need of the fields, by the fields' names."""
+    return _needs_of_fields(fields)[0]
+
+
+def _needs_of_fields(fields: Sequence[Field]) -> tuple[dict[str, Need], dict[str, Need]]:
+    """What is needed of the fields themselves, and of numbers in front of all of them."""
+    own: dict[str, Need] = {}
     needs: dict[str, Need] = {}
-    for field in fields:
+    for field in reversed(fields):
+        if field.name in needs:
+            own[field.name] = needs.pop(field.name)
         for name, need in _needs(field.type):
             needs[name] = needs[name].also(need) if name in needs else need
-    return needs
+    return own, needs
 
 
 def _needs(type: Type) -> Iterator[tuple[str, Need]]:
     match type:
         case Struct(fields=fields):
-            yield from needs_of(fields).items()
+            yield from _needs_of_fields(fields)[1].items()
         case Array(element=element, extent=extent):
             yield from _needs_of_extent(extent)
             yield from _needs(element)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any, BinaryIO, Literal, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
@@ -31,6 +32,7 @@ __all__ = [
     "Closed",
     "Construct",
     "Container",
+    "Count",
     "Counted",
     "Fill",
     "Fixed",
@@ -52,8 +54,18 @@ __all__ = [
     "whole",
 ]
 
-Extent = int | str
-"""A number of bytes or elements, or the name of the earlier field that gives it."""
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """The earlier field that gives a number of bytes or elements, from `least` to `greatest`."""
+
+    field: str
+    least: int
+    greatest: int
+
+
+Extent = int | str | Count
+"""A number of bytes or elements, or the earlier field that gives it."""
 
 
 class PayloadError(construct.ConstructError):  # type: ignore[misc]
@@ -383,13 +395,22 @@ def _as_bytes(obj: Any, path: str, stream: BinaryIO) -> bytes:
 
 
 def _extent(extent: Extent, context: Any, path: str) -> int:
-    return extent if isinstance(extent, int) else int(_look_up(context, extent, path))
+    if isinstance(extent, int):
+        return extent
+    if isinstance(extent, str):
+        return int(_look_up(context, extent, path))
+    number = int(_look_up(context, extent.field, path))
+    if not extent.least <= number <= extent.greatest:
+        problem = f"{extent.field} counts {extent.least} to {extent.greatest}, not {number}"
+        raise PayloadError("size", path, 0, problem)
+    return number
 
 
 def _fixed_extent(extent: Extent, path: str) -> int:
     if isinstance(extent, int):
         return extent
-    raise construct.SizeofError(f"the size depends on {extent}", path=path)
+    name = extent if isinstance(extent, str) else extent.field
+    raise construct.SizeofError(f"the size depends on {name}", path=path)
 
 
 class _Text(_Around):

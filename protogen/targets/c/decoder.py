@@ -13,11 +13,12 @@ not need left out. What it keeps of a candidate is one of three things:
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from protogen.model.checksums import ChecksumSpec
+from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame import (
     ChecksumPart,
+    Cobs,
     CounterPart,
     IdentityPart,
     LengthPart,
@@ -29,7 +30,13 @@ from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.checksums import Checksum, checksum_of
-from protogen.targets.c.expressions import number_of, octets, unsigned_type, wire_bytes
+from protogen.targets.c.expressions import (
+    number_of,
+    octets,
+    unsigned_type,
+    width_of,
+    wire_bytes,
+)
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.stuffing import Stuffing, stuffing_of
@@ -109,6 +116,8 @@ class CoverView:
     literal: str
     """Bytes of a literal of the end; empty for a run."""
     count: int
+    stuffed: bool = False
+    """Whether it is stuffed on the wire, and the checksum covers what is there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -491,6 +500,12 @@ class _Builder:
         begins = self._geometry.placed(transparency.first)
         in_head = begins is not None and self._geometry.is_head(begins)
         is_payload = begins is None
+        # Where no end is looked for, the region's own end has to be seen to fit.
+        end = self._sender.framing.end
+        is_sought = end is not None and end.protected
+        may_not_fit = isinstance(transparency.encoding, Cobs) or transparency.lenient
+        if may_not_fit and not is_sought:
+            return False
         ends = transparency.last == last or (
             last is None and self._geometry.placed(transparency.last) is None
         )
@@ -570,10 +585,18 @@ class _Builder:
                         item.part.name,
                         unsigned_type(item.part.type.bits),
                         item.part.about.doc,
-                        number_of(item.part.type, at, item.offset, self._absent(item)),
+                        _narrowed(
+                            item.part,
+                            number_of(item.part.type, at, item.offset, self._absent(item)),
+                        ),
                     )
                 )
         return tuple(found)
+
+    def _shown(self, item: Placed, at: str) -> str:
+        assert isinstance(item.part, NumberPart)
+        value = number_of(item.part.type, at, item.offset, self._absent(item))
+        return _narrowed(item.part, value)
 
     # --- messages -------------------------------------------------------------------------------
 
@@ -650,8 +673,17 @@ class _Builder:
             message.sizes.least,
             message.sizes.greatest,
             message.sizes.step,
-            view.check if view.checks else "",
+            view.check if self._needs_check(view) else "",
         )
+
+    def _needs_check(self, view: MessageView) -> bool:
+        """Whether a payload of a right size can still be none of the message's.
+
+        Where all bytes carry seven bits, they were looked at one by one when they came.
+        """
+        if view.fixed is None or not self._sender.framing.seven_bit:
+            return view.checks
+        return view.checks and view.checks_values
 
     def _opens(self, groups: tuple[GroupView, ...]) -> bool:
         """Whether the payload of some frame has no size until its end is seen."""
@@ -695,12 +727,26 @@ class _Builder:
         """Runs of content, neighbours joined."""
         found: list[CoverView] = []
         for name in part.covers:
-            view = self._cover(name)
-            if found and found[-1].last == view.first and not view.literal:
-                found[-1] = CoverView(found[-1].first, view.last, "", 0)
+            view = replace(self._cover(name), stuffed=part.over_wire and name in self._stuffed())
+            last = found[-1] if found else None
+            if (
+                last
+                and last.last == view.first
+                and not view.literal
+                and last.stuffed == view.stuffed
+            ):
+                found[-1] = replace(last, last=view.last)
             else:
                 found.append(view)
         return tuple(found)
+
+    def _stuffed(self) -> tuple[str, ...]:
+        """The names of the parts in the stuffed region."""
+        transparency = self._sender.frame.transparency
+        if transparency is None:
+            return ()
+        names = [part.name for part in self._sender.frame.parts]
+        return tuple(names[names.index(transparency.first) : names.index(transparency.last) + 1])
 
     def _cover(self, name: str) -> CoverView:
         placed = self._geometry.placed(name)
@@ -716,9 +762,20 @@ class _Builder:
         return CoverView(f"{head}U", f"{head}U + decoder->payload", "", 0)
 
 
+def _narrowed(part: NumberPart, value: str) -> str:
+    """The value in the type of its bits, which its wire bytes may have more of."""
+    type_ = part.type
+    wide = width_of(type_.byte_bits * type_.size)
+    return value if wide <= width_of(type_.bits) else f"({unsigned_type(type_.bits)})({value})"
+
+
 def checksum_name(protocol: str, spec: ChecksumSpec) -> str:
     """The name of the C function of an algorithm."""
-    letters = "".join(c if c.isalnum() else "_" for c in spec.name.lower())
+    name = spec.name
+    if find_algorithm(name) != spec:  # The schema gives the parameters.
+        order = f"{'r' if spec.refin else 'n'}{'r' if spec.refout else 'n'}"
+        name = f"crc_{spec.width}_{spec.poly:x}_{spec.init:x}_{order}_{spec.xorout:x}"
+    letters = "".join(c if c.isalnum() else "_" for c in name.lower())
     return f"{protocol}_{letters}".replace("__", "_")
 
 

@@ -104,7 +104,6 @@ class MessageFrame:
     function: str
     send: str
     sends: bool
-    stream_index: int
     struct: str
     upper: str
     validate: str
@@ -274,7 +273,6 @@ def message_frame(
     message: Message,
     view: MessageView,
     suffix: str,
-    stream_index: int,
 ) -> MessageFrame:
     """The frame functions of a message; `decoder` is that of a sender of the message."""
     framing = decoder.geometry.sender.framing
@@ -291,7 +289,6 @@ def message_frame(
         function=f"{view.prefix}_frame{suffix}",
         send=f"{view.prefix}_send{suffix}",
         sends=frame.streams and not needs_cut_check,
-        stream_index=stream_index,
         struct=view.struct,
         upper=f"{view.upper}{suffix.upper()}",
         validate=view.validate if view.validates else "",

@@ -35,6 +35,14 @@ class FramingView:
     sinks: tuple[str, ...]
     """Functions that the payloads share where they are written byte by byte."""
     dispatches: tuple[Dispatch, ...]
+    streaming: tuple[str, ...]
+    """The frames, by their sender, that some message can be sent in byte by byte."""
+    puts: tuple[str, ...]
+    """The functions that hand payloads to a writer."""
+    writes: bool
+    """Whether any of these hands over a byte."""
+    cut_checks: frozenset[str]
+    """The frames, by their sender, some of which a decoder might end too early."""
 
 
 def framing_view(
@@ -60,6 +68,8 @@ def framing_view(
     frames = _frames(senders, decoders)
     distinct = _distinct(frames)
     message_frames = tuple(_message_frames(protocol, frames, decoders, views))
+    puts = tuple(dict.fromkeys(item.put_function for item in message_frames if item.sends))
+    used = _used(sinks, list(puts))
     return FramingView(
         decoders=decoders,
         frames=distinct,
@@ -68,11 +78,19 @@ def framing_view(
         sums=tuple(
             Sum(f"{frame.decoder.name}_{item.name}", item.checksum.register)
             for frame in distinct
-            if frame.streams
+            if any(m.sends and m.frame is frame for m in message_frames)
             for item in frame.decoder.checksums
         ),
+        streaming=tuple(
+            dict.fromkeys(item.frame.decoder.name for item in message_frames if item.sends)
+        ),
+        puts=puts,
+        writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
+        cut_checks=frozenset(
+            item.frame.decoder.name for item in message_frames if item.needs_cut_check
+        ),
         dispatches=dispatches(decoders, messages, protocol.name),
-        sinks=_used(sinks, [item.put_function for item in message_frames if item.sends]),
+        sinks=used,
     )
 
 
@@ -106,15 +124,13 @@ def _message_frames(
     views: dict[str, MessageView],
 ) -> Iterator[MessageFrame]:
     by_name = {decoder.name: decoder for decoder in decoders}
-    streaming = [frame.decoder.name for frame in _distinct(frames) if frame.streams]
     for message in protocol.messages:
         own = {frames[name].decoder.name: name for name in message.senders if name in frames}
         for frame_name in own if message.name in views else ():
             frame = frames[frame_name]
             suffix = f"_from_{frame_name}" if len(own) > 1 else ""
-            index = streaming.index(frame_name) if frame.streams else 0
             decoder = by_name[own[frame_name]]
-            yield message_frame(frame, decoder, message, views[message.name], suffix, index)
+            yield message_frame(frame, decoder, message, views[message.name], suffix)
 
 
 def _distinct(frames: dict[str, FrameView]) -> tuple[FrameView, ...]:

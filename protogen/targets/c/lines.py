@@ -11,8 +11,9 @@ INDENT = 4
 
 _PLACE = re.compile(
     r" +(?:const )?(?:uint8_t \*|size_t )(?P<declared>at\w*) = |    (?P<moved>at) \+= "
+    r"| +const (?:bool|u?int\d+_t) (?P<remembered>\w+) = "
 )
-"""A line that says where the next value lies; one that moves the place is in no loop."""
+"""A line that says where the next value lies, or remembers one; one that moves is in no loop."""
 _DECLARATION = re.compile(r"const |size_t |uint8_t \*")
 _OPERATORS = re.compile(r"(?<= (?:\|\||&&)) ")
 
@@ -82,11 +83,11 @@ class Lines:
             self.add("}")
 
     def drop_unused_places(self) -> None:
-        """Take out what says where something lies that has no bytes."""
+        """Take out what says where something without bytes lies, or remembers what nobody asks."""
         kept: list[str] = []
         for line in reversed(self._lines):
             place = _PLACE.match(line)
-            name = place and (place["declared"] or place["moved"])
+            name = place and (place["declared"] or place["moved"] or place["remembered"])
             if not name or any(re.search(rf"\b{name}\b", other) for other in kept):
                 kept.append(line)
         self._lines = kept[::-1]

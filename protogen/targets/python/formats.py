@@ -97,6 +97,8 @@ def extent(of: Extent) -> str:
     match of:
         case Fixed():
             return str(of.count)
+        case Counted(stated=True):
+            return call("_c.Count", text(of.field), str(of.least), str(of.greatest))
         case Counted():
             return text(of.field)
         case Fill():

@@ -1,0 +1,60 @@
+/*
+ * Runs on an ATmega328P in simavr, where harness/counter.c notes the cycle of each write to
+ * GPIOR0: 1 and 2 around a decoded frame, 3 and 4 around an encoded one, 0xFF at the end. What is
+ * written to GPIOR1 is printed.
+ */
+#include <avr/pgmspace.h>
+
+#include "bench.h"
+#include SUBJECT
+
+#include "frames.h" /* FRAMES, frame_which, frame_at, frame_size, frame_bytes, all in flash */
+
+#define MARK (*(volatile uint8_t *)0x003E)
+#define SAY (*(volatile uint8_t *)0x004A)
+
+static uint8_t seen;
+static uint8_t frame_out[256];
+
+static void bench_seen(uint8_t which) {
+    (void)which;
+    seen++;
+}
+
+static void decode(uint8_t index) {
+    const uint8_t *at = &frame_bytes[pgm_read_word(&frame_at[index])];
+    const uint8_t *const end = at + pgm_read_word(&frame_size[index]);
+    MARK = 1;
+#if defined(SUBJECT_UNFRAMED)
+    subject_decode(pgm_read_byte(&frame_which[index]), at, (size_t)(end - at));
+#else
+    do {
+        subject_push(pgm_read_byte(at));
+        at++;
+    } while (at != end);
+#endif
+    MARK = 2;
+}
+
+static void encode(uint8_t index) {
+    size_t size;
+    MARK = 3;
+    size = subject_encode(pgm_read_byte(&frame_which[index]), frame_out, sizeof frame_out);
+    MARK = 4;
+    SAY = (uint8_t)size;
+    SAY = (uint8_t)(size >> 8);
+}
+
+int main(void) {
+    subject_init();
+    decode(0);
+    for (uint8_t index = 0; index < FRAMES; index++) {
+        seen = 0;
+        decode(index);
+        SAY = seen;
+        encode(index);
+    }
+    MARK = 0xFF;
+    for (;;) {
+    }
+}

@@ -1,0 +1,46 @@
+#include "matty.h"
+
+static struct matty_esp_decoder decoder;
+
+static void take(void *user, const struct matty_esp_event *event) {
+    (void)user;
+    if (event->message == MATTY_MESSAGE_STATUS &&
+        matty_status_decode(BENCH_MESSAGE, event->payload, event->payload_size) == MATTY_OK) {
+        bench_seen(0);
+    }
+}
+
+static inline void subject_init(void) {
+    matty_esp_decoder_init(&decoder, take, NULL);
+}
+
+static inline void subject_push(uint8_t byte) {
+    matty_esp_decoder_push(&decoder, byte);
+}
+
+static inline void subject_feed(const uint8_t *data, size_t size) {
+    matty_esp_decoder_feed(&decoder, data, size);
+}
+
+static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
+    size_t size = 0;
+    (void)which;
+    return matty_status_frame(BENCH_MESSAGE, 7, frame, capacity, &size) == MATTY_OK ? size : 0;
+}
+
+#if defined(BENCH_FILL)
+static void subject_fill(uint8_t which) {
+    struct matty_status *const status = BENCH_MESSAGE;
+    (void)which;
+    status->status = (uint8_t)bench_random();
+    status->mode = bench_random() & 3u;
+    status->voltage = (uint16_t)bench_random();
+    status->current = (uint16_t)bench_random();
+    status->speed = (int16_t)bench_random();
+    status->angle = (int16_t)bench_random();
+    status->encoder0 = (uint16_t)bench_random();
+    status->encoder1 = (uint16_t)bench_random();
+    status->encoder2 = (uint16_t)bench_random();
+    status->encoder3 = (uint16_t)bench_random();
+}
+#endif

@@ -1,0 +1,199 @@
+"""Generated C in a process of its own, under sanitizers, and what Python says to the same."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, replace
+from functools import cache
+from itertools import chain, zip_longest
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
+from weakref import finalize
+
+import c_reference
+import pytest
+from c_library import FLAGS
+from compiled import protocol_of
+from tooling import require_tool
+
+from protogen.fuzzing.c_calls import Call, Calls, CEvent, Step
+from protogen.fuzzing.c_driver import Driver
+from protogen.fuzzing.c_values import Answers
+from protogen.fuzzing.trips import same
+from protogen.model.protocol import Protocol
+from protogen.targets.c.options import COptions
+
+MACHINES = Path(__file__).with_name("c_engine_machines")
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+T = TypeVar("T")
+
+
+def build(driver: Driver, folder: Path, command: Sequence[str | Path], *machine: str) -> Path:
+    """Compile a driver with the sources of the machine that it runs on; returns the program."""
+    program = folder / "driver"
+    sources = [*driver.write(folder), *(MACHINES / name for name in machine)]
+    done = subprocess.run(
+        [*command, f"-I{folder}", "-o", program, *sources],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return program
+
+
+class Process:
+    """A driver that takes calls one by one. Fails as soon as a sanitizer has something to say."""
+
+    def __init__(
+        self,
+        protocol: Protocol,
+        options: COptions = COptions(),  # noqa: B008
+        flags: Sequence[str] = ("-O0", *SANITIZERS),
+    ) -> None:
+        self.driver = Driver(protocol, options)
+        self.calls = Calls(self.driver)
+        self._folder = TemporaryDirectory(prefix="protogen-c-")
+        folder = Path(self._folder.name)
+        command = [require_tool("cc"), *FLAGS, *flags]
+        self._errors = (folder / "errors").open("w+")
+        self._process = subprocess.Popen(
+            [build(self.driver, folder, command, "streams.c")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+        )
+        assert self._process.stdout is not None
+        self._answers = Answers(self._process.stdout)
+        finalize(self, _end, self._process)
+
+    def do(self, call: Call[T]) -> T:
+        """Make a call."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(call.request)
+            self._process.stdin.flush()
+            return call.read(self._answers)
+        except (EOFError, BrokenPipeError):
+            self._process.wait()
+            self._errors.seek(0)
+            raise AssertionError(f"{call.request.hex(' ')}: {self._errors.read()}") from None
+
+    def close(self) -> None:
+        """End the process, which has to go well: it may have leaked."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        assert self._process.wait() == 0
+        self._folder.cleanup()
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.wait()
+
+
+def process_of(path: Path, options: COptions = COptions()) -> Process:  # noqa: B008
+    """The driver of a schema, compiled once; where that fails, it fails at once ever after."""
+    found = _process_or_error(path, options)
+    if isinstance(found, AssertionError):
+        raise found
+    return found
+
+
+@cache
+def _process_or_error(path: Path, options: COptions) -> Process | AssertionError:
+    try:
+        return Process(protocol_of(path), options)
+    except AssertionError as error:
+        return error
+
+
+# --- what Python says -----------------------------------------------------------------------------
+
+
+def python_events(module: Any, sender: str, steps: Iterable[Step]) -> list[list[CEvent]]:
+    """The events of each step, as C should have them."""
+    decoder = module.Decoder(sender)
+    found = []
+    for step in steps:
+        events = decoder.flush() if step[0] == "flush" else decoder.feed(step[1])
+        found.append([_event(event) for event in events])
+    return found
+
+
+def _event(event: Any) -> CEvent:
+    if event.kind == "invalid":
+        return CEvent(event.kind, event.offset, event.size, event.reason)
+    plain = CEvent(
+        event.kind, event.offset, event.size, parts=asdict(event.parts), payload=event.payload
+    )
+    if event.kind == "unknown":
+        return plain
+    return replace(plain, message=event.message.NAME, values=event.message.to_dict())
+
+
+def comparable(protocol: Protocol, steps: Sequence[Sequence[CEvent]]) -> int | None:
+    """How many of Python's events C has to have, too; None: all of them.
+
+    A number that counts more than its range allows, or less, is a violation that Python keeps. No
+    struct of C has room for it, so C refuses the frame, and may find others inside.
+    """
+    for number, event in enumerate(event for events in steps for event in events):
+        if event.kind == "message" and event.payload is not None:
+            try:
+                c_reference.check(protocol.message(event.message), event.payload)
+            except c_reference.Wrong as wrong:
+                if wrong.count:
+                    return number
+    return None
+
+
+def messages_of(steps: Sequence[Sequence[CEvent]]) -> list[list[CEvent]]:
+    """What `--events messages` leaves of events."""
+    return [
+        [replace(event, offset=None, size=None) for event in events if event.kind == "message"]
+        for events in steps
+    ]
+
+
+def same_events(found: Sequence[CEvent], expected: Sequence[CEvent]) -> bool:
+    """Whether events are equal, where one NaN is like another."""
+    return len(found) == len(expected) and all(
+        replace(one, values=None) == replace(other, values=None) and same(one.values, other.values)
+        for one, other in zip(found, expected, strict=True)
+    )
+
+
+def check_events(process: Process, module: Any, sender: str, steps: Sequence[Step]) -> None:
+    """C gives the events that Python gives, or the messages among them, each in the same step."""
+    everything = python_events(module, sender, steps)
+    only_messages = process.driver.options.events == "messages"
+    count = comparable(process.driver.protocol, everything)
+    if count is not None:
+        events = list(chain.from_iterable(everything))[:count]
+        everything = [events]
+    expected = messages_of(everything) if only_messages else everything
+    found = process.do(process.calls.events(sender, steps))
+    if count is not None:
+        found = [list(chain.from_iterable(found))[: len(expected[0])]]
+    assert_same_steps(found, expected)
+
+
+def assert_same_steps(
+    found: Sequence[Sequence[CEvent]], expected: Sequence[Sequence[CEvent]]
+) -> None:
+    """Each step gives the same events, so none comes earlier or later."""
+    for number, (one, other) in enumerate(zip(found, expected, strict=True)):
+        if not same_events(one, other):
+            pytest.fail(f"step {number}: {first_difference(one, other)}", pytrace=False)
+
+
+def first_difference(found: Sequence[CEvent], expected: Sequence[CEvent]) -> str:
+    """The first events that differ."""
+    for one, other in zip_longest(found, expected):
+        if one is None or other is None or not same_events([one], [other]):
+            return f"C has\n{one},\nPython\n{other}"
+    raise AssertionError("no events differ")

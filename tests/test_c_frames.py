@@ -1,0 +1,229 @@
+"""The frames that generated C makes, in a buffer and byte by byte, held against Python's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from c_engine import Process, process_of
+from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
+
+from protogen.compiler import compile_file
+from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Sent
+from protogen.fuzzing.c_values import Unfit
+from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.model.protocol import Protocol
+from protogen.runtime.errors import EncodeError
+
+SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+SENT = [
+    (path, sender.name, message.name)
+    for path in (*SCHEMAS, *SAMPLERS)
+    for sender in protocol_of(path).senders
+    for message in sender.messages
+]
+EVERY_MESSAGE = pytest.mark.parametrize(("path", "sender", "message"), SENT, ids=name_of)
+RANDOM = 12
+"""Random samples of each message, behind those with each boundary."""
+
+
+@cache
+def frames_of(path: Path, sender: str, message: str) -> list[tuple[Values, Values, bytes | None]]:
+    """Values, parts, and the frame that Python makes of them; None: it would be cut elsewhere."""
+    return [
+        (values, parts, frame_of(path, sender, message, values, parts))
+        for values, parts in sampled(path, sender, message)
+    ]
+
+
+def sampled(path: Path, sender: str, message: str) -> Iterator[tuple[Values, Values]]:
+    model, frame = protocol_of(path).message(message), protocol_of(path).sender(sender).frame
+    found = samples(model, frame, Random(f"{sender} {message}"))
+    return islice(found, boundary_rounds(model, frame) + RANDOM)
+
+
+def frame_of(path: Path, sender: str, message: str, values: Values, parts: Values) -> bytes | None:
+    module = module_at(path)
+    record = module.MESSAGES[message].from_dict(values)
+    record.to_payload()
+    try:
+        frame: bytes = module.encode(record, sender, **parts)
+    except EncodeError:
+        # The payload is fine, so what is wrong is that the end stands in it.
+        assert protocol_of(path).sender(sender).framing.cut_ambiguous
+        return None
+    return frame
+
+
+@EVERY_MESSAGE
+def test_a_frame_has_the_bytes_that_python_makes(path: Path, sender: str, message: str) -> None:
+    process = process_of(path)
+    for values, parts, frame in frames_of(path, sender, message):
+        made = process.do(process.calls.frame(sender, message, values, parts))
+        assert made.intact
+        assert (made.result, made.data) == ((VALUE, b"") if frame is None else (OK, frame))
+
+
+@EVERY_MESSAGE
+def test_a_frame_that_is_sent_has_the_same_bytes(path: Path, sender: str, message: str) -> None:
+    process = process_of(path)
+    if not process.calls.sends(sender, message):
+        return
+    for values, parts, frame in frames_of(path, sender, message):
+        assert frame is not None, "a frame can be refused only once all of it is known"
+        sent = process.do(process.calls.send(sender, message, values, parts))
+        assert sent == Sent(OK, frame)
+
+
+def test_frames_are_sent_byte_by_byte_where_nothing_in_them_depends_on_what_follows() -> None:
+    refused = {
+        f"{path.stem} {sender} {message}"
+        for path, sender, message in SENT
+        if not process_of(path).calls.sends(sender, message)
+    }
+    stuffed_with_what_follows = {name for name in refused if name.startswith("cobs ")}
+    assert stuffed_with_what_follows
+    assert all(
+        protocol_of(path).sender(sender).framing.cut_ambiguous
+        for path, sender, message in SENT
+        if f"{path.stem} {sender} {message}" in refused - stuffed_with_what_follows
+    )
+
+
+@EVERY_MESSAGE
+def test_nothing_is_written_where_the_buffer_is_too_short(
+    path: Path, sender: str, message: str
+) -> None:
+    process = process_of(path)
+    dice = Random(message)
+    for values, parts, frame in frames_of(path, sender, message)[::3]:
+        if frame is None:
+            continue
+        for capacity in {0, 1, len(frame) - 1, dice.randrange(len(frame))}:
+            made = process.do(process.calls.frame(sender, message, values, parts, capacity))
+            assert (made.result, made.data) == (SPACE, b"")
+            assert made.intact
+            assert made.exact
+
+
+@EVERY_MESSAGE
+def test_a_buffer_that_is_longer_than_needed_is_left_alone_behind_the_room(
+    path: Path, sender: str, message: str
+) -> None:
+    """Between the frame and the stated room anything may stand; outside of it, nothing."""
+    process = process_of(path)
+    room = process.driver.frame(sender, message).room
+    for values, parts, frame in frames_of(path, sender, message)[::5]:
+        if frame is None:
+            continue
+        assert len(frame) <= room
+        for capacity in {len(frame), (len(frame) + room) // 2, room, room + 5}:
+            made = process.do(process.calls.frame(sender, message, values, parts, capacity))
+            assert made.intact
+            if made.result == SPACE:
+                assert capacity < room
+                assert made.exact
+            else:
+                assert (made.result, made.data) == (OK, frame)
+
+
+# --- what can't be sent ---------------------------------------------------------------------------
+
+RANGED = """
+protocol: ranged
+endpoints: {pc: Computer}
+byte_order: little
+frame:
+  start: {literal: 0xAA, unprotected: start_in_data}
+  number: {type: uint16, range: [10, 1000]}
+  id: {type: uint8, id: true}
+  step: {type: uint4, counter: true}
+  size: {type: uint8, range: [1, 3], default: 1}
+  length: {type: uint8, counts: payload, range: [1, 12]}
+  payload: {}
+  check: {type: uint16, algorithm: CRC-16/KERMIT, covers: start..payload}
+messages:
+  speed:
+    id: 1
+    from: pc
+    fields:
+      speed: {type: uint16, range: [5, 500]}
+  text:
+    id: 2
+    from: pc
+    fields:
+      text: {type: ascii, size: fill}
+decisions:
+  start_in_data: {question: Why?, document: silent, choice: accept it, because: a test}
+"""
+FINE = {"number": 10, "step": 15, "size": 3}
+
+
+@pytest.fixture(scope="module")
+def ranged(tmp_path_factory: pytest.TempPathFactory) -> Process:
+    return Process(compiled(RANGED, tmp_path_factory.mktemp("ranged")))
+
+
+def compiled(text: str, folder: Path) -> Protocol:
+    path = folder / "drawn.yaml"
+    path.write_text(text, encoding="utf-8")
+    compilation = compile_file(path)
+    assert compilation.protocol is not None, [str(item) for item in compilation.problems]
+    return compilation.protocol
+
+
+@pytest.mark.parametrize(
+    ("parts", "result"),
+    [
+        ({}, OK),
+        ({"number": 1000}, OK),
+        ({"number": 9}, RANGE),
+        ({"number": 1001}, RANGE),
+        ({"number": 0xFFFF}, RANGE),
+        ({"step": 16}, RANGE),
+        ({"step": 0}, OK),
+        ({"size": 0}, RANGE),
+        ({"size": 4}, RANGE),
+    ],
+)
+def test_parts_that_are_out_of_range_are_refused(
+    ranged: Process, parts: Values, result: int
+) -> None:
+    given: Any = ("pc", "speed", {"speed": 5}, FINE | parts)
+    made = ranged.do(ranged.calls.frame(*given))
+    assert (made.result, made.intact) == (result, True)
+    assert made.exact or result == OK
+    sent = ranged.do(ranged.calls.send(*given))
+    assert (sent.result, sent.data) == (result, made.data)
+
+
+def test_parts_are_no_wider_than_their_types(ranged: Process) -> None:
+    with pytest.raises(Unfit):
+        ranged.calls.frame("pc", "speed", {"speed": 5}, FINE | {"step": 256})
+
+
+@pytest.mark.parametrize(
+    ("message", "values", "result"),
+    [
+        ("speed", {"speed": 500}, OK),
+        ("speed", {"speed": 4}, RANGE),
+        ("speed", {"speed": 501}, RANGE),
+        ("text", {"text": "a"}, OK),
+        ("text", {"text": "abcdefghijkl"}, OK),
+        ("text", {"text": ""}, RANGE),
+        ("text", {"text": "\x80"}, RANGE),
+    ],
+)
+def test_nothing_is_sent_of_a_message_that_is_out_of_range(
+    ranged: Process, message: str, values: Values, result: int
+) -> None:
+    made = ranged.do(ranged.calls.frame("pc", message, values, FINE))
+    assert (made.result, made.intact) == (result, True)
+    assert made.exact or result == OK
+    sent = ranged.do(ranged.calls.send("pc", message, values, FINE))
+    assert (sent.result, sent.data) == (result, made.data)

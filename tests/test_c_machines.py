@@ -1,0 +1,278 @@
+"""One set of vectors through generated C on every machine: bytes, values and events as Python's.
+
+On x86-64 by two compilers, on a big-endian s390x, on a Cortex-M3 and on an ATmega328P. Frames,
+payloads and streams are the boundaries of every field, random ones, and damaged ones; all follow
+from fixed seeds.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import chain, islice
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from c_engine import MACHINES, build, comparable, first_difference, python_events, same_events
+from c_library import FLAGS
+from compiled import SCHEMAS, module_at, name_of, protocol_of
+from corpus import material_of, stream_of
+from test_c_codecs import Case, damages
+from test_c_decoder import steps_of
+from test_c_frames import frame_of
+from tooling import require_tool
+
+from protogen.fuzzing.c_calls import OK, RANGE, VALUE, Calls, Encoded, Sent
+from protogen.fuzzing.c_driver import Driver
+from protogen.fuzzing.c_values import Answers
+from protogen.fuzzing.samples import boundary_rounds, samples
+from protogen.fuzzing.trips import same
+from protogen.model.protocol import Sender
+from protogen.model.selection import select
+from protogen.targets.c.options import COptions
+from protogen.targets.python.live import module_of
+
+SMALL = 64
+"""The greatest payload of the messages that the ATmega328P is given."""
+FLASH, RAM, STACK = 32768, 2048, 512
+"""Bytes that it has; so much of the RAM is left to the stack."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """How a driver is compiled for a machine, and run there with a folder to work in."""
+
+    compiler: str
+    flags: tuple[str, ...]
+    source: str
+    run: Callable[[Path, Path], bytes]
+    """Takes the program and the file of requests, gives the answers."""
+    greatest: int = 1 << 20
+    room: int = 1 << 16
+
+
+def on_streams(*launcher: str) -> Callable[[Path, Path], bytes]:
+    """Requests come from the standard input, answers go to the standard output."""
+
+    def run(program: Path, requests: Path) -> bytes:
+        command = [*map(require_tool, launcher[:1]), *launcher[1:], str(program)]
+        with requests.open("rb") as stream:
+            return output_of(command, stdin=stream)
+
+    return run
+
+
+def on_cortex_m3(program: Path, requests: Path) -> bytes:
+    qemu = [require_tool("qemu-system-arm"), "-M", "mps2-an385", "-display", "none"]
+    quiet = ["-serial", "none", "-monitor", "none"]
+    semihosting = ["-semihosting-config", "enable=on,target=native"]
+    output_of([*qemu, *quiet, *semihosting, "-kernel", str(program)], cwd=requests.parent)
+    return (requests.parent / "answers").read_bytes()
+
+
+def on_atmega328p(program: Path, requests: Path) -> bytes:
+    sizes = output_of([require_tool("avr-size"), str(program)]).splitlines()[1].split()
+    text, data, bss = map(int, sizes[:3])
+    assert text + data <= FLASH
+    assert data + bss <= RAM - STACK
+    with requests.open("rb") as stream:
+        return output_of([str(simulator()), str(program)], stdin=stream)
+
+
+@cache
+def simulator() -> Path:
+    """What runs a program for the ATmega328P, with the machine's registers as its streams."""
+    require_tool("simavr")
+    folder = Path(_folders().mktemp("simulator"))
+    source = MACHINES / "simulator.c"
+    output_of([require_tool("cc"), "-O2", "-o", str(folder / "run"), str(source), "-lsimavr"])
+    return folder / "run"
+
+
+_FACTORY: list[pytest.TempPathFactory] = []
+
+
+def _folders() -> pytest.TempPathFactory:
+    return _FACTORY[0]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _keep_factory(tmp_path_factory: pytest.TempPathFactory) -> None:
+    _FACTORY.append(tmp_path_factory)
+
+
+def output_of(command: Sequence[str], **more: Any) -> bytes:
+    """What a program prints. It has to end well, and soon."""
+    done = subprocess.run(command, capture_output=True, check=False, timeout=300, **more)
+    assert done.returncode == 0, (done.returncode, done.stderr.decode(errors="replace"))
+    return done.stdout
+
+
+_CORTEX_M3 = (
+    *("-Os", "-mcpu=cortex-m3", "-mthumb", "--specs=rdimon.specs", "-lrdimon"),
+    *("-Wl,--gc-sections", f"-T{MACHINES / 'mps2_an385.ld'}"),
+)
+_ATMEGA328P = ("-Os", "-mmcu=atmega328p", "-DDRIVER_CHUNK=32u")
+ALL = {
+    "gcc": Machine("gcc", ("-O2",), "streams.c", on_streams()),
+    "clang": Machine("clang", ("-O2",), "streams.c", on_streams()),
+    "s390x": Machine(
+        "s390x-linux-gnu-gcc", ("-O2", "-static"), "streams.c", on_streams("qemu-s390x")
+    ),
+    "cortex-m3": Machine("arm-none-eabi-gcc", _CORTEX_M3, "files.c", on_cortex_m3),
+    "atmega328p": Machine("avr-gcc", _ATMEGA328P, "avr.c", on_atmega328p, SMALL, 32),
+}
+
+
+# --- vectors --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A call of a driver, and what its answer has to be."""
+
+    name: str
+    call: Callable[[Calls], Any]
+    check: Callable[[Any], bool]
+    expected: Any
+
+
+def selection(path: Path, greatest: int) -> tuple[str, ...] | None:
+    """The messages that are small enough; None: all of them."""
+    messages = protocol_of(path).messages
+    small = tuple(item.name for item in messages if item.sizes.greatest <= greatest)
+    return None if len(small) == len(messages) else small
+
+
+@cache
+def vectors(path: Path, greatest: int) -> list[Vector]:
+    """All vectors of a schema's messages that are small enough."""
+    only = selection(path, greatest)
+    protocol = select(protocol_of(path), only)
+    found: list[Vector] = []
+    for sender in protocol.senders:
+        for message in sender.messages:
+            found += _payloads(Case(path, message))
+            found += _frames(path, sender, message.name)
+        found += _streams(path, sender, only)
+    return found
+
+
+def _payloads(case: Case) -> Iterator[Vector]:
+    name = case.message.name
+    for values in case.samples(6):
+        payload = case.payload(values)
+        expected = Encoded(RANGE, b"") if payload is None else Encoded(OK, payload)
+        yield Vector(name, _encode(name, values), expected.__eq__, expected)
+    payloads = case.payloads()
+    dice = Random(name)
+    damaged = chain.from_iterable(islice(damages(p, payloads, dice), 8, 40) for p in payloads[:4])
+    for payload in dict.fromkeys([*payloads, *damaged]):
+        if len(payload) > case.message.sizes.greatest + 9:
+            continue
+        result, values = case.values(payload)
+        yield Vector(name, _decode(name, payload), _is_decoded(result, values), (result, values))
+
+
+def _encode(name: str, values: Any) -> Callable[[Calls], Any]:
+    return lambda calls: calls.encode(name, values)
+
+
+def _decode(name: str, payload: bytes) -> Callable[[Calls], Any]:
+    return lambda calls: calls.decode(name, payload)
+
+
+def _is_decoded(result: int, values: Any) -> Callable[[Any], bool]:
+    return lambda found: found.result == result and found.intact and same(found.values, values)
+
+
+def _frames(path: Path, sender: Sender, message: str) -> Iterator[Vector]:
+    model = protocol_of(path).message(message)
+    found = samples(model, sender.frame, Random(message))
+    for values, parts in islice(found, boundary_rounds(model, sender.frame) + 3):
+        frame = frame_of(path, sender.name, message, values, parts)
+        result = (VALUE, b"") if frame is None else (OK, frame)
+        given = (sender.name, message, values, parts)
+        yield Vector(message, _frame(*given), _is_frame(*result), result)
+        if frame is not None:
+            yield Vector(message, _send(*given), _is_sent(frame), frame)
+
+
+def _frame(*given: Any) -> Callable[[Calls], Any]:
+    return lambda calls: calls.frame(*given)
+
+
+def _is_frame(result: int, frame: bytes) -> Callable[[Any], bool]:
+    return lambda found: (found.result, found.data, found.intact) == (result, frame, True)
+
+
+def _send(*given: Any) -> Callable[[Calls], Any]:
+    """Send where that is possible, else make the frame again."""
+    return lambda calls: (calls.send if calls.sends(*given[:2]) else calls.frame)(*given)
+
+
+def _is_sent(frame: bytes) -> Callable[[Any], bool]:
+    return lambda found: (
+        (found.result, found.data) == (OK, frame) and isinstance(found, Sent | Encoded)
+    )
+
+
+def _streams(path: Path, sender: Sender, only: tuple[str, ...] | None) -> Iterator[Vector]:
+    whole = protocol_of(path)
+    module = module_at(path) if only is None else module_of(select(whole, only))
+    material = material_of(path, sender.name)
+    for seed in range(6):
+        dice = Random(f"{path.stem} {sender.name} {seed}")
+        steps = steps_of(stream_of(material, dice, 20).data, dice)
+        expected = python_events(module, sender.name, steps)
+        assert comparable(whole, expected) is None
+        yield Vector(sender.name, _events(sender.name, steps), _are_events(expected), expected)
+
+
+def _events(sender: str, steps: Any) -> Callable[[Calls], Any]:
+    return lambda calls: calls.events(sender, steps)
+
+
+def _are_events(expected: Any) -> Callable[[Any], bool]:
+    return lambda found: all(
+        same_events(one, other) for one, other in zip(found, expected, strict=True)
+    )
+
+
+# --- machines -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+@pytest.mark.parametrize("name", ALL)
+def test_every_machine_gives_the_same(name: str, path: Path, tmp_path: Path) -> None:
+    machine = ALL[name]
+    only = selection(path, machine.greatest)
+    driver = Driver(protocol_of(path), COptions(only=only))
+    command = [require_tool(machine.compiler), *FLAGS, *machine.flags]
+    if machine.compiler == "arm-none-eabi-gcc":
+        command.remove("-Wpedantic")  # newlib's own headers
+    program = build(driver, tmp_path, command, machine.source)
+    calls = Calls(driver, machine.room)
+    tried = [(vector, vector.call(calls)) for vector in vectors(path, machine.greatest)]
+    requests = tmp_path / "requests"
+    requests.write_bytes(b"".join(call.request for _, call in tried))
+    answers = io.BytesIO(machine.run(program, requests))
+    reader = Answers(answers)
+    for vector, call in tried:
+        found = call.read(reader)
+        assert vector.check(found), f"{vector.name}: {difference(found, vector.expected)}"
+    assert answers.read() == b""
+
+
+def difference(found: Any, expected: Any) -> str:
+    """What a machine says, and what Python says."""
+    if isinstance(found, list):
+        for one, other in zip(found, expected, strict=True):
+            if not same_events(one, other):
+                return first_difference(one, other)
+    return f"{found} is not {expected}"

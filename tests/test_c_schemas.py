@@ -1,0 +1,165 @@
+"""Random schemas: their C compiles without a warning, and does what their Python does."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import islice
+from random import Random
+from types import ModuleType
+
+import pytest
+from c_engine import Process, check_events
+from corpus import Material, stream_of
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from schema_fuzzing import Schema, schemas
+from schema_fuzzing.text import to_yaml
+from test_c_decoder import steps_of
+
+from protogen.compiler import compile_file
+from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
+from protogen.fuzzing.c_values import Unfit
+from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.fuzzing.trips import same
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.runtime.errors import EncodeError
+from protogen.runtime.frame import LiteralPart
+from protogen.targets.c.options import COptions
+from protogen.targets.python.live import module_of
+
+THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
+RUNS = 200 if THOROUGH else 12
+DRAWS = 26
+"""Few in one run, because what is drawn from one seed grows alike."""
+SAMPLES = 12
+STREAMS = 6
+PIECES = 12
+GREATEST = 2000
+"""Longer payloads take long in Python, and are like shorter ones."""
+
+
+@pytest.mark.parametrize("number", range(RUNS))
+def test_a_random_schema_is_the_same_in_c(
+    number: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.mktemp("drawn") / "drawn.yaml"
+
+    @seed(number)
+    @settings(
+        max_examples=DRAWS,
+        database=None,
+        derandomize=False,
+        phases=[Phase.generate, Phase.shrink] if THOROUGH else [Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(schemas())
+    def each(schema: Schema) -> None:
+        path.write_text(to_yaml(schema.data), encoding="utf-8", newline="")
+        protocol = compile_file(path).protocol
+        assert protocol is not None
+        try:
+            check_protocol(protocol, Random(number))
+        except BaseException:
+            sys.stdout.write(path.read_text(encoding="utf-8"))
+            raise
+
+    each()
+
+
+def check_protocol(protocol: Protocol, dice: Random) -> None:
+    """All messages, their frames, and streams of these."""
+    options = COptions(events=dice.choice(["all", "all", "messages"]))
+    process = Process(protocol, options)
+    with imported(protocol) as module:
+        for sender in protocol.senders:
+            found = [f for m in sender.messages for f in frames_of(process, module, sender, m)]
+            check_streams(process, module, sender, found, dice)
+    process.close()
+
+
+@contextmanager
+def imported(protocol: Protocol) -> Iterator[ModuleType]:
+    module = module_of(protocol)
+    try:
+        yield module
+    finally:
+        sys.modules.pop(module.__name__, None)
+
+
+def frames_of(
+    process: Process, module: ModuleType, sender: Sender, message: Message
+) -> Iterator[bytes]:
+    """Check payloads and frames of a message; yields those that can be sent."""
+    dice = Random(f"{sender.name} {message.name}")
+    rounds = min(SAMPLES, boundary_rounds(message, sender.frame)) + 4
+    for values, parts in islice(samples(message, sender.frame, dice), rounds):
+        payload = made(module.MESSAGES[message.name].from_dict(values).to_payload)
+        try:
+            encoded = process.do(process.calls.encode(message.name, values))
+        except Unfit:
+            encoded = Encoded(RANGE, b"")
+        assert encoded == (Encoded(RANGE, b"") if payload is None else Encoded(OK, payload)), values
+        if payload is None or len(payload) > GREATEST:
+            continue
+        check_payload(process, module, message, payload)
+        frame = check_frame(process, module, sender, message, values, parts)
+        if frame is not None:
+            yield frame
+
+
+def made(make: Callable[[], bytes]) -> bytes | None:
+    """What is made; None where the values are refused."""
+    try:
+        return make()
+    except EncodeError:
+        return None
+
+
+def check_payload(process: Process, module: ModuleType, message: Message, payload: bytes) -> None:
+    decoded = process.do(process.calls.decode(message.name, payload))
+    assert decoded.result == OK, payload.hex(" ")
+    expected = module.MESSAGES[message.name].from_payload(payload).to_dict()
+    assert same(decoded.values, expected), payload.hex(" ")
+
+
+def check_frame(
+    process: Process,
+    module: ModuleType,
+    sender: Sender,
+    message: Message,
+    values: Values,
+    parts: Values,
+) -> bytes | None:
+    """The frame that both make, in a buffer and byte by byte."""
+    record = module.MESSAGES[message.name].from_dict(values)
+    frame = made(lambda: module.encode(record, sender.name, **parts))
+    encoded = process.do(process.calls.frame(sender.name, message.name, values, parts))
+    assert encoded.intact
+    if frame is None:
+        assert encoded.result in (RANGE, VALUE), f"{values} {parts}: Python refuses"
+        return None
+    assert (encoded.result, encoded.data) == (OK, frame), f"{values} {parts}: {frame.hex(' ')}"
+    short = process.calls.frame(sender.name, message.name, values, parts, len(frame) - 1)
+    assert process.do(short) == Encoded(SPACE, b"")
+    if process.calls.sends(sender.name, message.name):
+        sent = process.do(process.calls.send(sender.name, message.name, values, parts))
+        assert (sent.result, sent.data) == (OK, frame), (values, parts)
+    return frame
+
+
+def check_streams(
+    process: Process, module: ModuleType, sender: Sender, frames: list[bytes], dice: Random
+) -> None:
+    """Frames, damaged frames and noise give the same events."""
+    spec = module.PROTOCOL.sender(sender.name)
+    literals = b"".join(p.value for p in spec.frame.parts if isinstance(p, LiteralPart))
+    marks = bytes(sorted({0, 1, 0xFF, 0x1B, *literals, *(frame[0] for frame in frames)}))
+    material = Material(tuple(frame for frame in frames if len(frame) > 1), marks)
+    for _ in range(STREAMS):
+        data = bytes(dice.choice(marks) for _ in range(40))
+        if material.frames:
+            data = stream_of(material, dice, PIECES).data
+        check_events(process, module, sender.name, steps_of(data, dice))
