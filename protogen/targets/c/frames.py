@@ -118,6 +118,8 @@ class MessageFrame:
     least_payload: int
     greatest_payload: int
     needs_cut_check: bool
+    needs_idle_check: bool
+    """Whether its first bytes may be an end, which a decoder would take for an idle line."""
     greatest_frame: int
     room: int
     """Bytes of the buffer that suffice for every frame of the message."""
@@ -284,11 +286,12 @@ def message_frame(
     if has_length:
         greatest = min(greatest, framing.payload.greatest)
     needs_cut_check = framing.cut_ambiguous and not has_length and not is_fixed
+    needs_idle_check = framing.cut_ambiguous and _may_look_idle(decoder, message)
     return MessageFrame(
         name=message.name,
         function=f"{view.prefix}_frame{suffix}",
         send=f"{view.prefix}_send{suffix}",
-        sends=frame.streams and not needs_cut_check,
+        sends=frame.streams and not needs_cut_check and not needs_idle_check,
         struct=view.struct,
         upper=f"{view.upper}{suffix.upper()}",
         validate=view.validate if view.validates else "",
@@ -306,9 +309,26 @@ def message_frame(
         least_payload=framing.payload.least if has_length else 0,
         greatest_payload=framing.payload.greatest if has_length else message.sizes.greatest,
         needs_cut_check=needs_cut_check,
+        needs_idle_check=needs_idle_check,
         greatest_frame=next(m.greatest for m in framing.messages if m.message == message.name),
         room=room(frame, greatest),
     )
+
+
+def _may_look_idle(decoder: DecoderView, message: Message) -> bool:
+    """Whether an end may stand where nothing but a start is in front of it."""
+    geometry = decoder.geometry
+    if decoder.start != "after_end" and not geometry.shares_delimiter:
+        return False
+    behind_start = [item for item in geometry.head if item.offset >= len(geometry.start)]
+    first = behind_start[0].part if behind_start else None
+    if not isinstance(first, IdentityPart) or first.type.size < len(geometry.end):
+        return True
+    value = message.identity[geometry.identities().index(first)]
+    shifts = range(0, first.type.byte_bits * first.type.size, first.type.byte_bits)
+    octets = [(value >> shift) & ((1 << first.type.byte_bits) - 1) for shift in shifts]
+    ordered = octets if first.type.byte_order == "little" else octets[::-1]
+    return bytes(ordered).startswith(geometry.end)
 
 
 def room(frame: FrameView, payload: int) -> int:

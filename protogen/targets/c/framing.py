@@ -43,6 +43,8 @@ class FramingView:
     """Whether any of these hands over a byte."""
     cut_checks: frozenset[str]
     """The frames, by their sender, some of which a decoder might end too early."""
+    idle_checks: frozenset[str]
+    """Those some of which a decoder might take for an idle line."""
 
 
 def framing_view(
@@ -88,6 +90,9 @@ def framing_view(
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
         cut_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_cut_check
+        ),
+        idle_checks=frozenset(
+            item.frame.decoder.name for item in message_frames if item.needs_idle_check
         ),
         dispatches=dispatches(decoders, messages, protocol.name),
         sinks=used,
