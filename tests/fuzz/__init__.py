@@ -1,0 +1,1 @@
+"""libFuzzer on the decoders of generated C."""

@@ -1,0 +1,90 @@
+/*
+ * One decoder of PREFIX, fed twice with the same input: byte by byte and in chunks.
+ *
+ * The first two bytes of what the fuzzer makes say how it is cut; the others are the input. Seen:
+ * both ways find the same events; the events' sizes add up to the input, in order, none is empty;
+ * payloads are decoded from memory that holds just them. Beside this file stands what says PREFIX
+ * (see harness.py).
+ */
+struct JOIN(PREFIX, _seen) {
+    uint32_t offset;   /* Where the next event has to start. */
+    uint32_t digest;   /* Of all events. */
+    uint32_t messages; /* How many frames had a message. */
+};
+
+static void JOIN(PREFIX, _mix)(struct JOIN(PREFIX, _seen) * seen, uint32_t value) {
+    seen->digest = (seen->digest ^ value) * 16777619u;
+}
+
+static void JOIN(PREFIX, _take)(void *user, const struct JOIN(PREFIX, _event) * event) {
+    struct JOIN(PREFIX, _seen) *const seen = user;
+    REQUIRE(event->offset == seen->offset);
+    REQUIRE(event->size != 0);
+    seen->offset += event->size;
+    JOIN(PREFIX, _mix)(seen, event->size);
+    JOIN(PREFIX, _mix)(seen, (uint32_t)event->kind);
+    JOIN(PREFIX, _mix)(seen, (uint32_t)event->reason);
+    JOIN(PREFIX, _mix)(seen, (uint32_t)event->message);
+    JOIN(PREFIX, _mix)(seen, (uint32_t)event->payload_size);
+    if (event->payload != NULL) {
+        struct JOIN(PREFIX, _event) copy = *event;
+        uint8_t *const payload = malloc(event->payload_size);
+        REQUIRE(payload != NULL || event->payload_size == 0);
+        for (size_t i = 0; i < event->payload_size; i++) {
+            payload[i] = event->payload[i];
+            JOIN(PREFIX, _mix)(seen, payload[i]);
+        }
+        copy.payload = payload;
+        JOIN(PREFIX, _dispatch)(seen, &copy);
+        free(payload);
+        seen->messages++;
+    } else {
+        REQUIRE(event->payload_size == 0);
+    }
+}
+
+static void JOIN(PREFIX, _run)(const uint8_t *data, size_t size, uint8_t cut, uint8_t end) {
+    /* On the heap, so that a byte written behind a decoder is seen. */
+    struct JOIN(PREFIX, _decoder) *const single = malloc(sizeof *single);
+    struct JOIN(PREFIX, _decoder) *const chunked = malloc(sizeof *chunked);
+    struct JOIN(PREFIX, _seen) by_byte = {0, 2166136261u, 0};
+    struct JOIN(PREFIX, _seen) by_chunk = by_byte;
+    const size_t silence = size * end / 256u; /* Where the line is silent in the middle. */
+    uint32_t dice = cut;
+    REQUIRE(single != NULL && chunked != NULL);
+    memset(single, 0xA5, sizeof *single);
+    memset(chunked, 0x5A, sizeof *chunked);
+    JOIN(PREFIX, _decoder_init)(single, JOIN(PREFIX, _take), &by_byte);
+    JOIN(PREFIX, _decoder_init)(chunked, JOIN(PREFIX, _take), &by_chunk);
+    for (size_t i = 0; i < size; i++) {
+        if (end != 0 && i == silence) {
+            JOIN(PREFIX, _decoder_flush)(single);
+        }
+        JOIN(PREFIX, _decoder_push)(single, data[i]);
+    }
+    JOIN(PREFIX, _decoder_flush)(single);
+    for (size_t at = 0; at < size;) {
+        const size_t stop = end != 0 && at < silence ? silence : size;
+        size_t chunk;
+        if (end != 0 && at == silence) {
+            JOIN(PREFIX, _decoder_flush)(chunked);
+        }
+        dice = dice * 1103515245u + 12345u;
+        chunk = cut == 0 ? size : 1u + (dice >> 16) % cut;
+        if (chunk > stop - at) {
+            chunk = stop - at;
+        }
+        uint8_t *const bytes = malloc(chunk);
+        REQUIRE(bytes != NULL);
+        memcpy(bytes, data + at, chunk);
+        JOIN(PREFIX, _decoder_feed)(chunked, bytes, chunk);
+        free(bytes);
+        at += chunk;
+    }
+    JOIN(PREFIX, _decoder_flush)(chunked);
+    REQUIRE(by_byte.offset == size);
+    REQUIRE(by_chunk.offset == size);
+    REQUIRE(by_byte.digest == by_chunk.digest);
+    free(single);
+    free(chunked);
+}

@@ -1,0 +1,35 @@
+"""Decoders of generated C under libFuzzer, AddressSanitizer and UndefinedBehaviorSanitizer.
+
+A short run for each document; benchmarks/c_fuzzing.md records a long one.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from c_proof.generated import generate
+from compiled import DOCUMENTS, ROOT, name_of, protocol_of
+from fuzz.harness import build, build_from, executions
+
+MATTY = ROOT / "schemas" / "matty.yaml"
+SECONDS = 4
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
+def test_no_input_breaks_a_decoder(path: Path, tmp_path: Path) -> None:
+    fuzzer = build(protocol_of(path), path, tmp_path)
+    said = fuzzer.run(f"-max_total_time={SECONDS}", "-seed=1")
+    assert executions(said) > 1000
+
+
+def test_a_seeded_fault_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    text = made.header.read_text(encoding="utf-8")
+    faulty, count = re.subn(r"uint8_t buffer\[126\];", "uint8_t buffer[100];", text)
+    assert count
+    made.header.write_text(faulty, encoding="utf-8")
+    fuzzer = build_from(made.header, made.protocol, MATTY)
+    with pytest.raises(AssertionError, match=r"runtime error|AddressSanitizer"):
+        fuzzer.run("-runs=200000", "-seed=1")
