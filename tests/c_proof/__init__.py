@@ -1,0 +1,1 @@
+"""Proofs with Frama-C's EVA that generated C is safe for every input."""

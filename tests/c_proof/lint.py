@@ -1,0 +1,149 @@
+"""What compilers and checkers of style say of generated C: nothing but what is stated with reasons.
+
+What the target deviates from is stated beside it: protogen/targets/c/.clang-tidy and MISRA.md.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from compiled import DOCUMENTS, FRAMINGS, ROOT, SCHEMAS, name_of, protocol_of
+from tooling import require_tool
+
+from c_proof.generated import Generated, generate
+from protogen.targets.c.options import EVENTS, STYLES, COptions, Events, Style
+
+TARGET = ROOT / "protogen" / "targets" / "c"
+WARNINGS = (
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wsign-conversion",
+    "-Wshadow",
+    "-Werror",
+)
+C99 = {
+    "gcc": ("-std=c99", "-Os"),
+    "clang": ("-std=c99", "-Os"),
+    "avr-gcc": ("-std=c99", "-Os", "-mmcu=atmega328p"),
+    "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),
+}
+KINDS = [(style, events) for style in STYLES for events in EVENTS]
+TIDIED = [*DOCUMENTS, *(path for path in FRAMINGS if path.stem in ("cobs", "hdlc", "hex_lines"))]
+_MISRA = re.compile(r"misra-c2012-(\d+\.\d+)")
+_STATED = re.compile(r"^\| (\d+\.\d+) \|", re.MULTILINE)
+
+
+def quiet(command: Sequence[str | Path]) -> None:
+    """Run a program that must find nothing to say."""
+    done = subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, check=False
+    )
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert "warning:" not in said, said
+
+
+def translation_units(made: Generated, folder: Path, suffix: str) -> list[Path]:
+    """Sources that use the header, and between them all of the generated code."""
+    name = made.protocol.name
+    include = f'#include "{name}.h"\n'
+    user = folder / f"user.{suffix}"
+    user.write_text(include, encoding="utf-8")
+    if made.source is None:
+        whole = folder / f"whole.{suffix}"
+        define = f"#define {name.upper()}_IMPLEMENTATION\n"
+        whole.write_text(f"{define}{include}{include}", encoding="utf-8")
+        return [user, whole]
+    return [user] if suffix == "cc" else [user, made.source]
+
+
+@pytest.mark.parametrize(("style", "events"), KINDS)
+@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+def test_no_compiler_warns(path: Path, style: Style, events: Events, tmp_path: Path) -> None:
+    options = COptions(style=style, events=events, stubs=True)
+    made = generate(protocol_of(path), tmp_path, options)
+    units = translation_units(made, tmp_path, "c")
+    if made.stubs is not None:
+        units.append(made.stubs)
+    for compiler, flags in C99.items():
+        for unit in units:
+            output = tmp_path / "unit.o"
+            quiet([require_tool(compiler), *flags, *WARNINGS, "-c", "-o", output, unit])
+    for unit in translation_units(made, tmp_path, "cc"):
+        output = tmp_path / "unit.o"
+        quiet([require_tool("g++"), "-std=c++11", *WARNINGS, "-c", "-o", output, unit])
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
+def test_cplusplus_calls_generated_c(path: Path, tmp_path: Path) -> None:
+    protocol = protocol_of(path)
+    made = generate(protocol, tmp_path)
+    assert made.source is not None
+    calls = "".join(
+        f"    {{ static {prefix}_decoder decoder;\n"
+        f"      {prefix}_decoder_init(&decoder, {prefix}_dispatch, nullptr);\n"
+        f"      {prefix}_decoder_push(&decoder, 0x55); }}\n"
+        for prefix in (f"{protocol.name}_{sender.name}" for sender in protocol.senders)
+    )
+    main = tmp_path / "main.cc"
+    text = f'#include "{protocol.name}.h"\nint main() {{\n{calls}    return 0;\n}}\n'
+    main.write_text(text, encoding="utf-8")
+    objects = [tmp_path / "c.o", tmp_path / "main.o"]
+    quiet([require_tool("gcc"), "-std=c99", "-c", "-o", objects[0], made.source])
+    quiet([require_tool("g++"), "-std=c++11", *WARNINGS, "-c", "-o", objects[1], main])
+    quiet([require_tool("g++"), "-o", tmp_path / "program", *objects])
+    quiet([tmp_path / "program"])
+
+
+@pytest.mark.parametrize(("style", "events"), KINDS)
+@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+def test_the_style_is_the_one_that_is_shipped(
+    path: Path, style: Style, events: Events, tmp_path: Path
+) -> None:
+    options = COptions(style=style, events=events, stubs=True)
+    made = generate(protocol_of(path), tmp_path, options)
+    style_file = f"--style=file:{TARGET / '.clang-format'}"
+    stubs = [] if made.stubs is None else [made.stubs]
+    quiet([require_tool("clang-format"), style_file, "--dry-run", "-Werror", *made.files, *stubs])
+
+
+@pytest.mark.parametrize("path", TIDIED, ids=name_of)
+def test_clang_tidy_finds_nothing(path: Path, tmp_path: Path) -> None:
+    made = generate(protocol_of(path), tmp_path)
+    assert made.source is not None
+    tidy = [require_tool("clang-tidy"), "--quiet", f"--config-file={TARGET / '.clang-tidy'}"]
+    done = subprocess.run(
+        [*tidy, str(made.source), "--", "-std=c99"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout
+    assert "warning:" not in done.stdout, done.stdout
+
+
+def deviations(made: Generated) -> dict[str, str]:
+    """The MISRA rules that cppcheck finds the generated code to deviate from, each with a place."""
+    assert made.source is not None
+    addon = ["--addon=misra", "--enable=style", "--std=c99"]
+    shown = ["--quiet", "--template={file}:{line}: {id}"]
+    done = subprocess.run(
+        [require_tool("cppcheck"), *addon, *shown, made.source.name],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=made.folder,
+    )
+    assert done.returncode == 0, done.stderr
+    return {rule: line for line in done.stderr.splitlines() for rule in _MISRA.findall(line)}
+
+
+@pytest.mark.parametrize("path", [*DOCUMENTS, *FRAMINGS], ids=name_of)
+def test_misra_deviations_are_stated(path: Path, tmp_path: Path) -> None:
+    stated = set(_STATED.findall((TARGET / "MISRA.md").read_text(encoding="utf-8")))
+    found = deviations(generate(protocol_of(path), tmp_path))
+    assert "15.5" in found, "the addon was not run"
+    assert set(found) <= stated, {rule: found[rule] for rule in set(found) - stated}

@@ -1,0 +1,115 @@
+"""EVA finds nothing that could go wrong in generated decoders, whatever they are given.
+
+`PROTOGEN_PROVE_ALL=1` also proves the framings of the tests, the decoders without invalid events,
+and all of it for a machine whose words have 16 bits.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
+
+from c_proof.drivers import Driver, decode_driver, push_driver
+from c_proof.eva import MACHINES, Report, analyse
+from c_proof.generated import Generated, generate
+from protogen.targets.c.options import EVENTS, COptions, Events
+
+WIDE, NARROW = MACHINES
+ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
+SLOW = ("dagny_library", "rflex_drivers")
+"""What takes minutes: long arrays that fill payloads; their documents have some of them too."""
+DECODES = [
+    (path, machine)
+    for path in (*DOCUMENTS, *DIALECTS)
+    for machine in MACHINES[: 1 + ALL]
+    if ALL or path.stem not in SLOW
+]
+PUSHES: list[tuple[Path, Events, str]] = (
+    [(path, events, machine) for path in SCHEMAS for events in EVENTS for machine in MACHINES]
+    if ALL
+    else [
+        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS)),
+        *((path, EVENTS[0], NARROW) for path in DOCUMENTS),
+    ]
+)
+STATES = "-eva-slevel=1200"
+"""A payload's checks are followed for each size and element alone."""
+MATTY = ROOT / "schemas" / "matty.yaml"
+
+
+def prove(made: Generated, driver: Driver, machine: str = WIDE, *options: str) -> Report:
+    """Analyse a driver of generated code."""
+    source = made.folder / "driver.c"
+    source.write_text(driver.text, encoding="utf-8")
+    return analyse(source, made.folder, machine, *options)
+
+
+@pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)
+def test_no_payload_harms_a_decode_function(path: Path, machine: str, tmp_path: Path) -> None:
+    protocol = protocol_of(path)
+    made = generate(protocol, tmp_path)
+    driver = decode_driver(protocol, made.header.read_text(encoding="utf-8"))
+    assert len(driver.proves) == len(protocol.messages)
+    report = prove(made, driver, machine, STATES)
+    assert (report.alarms, report.found) == (0, ())
+
+
+@pytest.mark.parametrize(("path", "events", "machine"), PUSHES, ids=name_of)
+def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
+    protocol = protocol_of(path)
+    made = generate(protocol, tmp_path, COptions(events=events))
+    driver = push_driver(protocol, made.header.read_text(encoding="utf-8"))
+    assert len(driver.proves) == len(protocol.senders)
+    report = prove(made, driver, machine)
+    assert (report.alarms, report.found) == (0, ())
+
+
+# --- faults that have to be seen ------------------------------------------------------------------
+
+
+def changed(path: Path, pattern: str, replacement: str) -> str:
+    """Change a generated file; returns what it was."""
+    before = path.read_text(encoding="utf-8")
+    after, count = re.subn(pattern, replacement, before)
+    assert count, f"{path.name} has no {pattern}"
+    path.write_text(after, encoding="utf-8")
+    return before
+
+
+def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")
+    report = prove(made, push_driver(made.protocol, header))
+    assert report.alarms > 0
+    assert any("out of bounds" in found for found in report.found)
+
+
+def test_a_member_that_is_too_small_by_an_element_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    header = changed(made.header, r"\bnmea\[121\];", "nmea[120];")
+    report = prove(made, decode_driver(made.protocol, header), WIDE, STATES)
+    assert report.alarms > 0
+
+
+def test_a_size_that_is_not_checked_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    header = made.header.read_text(encoding="utf-8")
+    assert made.source is not None
+    changed(made.source, r"(size != )18([uU]\) \{\s+return MATTY_ERROR_SIZE)", r"\g<1>17\2")
+    report = prove(made, decode_driver(made.protocol, header), WIDE, STATES)
+    assert report.alarms > 0
+    assert any("out of bounds read" in found for found in report.found)
+
+
+def test_a_decoder_that_forgets_a_bound_is_found(tmp_path: Path) -> None:
+    """The length that a frame may have at most."""
+    made = generate(protocol_of(MATTY), tmp_path)
+    assert made.source is not None
+    changed(made.source, r"length > 123U", "length > 124U")
+    changed(made.source, r"> 121U", "> 122U")
+    report = prove(made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")))
+    assert report.alarms > 0
