@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.targets.c.expressions import unsigned_type, width_of
+from protogen.targets.c.spelling import unsigned_type, width
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ def _fletcher(spec: ChecksumSpec, function: str) -> Checksum:
 
 
 def _crc(spec: ChecksumSpec, function: str) -> Checksum:
-    bits = width_of(spec.width)
+    bits = width(spec.width)
     type_ = unsigned_type(spec.width)
     spare = bits - spec.width
     digits = bits // 4

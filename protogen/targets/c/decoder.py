@@ -33,12 +33,11 @@ from protogen.targets.c.checksums import Checksum, checksum_of
 from protogen.targets.c.expressions import (
     number_of,
     octets,
-    unsigned_type,
-    width_of,
     wire_bytes,
 )
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
 from protogen.targets.c.messages import MessageView
+from protogen.targets.c.spelling import unsigned_type, width
 from protogen.targets.c.stuffing import Stuffing, stuffing_of
 
 
@@ -99,7 +98,6 @@ class ReceivedMessage:
 class GroupView:
     """The messages of one identity."""
 
-    condition: str
     key: str
     messages: tuple[ReceivedMessage, ...]
     fixed: int | None
@@ -562,12 +560,12 @@ class _Builder:
         ]
         fixed = sum(item.size for item in counted if item is not None and not item.is_optional)
         optional = sum(item.size for item in counted if item is not None and item.is_optional)
-        width = part.type.byte_bits * part.type.size
+        held = part.type.byte_bits * part.type.size
         return LengthView(
-            type=unsigned_type(max(width, 16)),
+            type=unsigned_type(max(held, 16)),
             least=part.least,
-            greatest=min(part.greatest, (1 << width) - 1),
-            bits=width,
+            greatest=min(part.greatest, (1 << held) - 1),
+            bits=held,
             base=fixed + sum(ends),
             optional=optional,
             payload=self._sender.framing.payload.greatest,
@@ -635,8 +633,8 @@ class _Builder:
         for part, value in zip(parts, identity, strict=True):
             key = key << part.type.bits | value
         bits = sum(part.type.bits for part in parts)
-        width = int(unsigned_type(max(bits, 8))[4:-2])
-        return f"UINT{width}_C(0x{key:0{max(2, -(-bits // 4))}X})"
+        digits = width(max(bits, 8))
+        return f"UINT{digits}_C(0x{key:0{max(2, -(-bits // 4))}X})"
 
     def _groups(self) -> tuple[GroupView, ...]:
         hidden = {
@@ -657,7 +655,6 @@ class _Builder:
     def _group(self, index: int, identity: tuple[int, ...], messages: list[Message]) -> GroupView:
         sizes = {message.sizes.fixed for message in messages}
         return GroupView(
-            condition="",
             key=self._key_of(identity),
             messages=tuple(self._message(message) for message in messages),
             fixed=sizes.pop() if len(sizes) == 1 else None,
@@ -727,7 +724,9 @@ class _Builder:
         """Runs of content, neighbours joined."""
         found: list[CoverView] = []
         for name in part.covers:
-            view = replace(self._cover(name), stuffed=part.over_wire and name in self._stuffed())
+            view = replace(
+                self._cover(name), stuffed=part.over_wire and name in self._geometry.stuffed
+            )
             last = found[-1] if found else None
             if (
                 last
@@ -739,14 +738,6 @@ class _Builder:
             else:
                 found.append(view)
         return tuple(found)
-
-    def _stuffed(self) -> tuple[str, ...]:
-        """The names of the parts in the stuffed region."""
-        transparency = self._sender.frame.transparency
-        if transparency is None:
-            return ()
-        names = [part.name for part in self._sender.frame.parts]
-        return tuple(names[names.index(transparency.first) : names.index(transparency.last) + 1])
 
     def _cover(self, name: str) -> CoverView:
         placed = self._geometry.placed(name)
@@ -765,8 +756,8 @@ class _Builder:
 def _narrowed(part: NumberPart, value: str) -> str:
     """The value in the type of its bits, which its wire bytes may have more of."""
     type_ = part.type
-    wide = width_of(type_.byte_bits * type_.size)
-    return value if wide <= width_of(type_.bits) else f"({unsigned_type(type_.bits)})({value})"
+    wide = width(type_.byte_bits * type_.size)
+    return value if wide <= width(type_.bits) else f"({unsigned_type(type_.bits)})({value})"
 
 
 def checksum_name(protocol: str, spec: ChecksumSpec) -> str:

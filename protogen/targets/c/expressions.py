@@ -1,41 +1,14 @@
-"""Small pieces of C: types, constants, integers as bytes."""
+"""Integers of frames as bytes, in C."""
 
 from __future__ import annotations
 
 from protogen.model.types import Integer
-
-_WIDTHS = (8, 16, 32, 64)
-
-
-def width_of(bits: int) -> int:
-    """Bits of the smallest standard type that holds so many."""
-    return next(width for width in _WIDTHS if bits <= width)
-
-
-def unsigned_type(bits: int) -> str:
-    """The smallest unsigned type that holds so many bits."""
-    return f"uint{width_of(bits)}_t"
-
-
-def unsigned(value: int, bits: int) -> str:
-    """A constant of the smallest unsigned type with so many bits."""
-    digits = width_of(bits) // 4
-    return constant(value, bits) if value < 10 else f"UINT{width_of(bits)}_C(0x{value:0{digits}X})"
-
-
-def constant(value: int, bits: int) -> str:
-    """A decimal constant of the smallest unsigned type with so many bits."""
-    return f"UINT{width_of(bits)}_C({value})"
-
-
-def octet(value: int) -> str:
-    """One byte."""
-    return f"0x{value:02X}"
+from protogen.targets.c.spelling import unsigned_type
 
 
 def octets(data: bytes) -> str:
     """The bytes of an initialiser."""
-    return ", ".join(octet(byte) for byte in data)
+    return ", ".join(f"0x{byte:02X}" for byte in data)
 
 
 def wire_bytes(type_: Integer, value: str) -> tuple[str, ...]:

@@ -23,9 +23,10 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoder import ChecksumView, DecoderView
-from protogen.targets.c.expressions import unsigned_type, width_of, wire_bytes
+from protogen.targets.c.expressions import wire_bytes
 from protogen.targets.c.geometry import Geometry, Placed
 from protogen.targets.c.messages import MessageView
+from protogen.targets.c.spelling import unsigned_type, width
 
 _STUFFED = 128
 
@@ -210,14 +211,7 @@ class _Builder:
         """Which checksums cover a part, and whether it is stuffed."""
         frame = self._sender.frame
         covering = sum(1 << i for i, part in enumerate(frame.checksums) if name in part.covers)
-        return covering | (_STUFFED if name in self._region() else 0)
-
-    def _region(self) -> tuple[str, ...]:
-        transparency = self._sender.frame.transparency
-        if transparency is None:
-            return ()
-        names = [part.name for part in self._sender.frame.parts]
-        return tuple(names[names.index(transparency.first) : names.index(transparency.last) + 1])
+        return covering | (_STUFFED if name in self._geometry.stuffed else 0)
 
     def _length(self) -> str:
         view = self._decoder.length
@@ -363,12 +357,12 @@ def argument_name(part: str) -> str:
 
 
 def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
-    width = width_of(part.type.bits)
+    bits = width(part.type.bits)
     name = argument_name(part.name)
     conditions = []
     if part.least > 0:
         conditions.append(f"{name} < {part.least}u")
-    if part.greatest < (1 << width) - 1:
+    if part.greatest < (1 << bits) - 1:
         conditions.append(f"{name} > {part.greatest}u")
     return Argument(name, unsigned_type(part.type.bits), part.about.doc, " || ".join(conditions))
 

@@ -104,6 +104,15 @@ class Geometry:
         """Whether the end of a frame may also be the start of the next."""
         return bool(self.start) and self.start == self.end
 
+    @property
+    def stuffed(self) -> tuple[str, ...]:
+        """The names of the parts in the region under transparency."""
+        transparency = self.frame.transparency
+        if transparency is None:
+            return ()
+        names = [part.name for part in self.frame.parts]
+        return tuple(names[names.index(transparency.first) : names.index(transparency.last) + 1])
+
     def placed(self, name: str) -> Placed | None:
         """The part of that name; None for the payload and for literals of the end."""
         return next((item for item in (*self.head, *self.tail) if item.part.name == name), None)
