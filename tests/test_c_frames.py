@@ -227,3 +227,30 @@ def test_nothing_is_sent_of_a_message_that_is_out_of_range(
     assert made.exact or result == OK
     sent = ranged.do(ranged.calls.send("pc", message, values, FINE))
     assert (sent.result, sent.data) == (result, made.data)
+
+
+BESIDE = """
+protocol: beside
+endpoints: {pc: Computer}
+byte_order: little
+frame:
+  start: {literal: 0x55}
+  kind: {literal: {text: "k"}}
+  check: {type: uint16, algorithm: CRC-16/KERMIT, covers: kind, over: wire}
+  payload: {}
+transparency: {escape: {byte: 0x56, of: [0x55, 0x56], transform: invert}, covers: check..payload}
+messages:
+  speed:
+    from: pc
+    fields:
+      speed: {type: uint16}
+"""
+
+
+def test_a_checksum_of_the_wire_may_cover_nothing_that_is_stuffed(tmp_path: Path) -> None:
+    """Its C has no function to sum stuffed bytes then, which a compiler would warn of."""
+    process = Process(compiled(BESIDE, tmp_path))
+    made = process.do(process.calls.frame("pc", "speed", {"speed": 0x5502}, {}))
+    # CRC-16/KERMIT of "k" (0x6B) alone is 0xDDD5: by another implementation. 0x55 goes as 56 AA.
+    assert (made.result, made.data) == (OK, bytes.fromhex("55 6B D5 DD 02 56 AA"))
+    process.close()

@@ -1413,7 +1413,8 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t dagny_host_surplus(const struct dagny_host_decoder *decoder) {
-    return (decoder->flags & DAGNY_KNOWN) != 0U ? DAGNY_SIZE : DAGNY_SIZE;
+    (void)decoder;
+    return DAGNY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1529,9 +1530,7 @@ static uint8_t dagny_host_pass(struct dagny_host_decoder *decoder, uint8_t byte)
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t dagny_host_close_open(struct dagny_host_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & DAGNY_OPEN) != 0U) || decoder->content < 1U) {
         return DAGNY_TRUNCATED;
     }
@@ -1543,8 +1542,6 @@ static uint8_t dagny_host_close_open(struct dagny_host_decoder *decoder) {
         size = (uint16_t)(size - 1U);
     }
     dagny_host_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return DAGNY_NO_REASON;
 }
 
@@ -1591,7 +1588,7 @@ static void dagny_host_open(struct dagny_host_decoder *decoder) {
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 515U;
     decoder->flags = 0;
     decoder->behind = 0;
     decoder->end_left = 0;
@@ -1607,11 +1604,14 @@ static void dagny_host_seek_on(struct dagny_host_decoder *decoder) {
 
 /* Forget the first bytes that are kept, and read the others from the start. */
 static void dagny_host_drop(struct dagny_host_decoder *decoder, uint16_t size) {
-    uint16_t index;
-    decoder->count = (uint16_t)(decoder->count - size);
-    for (index = 0; index < decoder->count; index++) {
-        decoder->buffer[index] = decoder->buffer[index + size];
+    const size_t count = decoder->count;
+    size_t to = 0;
+    size_t from;
+    for (from = size; from < count && to <= from; from++) { /* `to` is never greater; the proof sees it. */
+        decoder->buffer[to] = decoder->buffer[from];
+        to++;
     }
+    decoder->count = (uint16_t)to;
     decoder->next = 0;
 }
 
@@ -1645,7 +1645,8 @@ static void dagny_host_seek(struct dagny_host_decoder *decoder, uint8_t byte) {
 /* Go on behind a failed candidate's first byte, where the next frame may start. False: the bytes
    that are there do not tell yet where that is. */
 static bool dagny_host_resume(struct dagny_host_decoder *decoder, bool final) {
-    const uint16_t high = decoder->failed;
+    const uint16_t failed = decoder->failed;
+    const uint16_t high = failed < decoder->count ? failed : decoder->count;
     uint16_t place;
     bool found = false;
     for (place = 0; place < high && !found; place++) {
@@ -1669,7 +1670,7 @@ static void dagny_host_run(struct dagny_host_decoder *decoder, bool final) {
     while (goes_on) {
         if (decoder->state == DAGNY_FAILED) {
             goes_on = dagny_host_resume(decoder, final);
-        } else if (decoder->next == decoder->count) {
+        } else if (decoder->next >= decoder->count) {
             goes_on = false;
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
@@ -1687,8 +1688,10 @@ static void dagny_host_run(struct dagny_host_decoder *decoder, bool final) {
 }
 
 void dagny_host_decoder_push(struct dagny_host_decoder *decoder, uint8_t byte) {
-    decoder->buffer[decoder->count] = byte;
-    decoder->count++;
+    if (decoder->count < 515U) { /* Always: it keeps the proof short. */
+        decoder->buffer[decoder->count] = byte;
+        decoder->count++;
+    }
     dagny_host_run(decoder, false);
 }
 
@@ -1841,7 +1844,8 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t dagny_robot_surplus(const struct dagny_robot_decoder *decoder) {
-    return (decoder->flags & DAGNY_KNOWN) != 0U ? DAGNY_SIZE : DAGNY_SIZE;
+    (void)decoder;
+    return DAGNY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1969,9 +1973,7 @@ static uint8_t dagny_robot_pass(struct dagny_robot_decoder *decoder, uint8_t byt
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t dagny_robot_close_open(struct dagny_robot_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & DAGNY_OPEN) != 0U) || decoder->content < 1U) {
         return DAGNY_TRUNCATED;
     }
@@ -1983,8 +1985,6 @@ static uint8_t dagny_robot_close_open(struct dagny_robot_decoder *decoder) {
         size = (uint16_t)(size - 1U);
     }
     dagny_robot_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return DAGNY_NO_REASON;
 }
 
@@ -2031,7 +2031,7 @@ static void dagny_robot_open(struct dagny_robot_decoder *decoder) {
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 515U;
     decoder->flags = 0;
     decoder->behind = 0;
     decoder->end_left = 0;
@@ -2047,11 +2047,14 @@ static void dagny_robot_seek_on(struct dagny_robot_decoder *decoder) {
 
 /* Forget the first bytes that are kept, and read the others from the start. */
 static void dagny_robot_drop(struct dagny_robot_decoder *decoder, uint16_t size) {
-    uint16_t index;
-    decoder->count = (uint16_t)(decoder->count - size);
-    for (index = 0; index < decoder->count; index++) {
-        decoder->buffer[index] = decoder->buffer[index + size];
+    const size_t count = decoder->count;
+    size_t to = 0;
+    size_t from;
+    for (from = size; from < count && to <= from; from++) { /* `to` is never greater; the proof sees it. */
+        decoder->buffer[to] = decoder->buffer[from];
+        to++;
     }
+    decoder->count = (uint16_t)to;
     decoder->next = 0;
 }
 
@@ -2085,7 +2088,8 @@ static void dagny_robot_seek(struct dagny_robot_decoder *decoder, uint8_t byte) 
 /* Go on behind a failed candidate's first byte, where the next frame may start. False: the bytes
    that are there do not tell yet where that is. */
 static bool dagny_robot_resume(struct dagny_robot_decoder *decoder, bool final) {
-    const uint16_t high = decoder->failed;
+    const uint16_t failed = decoder->failed;
+    const uint16_t high = failed < decoder->count ? failed : decoder->count;
     uint16_t place;
     bool found = false;
     for (place = 0; place < high && !found; place++) {
@@ -2109,7 +2113,7 @@ static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool final) {
     while (goes_on) {
         if (decoder->state == DAGNY_FAILED) {
             goes_on = dagny_robot_resume(decoder, final);
-        } else if (decoder->next == decoder->count) {
+        } else if (decoder->next >= decoder->count) {
             goes_on = false;
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
@@ -2127,8 +2131,10 @@ static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool final) {
 }
 
 void dagny_robot_decoder_push(struct dagny_robot_decoder *decoder, uint8_t byte) {
-    decoder->buffer[decoder->count] = byte;
-    decoder->count++;
+    if (decoder->count < 515U) { /* Always: it keeps the proof short. */
+        decoder->buffer[decoder->count] = byte;
+        decoder->count++;
+    }
     dagny_robot_run(decoder, false);
 }
 

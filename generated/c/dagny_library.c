@@ -1185,7 +1185,8 @@ static uint8_t dagny_library_host_complete(struct dagny_library_host_decoder *de
 
 /* A byte more than there can be. */
 static uint8_t dagny_library_host_surplus(const struct dagny_library_host_decoder *decoder) {
-    return (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_SIZE;
+    (void)decoder;
+    return DAGNY_LIBRARY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1329,16 +1330,12 @@ static uint8_t dagny_library_host_pass(struct dagny_library_host_decoder *decode
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t dagny_library_host_close_open(struct dagny_library_host_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U) || decoder->content < 1U) {
         return DAGNY_LIBRARY_TRUNCATED;
     }
     size = (uint16_t)(decoder->content - 1U);
     dagny_library_host_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return DAGNY_LIBRARY_NO_REASON;
 }
 
@@ -1392,7 +1389,7 @@ static void dagny_library_host_open(struct dagny_library_host_decoder *decoder) 
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 1027U;
     decoder->flags = 0;
     decoder->behind = 0;
     decoder->node = 0;
@@ -1561,7 +1558,8 @@ static uint8_t dagny_library_robot_complete(struct dagny_library_robot_decoder *
 
 /* A byte more than there can be. */
 static uint8_t dagny_library_robot_surplus(const struct dagny_library_robot_decoder *decoder) {
-    return (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_SIZE;
+    (void)decoder;
+    return DAGNY_LIBRARY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1708,16 +1706,12 @@ static uint8_t dagny_library_robot_pass(struct dagny_library_robot_decoder *deco
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t dagny_library_robot_close_open(struct dagny_library_robot_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U) || decoder->content < 1U) {
         return DAGNY_LIBRARY_TRUNCATED;
     }
     size = (uint16_t)(decoder->content - 1U);
     dagny_library_robot_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return DAGNY_LIBRARY_NO_REASON;
 }
 
@@ -1771,7 +1765,7 @@ static void dagny_library_robot_open(struct dagny_library_robot_decoder *decoder
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 1027U;
     decoder->flags = 0;
     decoder->behind = 0;
     decoder->node = 0;

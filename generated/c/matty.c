@@ -1029,7 +1029,7 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_pc_surplus(const struct matty_pc_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_LENGTH : MATTY_SIZE;
+    return decoder->content >= 2U ? MATTY_LENGTH : MATTY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1161,7 +1161,7 @@ static void matty_pc_open(struct matty_pc_decoder *decoder) {
     decoder->state = MATTY_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 5U);
+    decoder->payload = 121U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1229,6 +1229,8 @@ static void matty_pc_reset(struct matty_pc_decoder *decoder) {
 void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 121U;
     decoder->offset = 0;
     matty_pc_reset(decoder);
 }
@@ -1342,7 +1344,7 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_esp_surplus(const struct matty_esp_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_LENGTH : MATTY_SIZE;
+    return decoder->content >= 2U ? MATTY_LENGTH : MATTY_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1474,7 +1476,7 @@ static void matty_esp_open(struct matty_esp_decoder *decoder) {
     decoder->state = MATTY_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 5U);
+    decoder->payload = 121U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1542,6 +1544,8 @@ static void matty_esp_reset(struct matty_esp_decoder *decoder) {
 void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 121U;
     decoder->offset = 0;
     matty_esp_reset(decoder);
 }

@@ -1274,7 +1274,7 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_v4_pc_surplus(const struct matty_v4_pc_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
+    return decoder->content >= 2U ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1406,7 +1406,7 @@ static void matty_v4_pc_open(struct matty_v4_pc_decoder *decoder) {
     decoder->state = MATTY_V4_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 5U);
+    decoder->payload = 122U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1474,6 +1474,8 @@ static void matty_v4_pc_reset(struct matty_v4_pc_decoder *decoder) {
 void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 122U;
     decoder->offset = 0;
     matty_v4_pc_reset(decoder);
 }
@@ -1590,7 +1592,7 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t matty_v4_esp_surplus(const struct matty_v4_esp_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 5U) ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
+    return decoder->content >= 2U ? MATTY_V4_LENGTH : MATTY_V4_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1722,7 +1724,7 @@ static void matty_v4_esp_open(struct matty_v4_esp_decoder *decoder) {
     decoder->state = MATTY_V4_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 5U);
+    decoder->payload = 122U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1790,6 +1792,8 @@ static void matty_v4_esp_reset(struct matty_v4_esp_decoder *decoder) {
 void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 122U;
     decoder->offset = 0;
     matty_v4_esp_reset(decoder);
 }

@@ -534,7 +534,7 @@ enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(struct rflex_con
 
 static size_t rflex_sonar_data_measure(const struct rflex_sonar_data *message) {
     size_t size = 8u;
-    size += 3u * message->readings_count;
+    size += (size_t)3u * message->readings_count;
     return size;
 }
 
@@ -1901,7 +1901,7 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rflex_linux_surplus(const struct rflex_linux_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_LENGTH : RFLEX_SIZE;
+    return decoder->content >= 6U ? RFLEX_LENGTH : RFLEX_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2049,7 +2049,7 @@ static uint8_t rflex_linux_close(struct rflex_linux_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 7U)) {
+    if (decoder->content < 6U) {
         reason = RFLEX_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_LENGTH;
@@ -2101,7 +2101,7 @@ static void rflex_linux_open(struct rflex_linux_decoder *decoder) {
     decoder->state = RFLEX_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 7U);
+    decoder->payload = 255U;
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2201,6 +2201,8 @@ static void rflex_linux_reset(struct rflex_linux_decoder *decoder) {
 void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 255U;
     decoder->offset = 0;
     rflex_linux_reset(decoder);
 }
@@ -2396,7 +2398,7 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rflex_flex_surplus(const struct rflex_flex_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_LENGTH : RFLEX_SIZE;
+    return decoder->content >= 6U ? RFLEX_LENGTH : RFLEX_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2544,7 +2546,7 @@ static uint8_t rflex_flex_close(struct rflex_flex_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 7U)) {
+    if (decoder->content < 6U) {
         reason = RFLEX_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_LENGTH;
@@ -2596,7 +2598,7 @@ static void rflex_flex_open(struct rflex_flex_decoder *decoder) {
     decoder->state = RFLEX_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 7U);
+    decoder->payload = 255U;
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2696,6 +2698,8 @@ static void rflex_flex_reset(struct rflex_flex_decoder *decoder) {
 void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 255U;
     decoder->offset = 0;
     rflex_flex_reset(decoder);
 }

@@ -689,7 +689,7 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(
 
 static size_t rflex_drivers_sonar_data_measure(const struct rflex_drivers_sonar_data *message) {
     size_t size = 8u;
-    size += 3u * message->readings_count;
+    size += (size_t)3u * message->readings_count;
     return size;
 }
 
@@ -2401,7 +2401,7 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
 
 /* A byte more than there can be. */
 static uint8_t rflex_drivers_linux_surplus(const struct rflex_drivers_linux_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
+    return decoder->content >= 6U ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2549,7 +2549,7 @@ static uint8_t rflex_drivers_linux_close(struct rflex_drivers_linux_decoder *dec
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 7U)) {
+    if (decoder->content < 6U) {
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -2601,7 +2601,7 @@ static void rflex_drivers_linux_open(struct rflex_drivers_linux_decoder *decoder
     decoder->state = RFLEX_DRIVERS_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 7U);
+    decoder->payload = 255U;
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -2701,6 +2701,8 @@ static void rflex_drivers_linux_reset(struct rflex_drivers_linux_decoder *decode
 void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder, rflex_drivers_linux_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 255U;
     decoder->offset = 0;
     rflex_drivers_linux_reset(decoder);
 }
@@ -2902,7 +2904,7 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
 
 /* A byte more than there can be. */
 static uint8_t rflex_drivers_flex_surplus(const struct rflex_drivers_flex_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 7U) ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
+    return decoder->content >= 6U ? RFLEX_DRIVERS_LENGTH : RFLEX_DRIVERS_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -3050,7 +3052,7 @@ static uint8_t rflex_drivers_flex_close(struct rflex_drivers_flex_decoder *decod
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 7U)) {
+    if (decoder->content < 6U) {
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else if (decoder->content != decoder->payload + 7U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -3102,7 +3104,7 @@ static void rflex_drivers_flex_open(struct rflex_drivers_flex_decoder *decoder) 
     decoder->state = RFLEX_DRIVERS_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 7U);
+    decoder->payload = 255U;
     decoder->behind = 0;
     decoder->match = 0;
     decoder->held = 0;
@@ -3202,6 +3204,8 @@ static void rflex_drivers_flex_reset(struct rflex_drivers_flex_decoder *decoder)
 void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder, rflex_drivers_flex_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 255U;
     decoder->offset = 0;
     rflex_drivers_flex_reset(decoder);
 }

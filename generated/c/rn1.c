@@ -1551,7 +1551,8 @@ static uint8_t rn1_host_complete(struct rn1_host_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rn1_host_surplus(const struct rn1_host_decoder *decoder) {
-    return (decoder->flags & RN1_KNOWN) != 0U ? RN1_SIZE : RN1_SIZE;
+    (void)decoder;
+    return RN1_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -1656,16 +1657,12 @@ static uint8_t rn1_host_pass(struct rn1_host_decoder *decoder, uint8_t byte) {
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t rn1_host_close_open(struct rn1_host_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint8_t size;
-    uint8_t index;
     if (!((decoder->flags & RN1_OPEN) != 0U) || decoder->content < 1U) {
         return RN1_TRUNCATED;
     }
     size = (uint8_t)(decoder->content - 1U);
     rn1_host_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return RN1_NO_REASON;
 }
 
@@ -1713,7 +1710,7 @@ static void rn1_host_open(struct rn1_host_decoder *decoder) {
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT8_MAX;
+    decoder->limit = 9U;
     decoder->flags = 0;
     decoder->behind = 0;
 }
@@ -1785,6 +1782,10 @@ static void rn1_host_reset(struct rn1_host_decoder *decoder) {
 void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 9U;
     decoder->offset = 0;
     rn1_host_reset(decoder);
 }
@@ -1896,7 +1897,8 @@ static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t rn1_brain_surplus(const struct rn1_brain_decoder *decoder) {
-    return (decoder->flags & RN1_KNOWN) != 0U ? RN1_SIZE : RN1_SIZE;
+    (void)decoder;
+    return RN1_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2013,16 +2015,12 @@ static uint8_t rn1_brain_pass(struct rn1_brain_decoder *decoder, uint8_t byte) {
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t rn1_brain_close_open(struct rn1_brain_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & RN1_OPEN) != 0U) || decoder->content < 1U) {
         return RN1_TRUNCATED;
     }
     size = (uint16_t)(decoder->content - 1U);
     rn1_brain_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return RN1_NO_REASON;
 }
 
@@ -2080,7 +2078,7 @@ static void rn1_brain_open(struct rn1_brain_decoder *decoder) {
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 722U;
     decoder->flags = 0;
     decoder->behind = 0;
 }
@@ -2152,6 +2150,10 @@ static void rn1_brain_reset(struct rn1_brain_decoder *decoder) {
 void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 722U;
     decoder->offset = 0;
     rn1_brain_reset(decoder);
 }

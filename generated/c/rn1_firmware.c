@@ -1894,7 +1894,8 @@ static uint8_t rn1_firmware_host_complete(struct rn1_firmware_host_decoder *deco
 
 /* A byte more than there can be. */
 static uint8_t rn1_firmware_host_surplus(const struct rn1_firmware_host_decoder *decoder) {
-    return (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_SIZE;
+    (void)decoder;
+    return RN1_FIRMWARE_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2002,16 +2003,12 @@ static uint8_t rn1_firmware_host_pass(struct rn1_firmware_host_decoder *decoder,
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t rn1_firmware_host_close_open(struct rn1_firmware_host_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint8_t size;
-    uint8_t index;
     if (!((decoder->flags & RN1_FIRMWARE_OPEN) != 0U) || decoder->content < 1U) {
         return RN1_FIRMWARE_TRUNCATED;
     }
     size = (uint8_t)(decoder->content - 1U);
     rn1_firmware_host_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return RN1_FIRMWARE_NO_REASON;
 }
 
@@ -2059,7 +2056,7 @@ static void rn1_firmware_host_open(struct rn1_firmware_host_decoder *decoder) {
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT8_MAX;
+    decoder->limit = 7U;
     decoder->flags = 0;
     decoder->behind = 0;
 }
@@ -2131,6 +2128,10 @@ static void rn1_firmware_host_reset(struct rn1_firmware_host_decoder *decoder) {
 void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder, rn1_firmware_host_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 7U;
     decoder->offset = 0;
     rn1_firmware_host_reset(decoder);
 }
@@ -2248,7 +2249,8 @@ static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *de
 
 /* A byte more than there can be. */
 static uint8_t rn1_firmware_brain_surplus(const struct rn1_firmware_brain_decoder *decoder) {
-    return (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_SIZE;
+    (void)decoder;
+    return RN1_FIRMWARE_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -2371,16 +2373,12 @@ static uint8_t rn1_firmware_brain_pass(struct rn1_firmware_brain_decoder *decode
 
 /* The end of a frame that nothing else tells the size of. */
 static uint8_t rn1_firmware_brain_close_open(struct rn1_firmware_brain_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
     uint16_t size;
-    uint16_t index;
     if (!((decoder->flags & RN1_FIRMWARE_OPEN) != 0U) || decoder->content < 1U) {
         return RN1_FIRMWARE_TRUNCATED;
     }
     size = (uint16_t)(decoder->content - 1U);
     rn1_firmware_brain_set_payload(decoder, size);
-    (void)content;
-    (void)index;
     return RN1_FIRMWARE_NO_REASON;
 }
 
@@ -2438,7 +2436,7 @@ static void rn1_firmware_brain_open(struct rn1_firmware_brain_decoder *decoder) 
     decoder->wire = 0;
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = UINT16_MAX;
+    decoder->limit = 722U;
     decoder->flags = 0;
     decoder->behind = 0;
 }
@@ -2510,6 +2508,10 @@ static void rn1_firmware_brain_reset(struct rn1_firmware_brain_decoder *decoder)
 void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder, rn1_firmware_brain_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 722U;
     decoder->offset = 0;
     rn1_firmware_brain_reset(decoder);
 }

@@ -510,7 +510,7 @@ static uint8_t uherobot_daemon_complete(struct uherobot_daemon_decoder *decoder)
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_surplus(const struct uherobot_daemon_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
+    return decoder->content >= 2U ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -624,7 +624,7 @@ static uint8_t uherobot_daemon_close(struct uherobot_daemon_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 3U)) {
+    if (decoder->content < 2U) {
         reason = UHEROBOT_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_LENGTH;
@@ -664,7 +664,7 @@ static void uherobot_daemon_open(struct uherobot_daemon_decoder *decoder) {
     decoder->state = UHEROBOT_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 3U);
+    decoder->payload = 253U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -732,6 +732,8 @@ static void uherobot_daemon_reset(struct uherobot_daemon_decoder *decoder) {
 void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder, uherobot_daemon_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 253U;
     decoder->offset = 0;
     uherobot_daemon_reset(decoder);
 }
@@ -825,7 +827,7 @@ static uint8_t uherobot_board_complete(struct uherobot_board_decoder *decoder) {
 
 /* A byte more than there can be. */
 static uint8_t uherobot_board_surplus(const struct uherobot_board_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
+    return decoder->content >= 2U ? UHEROBOT_LENGTH : UHEROBOT_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -939,7 +941,7 @@ static uint8_t uherobot_board_close(struct uherobot_board_decoder *decoder) {
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 3U)) {
+    if (decoder->content < 2U) {
         reason = UHEROBOT_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_LENGTH;
@@ -979,7 +981,7 @@ static void uherobot_board_open(struct uherobot_board_decoder *decoder) {
     decoder->state = UHEROBOT_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 3U);
+    decoder->payload = 253U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -1047,6 +1049,8 @@ static void uherobot_board_reset(struct uherobot_board_decoder *decoder) {
 void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder, uherobot_board_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 253U;
     decoder->offset = 0;
     uherobot_board_reset(decoder);
 }

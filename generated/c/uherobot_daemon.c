@@ -507,7 +507,7 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_daemon_surplus(const struct uherobot_daemon_daemon_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
+    return decoder->content >= 2U ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -621,7 +621,7 @@ static uint8_t uherobot_daemon_daemon_close(struct uherobot_daemon_daemon_decode
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 3U)) {
+    if (decoder->content < 2U) {
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -661,7 +661,7 @@ static void uherobot_daemon_daemon_open(struct uherobot_daemon_daemon_decoder *d
     decoder->state = UHEROBOT_DAEMON_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 3U);
+    decoder->payload = 253U;
     decoder->behind = 0;
     decoder->node = 0;
 }
@@ -729,6 +729,8 @@ static void uherobot_daemon_daemon_reset(struct uherobot_daemon_daemon_decoder *
 void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder, uherobot_daemon_daemon_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 253U;
     decoder->offset = 0;
     uherobot_daemon_daemon_reset(decoder);
 }
@@ -846,7 +848,7 @@ static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decod
 
 /* A byte more than there can be. */
 static uint8_t uherobot_daemon_board_surplus(const struct uherobot_daemon_board_decoder *decoder) {
-    return decoder->payload != (UINT16_MAX - 3U) ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
+    return decoder->content >= 3U ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
 }
 
 /* From now on the payload's size is known. */
@@ -960,7 +962,7 @@ static uint8_t uherobot_daemon_board_close(struct uherobot_daemon_board_decoder 
             return reason;
         }
     }
-    if (decoder->payload == (UINT16_MAX - 3U)) {
+    if (decoder->content < 3U) {
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else if (decoder->content != decoder->payload + 3U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -1011,7 +1013,7 @@ static void uherobot_daemon_board_open(struct uherobot_daemon_board_decoder *dec
     decoder->state = UHEROBOT_DAEMON_TAKING;
     decoder->wire = 0;
     decoder->content = 0;
-    decoder->payload = (UINT16_MAX - 3U);
+    decoder->payload = 255U;
     decoder->behind = 0;
     decoder->held = 0;
     decoder->node = 0;
@@ -1080,6 +1082,8 @@ static void uherobot_daemon_board_reset(struct uherobot_daemon_board_decoder *de
 void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder, uherobot_daemon_board_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->payload = 255U;
     decoder->offset = 0;
     uherobot_daemon_board_reset(decoder);
 }

@@ -133,6 +133,11 @@ class ChecksumView:
     optional: bool
     over_wire: bool
 
+    @property
+    def sums_stuffed(self) -> bool:
+        """Whether some of what it covers is stuffed on the wire before it is summed."""
+        return any(item.stuffed for item in self.covers)
+
 
 @dataclass(frozen=True, slots=True)
 class LengthView:
@@ -182,9 +187,6 @@ class DecoderView:
     greatest: int
     counter: str
     """The type of sizes."""
-    unlimited: str
-    unknown: str
-    """Stands for a payload whose size is not known yet; what is around it can be added to it."""
     start: str
     """`literal`, `set`, `after_end` or `anywhere`."""
     start_protected: bool
@@ -327,6 +329,22 @@ class DecoderView:
         return self.start == "set" or least <= self.start_size
 
     @property
+    def content_size(self) -> int:
+        """Bytes there is room for in a frame without its stuffing."""
+        return self.greatest if self.store == "both" else self.buffer_size
+
+    @property
+    def known_from(self) -> int:
+        """How many bytes of content tell the payload's size, where that is simple."""
+        return next((n.last + 1 for n in self.head_numbers if n.is_length or n.identifies), 0)
+
+    @property
+    def unlimited(self) -> str:
+        """What bounds a payload or all content while its size is unknown: the room for it."""
+        size = self.content_size
+        return str(size - self.head_size - self.tail_size if self.simple else size) + "U"
+
+    @property
     def wire_ends(self) -> bool:
         """Whether a checksum covers stuffed bytes, so that their places are kept."""
         return self.store == "both" and any(item.over_wire for item in self.checksums)
@@ -388,8 +406,6 @@ class _Builder:
             geometry=geometry,
             greatest=framing.greatest,
             counter=f"uint{bits}_t",
-            unlimited=f"UINT{bits}_MAX",
-            unknown=f"(UINT{bits}_MAX - {geometry.head_size + geometry.tail_size}U)",
             start=_start_kind(start),
             start_protected=isinstance(start, StartLiteral | StartSet) and start.protected,
             least_start=start.least if isinstance(start, StartSet) else 0,

@@ -82,7 +82,7 @@ class FrameView:
     """Bytes on the wire for one stuffed byte, at most."""
     is_cobs: bool
     sums_stuffed: bool
-    """Whether a checksum covers bytes as they are on the wire."""
+    """Whether a checksum covers stuffed bytes as they are on the wire."""
     checks_cut: bool
     """Whether a decoder might end a frame of some message too early."""
     streams: bool
@@ -167,7 +167,7 @@ class _Builder:
             region_end=self._decoder.region_end.replace("decoder->", ""),
             worst=_worst(self._sender),
             is_cobs=stuffing is not None and stuffing.kind == "cobs",
-            sums_stuffed=stuffing is not None and any(c.over_wire for c in frame.checksums),
+            sums_stuffed=any(item.sums_stuffed for item in self._decoder.checksums),
             checks_cut=framing.cut_ambiguous and frame.length is None,
             streams=self._can_stream(),
             stream=stream,

@@ -86,8 +86,8 @@ def number(value: int) -> str:
     if -_INT_MAX <= value <= _INT_MAX:
         return str(value)
     if value == -(1 << 63):
-        return f"(-{(1 << 63) - 1}ll - 1)"
-    suffix = "l" if -(1 << 31) < value < 1 << 31 else "ll"
+        return f"(-{(1 << 63) - 1}LL - 1)"
+    suffix = "L" if -(1 << 31) < value < 1 << 31 else "LL"
     return f"{value}{suffix}"
 
 

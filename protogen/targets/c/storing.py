@@ -38,7 +38,7 @@ def times(count: int | str, size: int) -> int | str:
     """The bytes of so many elements."""
     if isinstance(count, int):
         return count * size
-    return f"{unsigned(size)} * {count}" if size > 1 else count
+    return f"(size_t){unsigned(size)} * {count}" if size > 1 else count
 
 
 class Store(Walk):
