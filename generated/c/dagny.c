@@ -53,7 +53,7 @@ static enum dagny_result dagny_sonar_check(const uint8_t *payload, size_t size, 
     return DAGNY_OK;
 }
 
-static void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size) {
+void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -111,7 +111,7 @@ static enum dagny_result dagny_gps_check(const uint8_t *payload, size_t size, si
     return DAGNY_OK;
 }
 
-static void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size) {
+void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -168,7 +168,7 @@ static enum dagny_result dagny_bump_check(const uint8_t *payload, size_t size, s
     return DAGNY_OK;
 }
 
-static void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size) {
+void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -226,8 +226,7 @@ static enum dagny_result dagny_odometry_check(const uint8_t *payload, size_t siz
     return DAGNY_OK;
 }
 
-static void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload,
-                                size_t size) {
+void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -285,7 +284,7 @@ static enum dagny_result dagny_speed_check(const uint8_t *payload, size_t size, 
     return DAGNY_OK;
 }
 
-static void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size) {
+void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -343,8 +342,7 @@ static enum dagny_result dagny_wheel_slip_check(const uint8_t *payload, size_t s
     return DAGNY_OK;
 }
 
-static void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload,
-                                  size_t size) {
+void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -402,7 +400,7 @@ static enum dagny_result dagny_battery_check(const uint8_t *payload, size_t size
     return DAGNY_OK;
 }
 
-static void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, size_t size) {
+void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -462,8 +460,8 @@ static enum dagny_result dagny_reflex_settings_check(const uint8_t *payload, siz
     return DAGNY_OK;
 }
 
-static void dagny_reflex_settings_load(struct dagny_reflex_settings *message,
-                                       const uint8_t *payload, size_t size) {
+void dagny_reflex_settings_load(struct dagny_reflex_settings *message, const uint8_t *payload,
+                                size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -523,8 +521,8 @@ static enum dagny_result dagny_hardware_status_check(const uint8_t *payload, siz
     return DAGNY_OK;
 }
 
-static void dagny_hardware_status_load(struct dagny_hardware_status *message,
-                                       const uint8_t *payload, size_t size) {
+void dagny_hardware_status_load(struct dagny_hardware_status *message, const uint8_t *payload,
+                                size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }
@@ -555,7 +553,7 @@ enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t 
     return DAGNY_OK;
 }
 
-static void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
+void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
     message->s = payload[0];
 }
 
@@ -584,7 +582,7 @@ enum dagny_result dagny_steering_encode(const struct dagny_steering *message, ui
     return DAGNY_OK;
 }
 
-static void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
+void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
     message->s = payload[0];
 }
 
@@ -613,7 +611,7 @@ enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_
     return DAGNY_OK;
 }
 
-static void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
+void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
     message->reflex = payload[0];
 }
 
@@ -654,7 +652,7 @@ static enum dagny_result dagny_power_down_check(const uint8_t *payload, size_t s
     return DAGNY_OK;
 }
 
-static void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload) {
+void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -685,7 +683,7 @@ enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t 
     return DAGNY_OK;
 }
 
-static void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
+void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
     message->code = payload[0];
 }
 
@@ -748,7 +746,7 @@ static enum dagny_result dagny_laser_check(const uint8_t *payload, size_t size, 
     return DAGNY_OK;
 }
 
-static void dagny_laser_load(struct dagny_laser *message, const uint8_t *payload, size_t size) {
+void dagny_laser_load(struct dagny_laser *message, const uint8_t *payload, size_t size) {
     message->readings_count = (uint16_t)(size);
     dagny_copy(message->readings, payload, message->readings_count);
 }
@@ -806,7 +804,7 @@ static enum dagny_result dagny_command_check(const uint8_t *payload, size_t size
     return DAGNY_OK;
 }
 
-static void dagny_command_load(struct dagny_command *message, const uint8_t *payload, size_t size) {
+void dagny_command_load(struct dagny_command *message, const uint8_t *payload, size_t size) {
     message->data_size = (uint8_t)(size);
     dagny_copy(message->data, payload, message->data_size);
 }

@@ -81,10 +81,11 @@ enum dagny_power_code {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------- */
@@ -105,6 +106,7 @@ enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t *payload,
                                      size_t size);
+void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size);
 
 /* --- gps --------------------------------------------------------------------------------------- */
 
@@ -127,6 +129,7 @@ struct dagny_gps {
 enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *payload,
                                    size_t capacity, size_t *size);
 enum dagny_result dagny_gps_decode(struct dagny_gps *message, const uint8_t *payload, size_t size);
+void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size);
 
 /* --- bump -------------------------------------------------------------------------------------- */
 
@@ -146,6 +149,7 @@ enum dagny_result dagny_bump_encode(const struct dagny_bump *message, uint8_t *p
                                     size_t capacity, size_t *size);
 enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *payload,
                                     size_t size);
+void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size);
 
 /* --- odometry ---------------------------------------------------------------------------------- */
 
@@ -165,6 +169,7 @@ enum dagny_result dagny_odometry_encode(const struct dagny_odometry *message, ui
                                         size_t capacity, size_t *size);
 enum dagny_result dagny_odometry_decode(struct dagny_odometry *message, const uint8_t *payload,
                                         size_t size);
+void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload, size_t size);
 
 /* --- speed ------------------------------------------------------------------------------------- */
 
@@ -184,6 +189,7 @@ enum dagny_result dagny_speed_encode(const struct dagny_speed *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t *payload,
                                      size_t size);
+void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size);
 
 /* --- wheel_slip -------------------------------------------------------------------------------- */
 
@@ -207,6 +213,7 @@ enum dagny_result dagny_wheel_slip_encode(const struct dagny_wheel_slip *message
                                           size_t capacity, size_t *size);
 enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *message, const uint8_t *payload,
                                           size_t size);
+void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload, size_t size);
 
 /* --- battery ----------------------------------------------------------------------------------- */
 
@@ -230,6 +237,7 @@ enum dagny_result dagny_battery_encode(const struct dagny_battery *message, uint
                                        size_t capacity, size_t *size);
 enum dagny_result dagny_battery_decode(struct dagny_battery *message, const uint8_t *payload,
                                        size_t size);
+void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, size_t size);
 
 /* --- reflex_settings --------------------------------------------------------------------------- */
 
@@ -249,6 +257,8 @@ enum dagny_result dagny_reflex_settings_encode(const struct dagny_reflex_setting
                                                uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_settings *message,
                                                const uint8_t *payload, size_t size);
+void dagny_reflex_settings_load(struct dagny_reflex_settings *message, const uint8_t *payload,
+                                size_t size);
 
 /* --- hardware_status --------------------------------------------------------------------------- */
 
@@ -268,6 +278,8 @@ enum dagny_result dagny_hardware_status_encode(const struct dagny_hardware_statu
                                                uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *message,
                                                const uint8_t *payload, size_t size);
+void dagny_hardware_status_load(struct dagny_hardware_status *message, const uint8_t *payload,
+                                size_t size);
 
 /* --- motor ------------------------------------------------------------------------------------- */
 
@@ -286,6 +298,7 @@ enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                      size_t size);
+void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
 
 /* --- steering ---------------------------------------------------------------------------------- */
 
@@ -304,6 +317,7 @@ enum dagny_result dagny_steering_encode(const struct dagny_steering *message, ui
                                         size_t capacity, size_t *size);
 enum dagny_result dagny_steering_decode(struct dagny_steering *message, const uint8_t *payload,
                                         size_t size);
+void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
 
 /* --- reflex ------------------------------------------------------------------------------------ */
 
@@ -327,6 +341,7 @@ enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_
                                       size_t capacity, size_t *size);
 enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_t *payload,
                                       size_t size);
+void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 #define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0u
@@ -367,6 +382,7 @@ enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message
                                           size_t capacity, size_t *size);
 enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, const uint8_t *payload,
                                           size_t size);
+void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload);
 
 /* --- power ------------------------------------------------------------------------------------- */
 
@@ -385,6 +401,7 @@ enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
                                      size_t size);
+void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
 
 /* --- laser ------------------------------------------------------------------------------------- */
 
@@ -412,6 +429,7 @@ enum dagny_result dagny_laser_encode(const struct dagny_laser *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_laser_decode(struct dagny_laser *message, const uint8_t *payload,
                                      size_t size);
+void dagny_laser_load(struct dagny_laser *message, const uint8_t *payload, size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_laser_readings_at(const uint8_t *payload, size_t index) {
@@ -437,6 +455,7 @@ enum dagny_result dagny_command_encode(const struct dagny_command *message, uint
                                        size_t capacity, size_t *size);
 enum dagny_result dagny_command_decode(struct dagny_command *message, const uint8_t *payload,
                                        size_t size);
+void dagny_command_load(struct dagny_command *message, const uint8_t *payload, size_t size);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

@@ -56,7 +56,7 @@ enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload) {
+void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload) {
     dagny_library_copy(message->distances, payload, 5u);
 }
 
@@ -117,8 +117,8 @@ static enum dagny_library_result dagny_library_gps_check(const uint8_t *payload,
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *payload,
-                                   size_t size) {
+void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *payload,
+                            size_t size) {
     message->nmea_size = (uint8_t)(size);
     dagny_library_copy(message->nmea, payload, message->nmea_size);
 }
@@ -157,8 +157,7 @@ enum dagny_library_result dagny_library_odometry_encode(const struct dagny_libra
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_odometry_load(struct dagny_library_odometry *message,
-                                        const uint8_t *payload) {
+void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload) {
     message->right_count = dagny_library_load_u16le(payload);
     message->left_count = dagny_library_load_u16le(payload + 2);
     message->quad_count = dagny_library_load_u16le(payload + 4);
@@ -197,8 +196,7 @@ enum dagny_library_result dagny_library_battery_encode(const struct dagny_librar
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_battery_load(struct dagny_library_battery *message,
-                                       const uint8_t *payload) {
+void dagny_library_battery_load(struct dagny_library_battery *message, const uint8_t *payload) {
     message->main_battery = payload[0];
     message->motor_battery = payload[1];
     message->idle = (int32_t)dagny_library_load_u32le(payload + 2);
@@ -232,8 +230,7 @@ enum dagny_library_result dagny_library_compass_encode(const struct dagny_librar
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_compass_load(struct dagny_library_compass *message,
-                                       const uint8_t *payload) {
+void dagny_library_compass_load(struct dagny_library_compass *message, const uint8_t *payload) {
     message->x = (int16_t)dagny_library_load_u16le(payload);
     message->y = (int16_t)dagny_library_load_u16le(payload + 2);
 }
@@ -264,7 +261,7 @@ enum dagny_library_result dagny_library_motor_encode(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t *payload) {
+void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t *payload) {
     message->speed = (int8_t)payload[0];
 }
 
@@ -295,7 +292,7 @@ enum dagny_library_result dagny_library_drive_encode(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t *payload) {
+void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t *payload) {
     message->speed = (int8_t)payload[0];
     message->steer = payload[1];
 }
@@ -327,8 +324,7 @@ enum dagny_library_result dagny_library_steering_encode(const struct dagny_libra
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_steering_load(struct dagny_library_steering *message,
-                                        const uint8_t *payload) {
+void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload) {
     message->position = payload[0];
 }
 
@@ -358,7 +354,7 @@ enum dagny_library_result dagny_library_power_encode(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload) {
+void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload) {
     message->code = payload[0];
 }
 
@@ -390,8 +386,8 @@ enum dagny_library_result dagny_library_gps_position_encode(const struct dagny_l
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
-                                            const uint8_t *payload) {
+void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
+                                     const uint8_t *payload) {
     message->latitude = (int32_t)dagny_library_load_u32le(payload);
     message->longitude = (int32_t)dagny_library_load_u32le(payload + 4);
 }
@@ -457,8 +453,8 @@ static enum dagny_library_result dagny_library_laser_check(const uint8_t *payloa
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_laser_load(struct dagny_library_laser *message, const uint8_t *payload,
-                                     size_t size) {
+void dagny_library_laser_load(struct dagny_library_laser *message, const uint8_t *payload,
+                              size_t size) {
     message->readings_count = (uint16_t)(size);
     dagny_library_copy(message->readings, payload, message->readings_count);
 }
@@ -528,8 +524,7 @@ static enum dagny_library_result dagny_library_shutdown_check(const uint8_t *pay
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_shutdown_load(struct dagny_library_shutdown *message,
-                                        const uint8_t *payload) {
+void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }

@@ -69,10 +69,11 @@ enum dagny_library_power_code {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------- */
@@ -100,6 +101,7 @@ enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_
                                                      size_t *size);
 enum dagny_library_result dagny_library_sonar_decode(struct dagny_library_sonar *message,
                                                      const uint8_t *payload, size_t size);
+void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_library_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -133,6 +135,7 @@ enum dagny_library_result dagny_library_gps_encode(const struct dagny_library_gp
                                                    uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *message,
                                                    const uint8_t *payload, size_t size);
+void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *payload, size_t size);
 
 /* --- odometry ---------------------------------------------------------------------------------- */
 
@@ -188,6 +191,7 @@ enum dagny_library_result dagny_library_odometry_encode(const struct dagny_libra
                                                         size_t *size);
 enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odometry *message,
                                                         const uint8_t *payload, size_t size);
+void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload);
 
 /* --- battery ----------------------------------------------------------------------------------- */
 
@@ -225,6 +229,7 @@ enum dagny_library_result dagny_library_battery_encode(const struct dagny_librar
                                                        size_t *size);
 enum dagny_library_result dagny_library_battery_decode(struct dagny_library_battery *message,
                                                        const uint8_t *payload, size_t size);
+void dagny_library_battery_load(struct dagny_library_battery *message, const uint8_t *payload);
 
 /* --- compass ----------------------------------------------------------------------------------- */
 
@@ -255,6 +260,7 @@ enum dagny_library_result dagny_library_compass_encode(const struct dagny_librar
                                                        size_t *size);
 enum dagny_library_result dagny_library_compass_decode(struct dagny_library_compass *message,
                                                        const uint8_t *payload, size_t size);
+void dagny_library_compass_load(struct dagny_library_compass *message, const uint8_t *payload);
 
 /* --- motor ------------------------------------------------------------------------------------- */
 
@@ -282,6 +288,7 @@ enum dagny_library_result dagny_library_motor_encode(const struct dagny_library_
                                                      size_t *size);
 enum dagny_library_result dagny_library_motor_decode(struct dagny_library_motor *message,
                                                      const uint8_t *payload, size_t size);
+void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t *payload);
 
 /* --- drive ------------------------------------------------------------------------------------- */
 
@@ -314,6 +321,7 @@ enum dagny_library_result dagny_library_drive_encode(const struct dagny_library_
                                                      size_t *size);
 enum dagny_library_result dagny_library_drive_decode(struct dagny_library_drive *message,
                                                      const uint8_t *payload, size_t size);
+void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t *payload);
 
 /* --- steering ---------------------------------------------------------------------------------- */
 
@@ -339,6 +347,7 @@ enum dagny_library_result dagny_library_steering_encode(const struct dagny_libra
                                                         size_t *size);
 enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
                                                         const uint8_t *payload, size_t size);
+void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload);
 
 /* --- power ------------------------------------------------------------------------------------- */
 
@@ -363,6 +372,7 @@ enum dagny_library_result dagny_library_power_encode(const struct dagny_library_
                                                      size_t *size);
 enum dagny_library_result dagny_library_power_decode(struct dagny_library_power *message,
                                                      const uint8_t *payload, size_t size);
+void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload);
 
 /* --- gps_position ------------------------------------------------------------------------------ */
 
@@ -399,6 +409,8 @@ enum dagny_library_result dagny_library_gps_position_encode(const struct dagny_l
                                                             size_t *size);
 enum dagny_library_result dagny_library_gps_position_decode(struct dagny_library_gps_position *message,
                                                             const uint8_t *payload, size_t size);
+void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
+                                     const uint8_t *payload);
 
 /* --- laser ------------------------------------------------------------------------------------- */
 
@@ -430,6 +442,8 @@ enum dagny_library_result dagny_library_laser_encode(const struct dagny_library_
                                                      size_t *size);
 enum dagny_library_result dagny_library_laser_decode(struct dagny_library_laser *message,
                                                      const uint8_t *payload, size_t size);
+void dagny_library_laser_load(struct dagny_library_laser *message, const uint8_t *payload,
+                              size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, size_t index) {
@@ -460,6 +474,7 @@ enum dagny_library_result dagny_library_shutdown_encode(const struct dagny_libra
                                                         size_t *size);
 enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shutdown *message,
                                                         const uint8_t *payload, size_t size);
+void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

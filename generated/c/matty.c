@@ -43,7 +43,7 @@ enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *p
     return MATTY_OK;
 }
 
-static void matty_stop_load(struct matty_stop *message, const uint8_t *payload) {
+void matty_stop_load(struct matty_stop *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -72,7 +72,7 @@ enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t 
     return MATTY_OK;
 }
 
-static void matty_reset_load(struct matty_reset *message, const uint8_t *payload) {
+void matty_reset_load(struct matty_reset *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -102,7 +102,7 @@ enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *p
     return MATTY_OK;
 }
 
-static void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
+void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
     message->mode = payload[0];
 }
 
@@ -132,7 +132,7 @@ enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *paylo
     return MATTY_OK;
 }
 
-static void matty_go_load(struct matty_go *message, const uint8_t *payload) {
+void matty_go_load(struct matty_go *message, const uint8_t *payload) {
     message->speed = (int16_t)matty_load_u16le(payload);
     message->steer = (int16_t)matty_load_u16le(payload + 2);
 }
@@ -162,7 +162,7 @@ enum matty_result matty_limits_encode(const struct matty_limits *message, uint8_
     return MATTY_OK;
 }
 
-static void matty_limits_load(struct matty_limits *message, const uint8_t *payload) {
+void matty_limits_load(struct matty_limits *message, const uint8_t *payload) {
     message->max_speed = (int16_t)matty_load_u16le(payload);
     message->max_steer = (int16_t)matty_load_u16le(payload + 2);
 }
@@ -193,7 +193,7 @@ enum matty_result matty_timing_encode(const struct matty_timing *message, uint8_
     return MATTY_OK;
 }
 
-static void matty_timing_load(struct matty_timing *message, const uint8_t *payload) {
+void matty_timing_load(struct matty_timing *message, const uint8_t *payload) {
     message->period = matty_load_u16le(payload);
     message->timeout = matty_load_u16le(payload + 2);
 }
@@ -223,7 +223,7 @@ enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, ui
     return MATTY_OK;
 }
 
-static void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
+void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
     message->mode = payload[0];
 }
 
@@ -251,7 +251,7 @@ enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *pay
     return MATTY_OK;
 }
 
-static void matty_ack_load(struct matty_ack *message, const uint8_t *payload) {
+void matty_ack_load(struct matty_ack *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -279,7 +279,7 @@ enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *p
     return MATTY_OK;
 }
 
-static void matty_nack_load(struct matty_nack *message, const uint8_t *payload) {
+void matty_nack_load(struct matty_nack *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -318,7 +318,7 @@ enum matty_result matty_status_encode(const struct matty_status *message, uint8_
     return MATTY_OK;
 }
 
-static void matty_status_load(struct matty_status *message, const uint8_t *payload) {
+void matty_status_load(struct matty_status *message, const uint8_t *payload) {
     message->status = payload[0];
     message->mode = payload[1];
     message->voltage = matty_load_u16le(payload + 2);
@@ -386,7 +386,7 @@ static enum matty_result matty_gps_check(const uint8_t *payload, size_t size, si
     return MATTY_OK;
 }
 
-static void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size) {
+void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size) {
     message->nmea_size = (uint8_t)(size);
     matty_copy(message->nmea, payload, message->nmea_size);
 }

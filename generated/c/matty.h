@@ -80,10 +80,11 @@ enum matty_gps_mode_mode {
 #define MATTY_STATUS_STATUS_RUNNING 0x80u
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- stop -------------------------------------------------------------------------------------- */
@@ -107,6 +108,7 @@ enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *p
                                     size_t capacity, size_t *size);
 enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
                                     size_t size);
+void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
 
 /* --- reset ------------------------------------------------------------------------------------- */
 
@@ -125,6 +127,7 @@ enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t 
                                      size_t capacity, size_t *size);
 enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
                                      size_t size);
+void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
 
 /* --- mode -------------------------------------------------------------------------------------- */
 
@@ -143,6 +146,7 @@ enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *p
                                     size_t capacity, size_t *size);
 enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                     size_t size);
+void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
 
 /* --- go ---------------------------------------------------------------------------------------- */
 
@@ -166,6 +170,7 @@ struct matty_go {
 enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload, size_t capacity,
                                   size_t *size);
 enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *payload, size_t size);
+void matty_go_load(struct matty_go *message, const uint8_t *payload);
 
 /* --- limits ------------------------------------------------------------------------------------ */
 
@@ -190,6 +195,7 @@ enum matty_result matty_limits_encode(const struct matty_limits *message, uint8_
                                       size_t capacity, size_t *size);
 enum matty_result matty_limits_decode(struct matty_limits *message, const uint8_t *payload,
                                       size_t size);
+void matty_limits_load(struct matty_limits *message, const uint8_t *payload);
 
 /* --- timing ------------------------------------------------------------------------------------ */
 
@@ -212,6 +218,7 @@ enum matty_result matty_timing_encode(const struct matty_timing *message, uint8_
                                       size_t capacity, size_t *size);
 enum matty_result matty_timing_decode(struct matty_timing *message, const uint8_t *payload,
                                       size_t size);
+void matty_timing_load(struct matty_timing *message, const uint8_t *payload);
 
 /* --- gps_mode ---------------------------------------------------------------------------------- */
 
@@ -230,6 +237,7 @@ enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, ui
                                         size_t capacity, size_t *size);
 enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const uint8_t *payload,
                                         size_t size);
+void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
 
 /* --- ack --------------------------------------------------------------------------------------- */
 
@@ -251,6 +259,7 @@ struct matty_ack {
 enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
                                    size_t capacity, size_t *size);
 enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload, size_t size);
+void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
 
 /* --- nack -------------------------------------------------------------------------------------- */
 
@@ -273,6 +282,7 @@ enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *p
                                     size_t capacity, size_t *size);
 enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
                                     size_t size);
+void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
 
 /* --- status ------------------------------------------------------------------------------------ */
 
@@ -323,6 +333,7 @@ enum matty_result matty_status_encode(const struct matty_status *message, uint8_
                                       size_t capacity, size_t *size);
 enum matty_result matty_status_decode(struct matty_status *message, const uint8_t *payload,
                                       size_t size);
+void matty_status_load(struct matty_status *message, const uint8_t *payload);
 
 /* --- gps --------------------------------------------------------------------------------------- */
 
@@ -345,6 +356,7 @@ struct matty_gps {
 enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *payload,
                                    size_t capacity, size_t *size);
 enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *payload, size_t size);
+void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

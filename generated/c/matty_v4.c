@@ -54,7 +54,7 @@ enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, u
     return MATTY_V4_OK;
 }
 
-static void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
+void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
     message->mode = payload[0];
 }
 
@@ -82,7 +82,7 @@ enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
     return MATTY_V4_OK;
 }
 
-static void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload) {
+void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -112,7 +112,7 @@ enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, u
     return MATTY_V4_OK;
 }
 
-static void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
+void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
     message->mode = payload[0];
 }
 
@@ -142,7 +142,7 @@ enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message, uint8
     return MATTY_V4_OK;
 }
 
-static void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload) {
+void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload) {
     message->speed = (int16_t)matty_v4_load_u16le(payload);
     message->steer = (int16_t)matty_v4_load_u16le(payload + 2);
 }
@@ -173,7 +173,7 @@ enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *messag
     return MATTY_V4_OK;
 }
 
-static void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload) {
+void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload) {
     message->max_speed = (int16_t)matty_v4_load_u16le(payload);
     message->max_steer = (int16_t)matty_v4_load_u16le(payload + 2);
 }
@@ -204,7 +204,7 @@ enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *messag
     return MATTY_V4_OK;
 }
 
-static void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload) {
+void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload) {
     message->period = matty_v4_load_u16le(payload);
     message->timeout = matty_v4_load_u16le(payload + 2);
 }
@@ -234,7 +234,7 @@ enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *me
     return MATTY_V4_OK;
 }
 
-static void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload) {
+void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload) {
     message->mode = payload[0];
 }
 
@@ -264,8 +264,7 @@ enum matty_v4_result matty_v4_version_query_encode(const struct matty_v4_version
     return MATTY_V4_OK;
 }
 
-static void matty_v4_version_query_load(struct matty_v4_version_query *message,
-                                        const uint8_t *payload) {
+void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -307,7 +306,7 @@ enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message, uin
     return MATTY_V4_OK;
 }
 
-static void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload) {
+void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload) {
     message->index = payload[0];
     message->rgb = matty_v4_load_u24le(payload + 1);
 }
@@ -336,7 +335,7 @@ enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message, uin
     return MATTY_V4_OK;
 }
 
-static void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload) {
+void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -365,7 +364,7 @@ enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message, u
     return MATTY_V4_OK;
 }
 
-static void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload) {
+void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -407,7 +406,7 @@ enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *messag
     return MATTY_V4_OK;
 }
 
-static void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload) {
+void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload) {
     message->status = payload[0];
     message->mode = payload[1];
     message->voltage = matty_v4_load_u16le(payload + 2);
@@ -478,7 +477,7 @@ static enum matty_v4_result matty_v4_gps_check(const uint8_t *payload, size_t si
     return MATTY_V4_OK;
 }
 
-static void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, size_t size) {
+void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, size_t size) {
     message->nmea_size = (uint8_t)(size);
     matty_v4_copy(message->nmea, payload, message->nmea_size);
 }
@@ -510,7 +509,7 @@ enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *mess
     return MATTY_V4_OK;
 }
 
-static void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload) {
+void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload) {
     message->serial_number = payload[0];
     message->version = payload[1];
 }

@@ -92,10 +92,11 @@ enum matty_v4_gps_mode_mode {
 #define MATTY_V4_STATUS_STATUS_RUNNING 0x80u
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- stop -------------------------------------------------------------------------------------- */
@@ -119,6 +120,7 @@ enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, u
                                           size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const uint8_t *payload,
                                           size_t size);
+void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
 
 /* --- reset ------------------------------------------------------------------------------------- */
 
@@ -137,6 +139,7 @@ enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
                                            size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const uint8_t *payload,
                                            size_t size);
+void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload);
 
 /* --- mode -------------------------------------------------------------------------------------- */
 
@@ -155,6 +158,7 @@ enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, u
                                           size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const uint8_t *payload,
                                           size_t size);
+void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
 
 /* --- go ---------------------------------------------------------------------------------------- */
 
@@ -179,6 +183,7 @@ enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message, uint8
                                         size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8_t *payload,
                                         size_t size);
+void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload);
 
 /* --- limits ------------------------------------------------------------------------------------ */
 
@@ -208,6 +213,7 @@ enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *messag
                                             size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message, const uint8_t *payload,
                                             size_t size);
+void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload);
 
 /* --- timing ------------------------------------------------------------------------------------ */
 
@@ -233,6 +239,7 @@ enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *messag
                                             size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message, const uint8_t *payload,
                                             size_t size);
+void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload);
 
 /* --- gps_mode ---------------------------------------------------------------------------------- */
 
@@ -251,6 +258,7 @@ enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *me
                                               uint8_t *payload, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
                                               const uint8_t *payload, size_t size);
+void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
 
 /* --- version_query ----------------------------------------------------------------------------- */
 
@@ -269,6 +277,7 @@ enum matty_v4_result matty_v4_version_query_encode(const struct matty_v4_version
                                                    uint8_t *payload, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query *message,
                                                    const uint8_t *payload, size_t size);
+void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload);
 
 /* --- led --------------------------------------------------------------------------------------- */
 
@@ -289,6 +298,7 @@ enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message, uin
                                          size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uint8_t *payload,
                                          size_t size);
+void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload);
 
 /* --- ack --------------------------------------------------------------------------------------- */
 
@@ -311,6 +321,7 @@ enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message, uin
                                          size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uint8_t *payload,
                                          size_t size);
+void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
 
 /* --- nack -------------------------------------------------------------------------------------- */
 
@@ -333,6 +344,7 @@ enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message, u
                                           size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const uint8_t *payload,
                                           size_t size);
+void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
 
 /* --- status ------------------------------------------------------------------------------------ */
 
@@ -400,6 +412,7 @@ enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *messag
                                             size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message, const uint8_t *payload,
                                             size_t size);
+void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload);
 
 /* --- gps --------------------------------------------------------------------------------------- */
 
@@ -423,6 +436,7 @@ enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message, uin
                                          size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message, const uint8_t *payload,
                                          size_t size);
+void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, size_t size);
 
 /* --- version ----------------------------------------------------------------------------------- */
 
@@ -443,6 +457,7 @@ enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *mess
                                              uint8_t *payload, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
                                              const uint8_t *payload, size_t size);
+void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

@@ -39,8 +39,8 @@ enum rflex_result rflex_request_system_status_encode(const struct rflex_request_
     return RFLEX_OK;
 }
 
-static void rflex_request_system_status_load(struct rflex_request_system_status *message,
-                                             const uint8_t *payload) {
+void rflex_request_system_status_load(struct rflex_request_system_status *message,
+                                      const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -72,7 +72,7 @@ enum rflex_result rflex_system_status_encode(const struct rflex_system_status *m
     return RFLEX_OK;
 }
 
-static void rflex_system_status_load(struct rflex_system_status *message, const uint8_t *payload) {
+void rflex_system_status_load(struct rflex_system_status *message, const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
     message->battery_voltage = rflex_load_u32be(payload + 4);
     message->brake = payload[8];
@@ -103,7 +103,7 @@ enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, ui
     return RFLEX_OK;
 }
 
-static void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
+void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
     message->unknown = payload[0];
 }
 
@@ -136,7 +136,7 @@ enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *m
     return RFLEX_OK;
 }
 
-static void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t *payload) {
+void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t *payload) {
     message->axis = payload[0];
     message->velocity = rflex_load_u32be(payload + 1);
     message->acceleration = rflex_load_u32be(payload + 5);
@@ -173,8 +173,8 @@ enum rflex_result rflex_confirm_motor_command_encode(const struct rflex_confirm_
     return RFLEX_OK;
 }
 
-static void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
-                                             const uint8_t *payload) {
+void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
+                                      const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     message->axis = payload[8];
@@ -204,7 +204,7 @@ enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message, ui
     return RFLEX_OK;
 }
 
-static void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload) {
+void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -233,7 +233,7 @@ enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message, ui
     return RFLEX_OK;
 }
 
-static void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload) {
+void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -265,8 +265,7 @@ enum rflex_result rflex_motor_0c_answer_encode(const struct rflex_motor_0c_answe
     return RFLEX_OK;
 }
 
-static void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message,
-                                       const uint8_t *payload) {
+void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
@@ -302,7 +301,7 @@ enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message
     return RFLEX_OK;
 }
 
-static void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload) {
+void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     message->axis = payload[8];
@@ -340,8 +339,8 @@ enum rflex_result rflex_start_stop_motor_packets_encode(const struct rflex_start
     return RFLEX_OK;
 }
 
-static void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
-                                                const uint8_t *payload) {
+void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
+                                         const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
     message->start_stop = rflex_load_u32be(payload + 4);
 }
@@ -374,8 +373,8 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_encode(const struct rfl
     return RFLEX_OK;
 }
 
-static void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop_motor_packets *message,
-                                                        const uint8_t *payload) {
+void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop_motor_packets *message,
+                                                 const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
@@ -407,8 +406,8 @@ enum rflex_result rflex_request_joystick_data_encode(const struct rflex_request_
     return RFLEX_OK;
 }
 
-static void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
-                                             const uint8_t *payload) {
+void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
+                                      const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -441,7 +440,7 @@ enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *m
     return RFLEX_OK;
 }
 
-static void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t *payload) {
+void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
     message->horizontal = (int32_t)rflex_load_u32be(payload + 4);
     message->vertical = (int32_t)rflex_load_u32be(payload + 8);
@@ -478,8 +477,8 @@ enum rflex_result rflex_start_stop_sonar_packets_encode(const struct rflex_start
     return RFLEX_OK;
 }
 
-static void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
-                                                const uint8_t *payload) {
+void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
+                                         const uint8_t *payload) {
     message->frequency = rflex_load_u32be(payload);
     message->unknown_1 = rflex_load_u32be(payload + 4);
     message->unknown_2 = payload[8];
@@ -514,8 +513,8 @@ enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(const struct rfl
     return RFLEX_OK;
 }
 
-static void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop_sonar_packets *message,
-                                                        const uint8_t *payload) {
+void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop_sonar_packets *message,
+                                                 const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
@@ -589,8 +588,7 @@ static enum rflex_result rflex_sonar_data_check(const uint8_t *payload, size_t s
     return RFLEX_OK;
 }
 
-static void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload,
-                                  size_t size) {
+void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload, size_t size) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
@@ -631,8 +629,8 @@ enum rflex_result rflex_initialize_digital_io_encode(const struct rflex_initiali
     return RFLEX_OK;
 }
 
-static void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
-                                             const uint8_t *payload) {
+void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
+                                      const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
 }
 
@@ -664,8 +662,8 @@ enum rflex_result rflex_confirm_initialize_digital_io_encode(const struct rflex_
     return RFLEX_OK;
 }
 
-static void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_digital_io *message,
-                                                     const uint8_t *payload) {
+void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_digital_io *message,
+                                              const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
@@ -698,8 +696,7 @@ enum rflex_result rflex_changed_bumpers_encode(const struct rflex_changed_bumper
     return RFLEX_OK;
 }
 
-static void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message,
-                                       const uint8_t *payload) {
+void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
     message->position = payload[4];
     message->value = rflex_load_u16be(payload + 5);
@@ -731,8 +728,7 @@ enum rflex_result rflex_check_io_changed_encode(const struct rflex_check_io_chan
     return RFLEX_OK;
 }
 
-static void rflex_check_io_changed_load(struct rflex_check_io_changed *message,
-                                        const uint8_t *payload) {
+void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
 }
 
@@ -765,8 +761,8 @@ enum rflex_result rflex_check_io_changed_answer_encode(const struct rflex_check_
     return RFLEX_OK;
 }
 
-static void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
-                                               const uint8_t *payload) {
+void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
+                                        const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     message->package_count = rflex_load_u32be(payload + 8);
@@ -799,7 +795,7 @@ enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *mes
     return RFLEX_OK;
 }
 
-static void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload) {
+void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload) {
     message->timestamp = rflex_load_u32be(payload);
     message->position = payload[4];
     message->value = rflex_load_u16be(payload + 5);

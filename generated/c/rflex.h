@@ -128,10 +128,11 @@ struct rflex_sonar_data_readings {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- request_system_status --------------------------------------------------------------------- */
@@ -153,6 +154,8 @@ enum rflex_result rflex_request_system_status_encode(const struct rflex_request_
                                                      size_t *size);
 enum rflex_result rflex_request_system_status_decode(struct rflex_request_system_status *message,
                                                      const uint8_t *payload, size_t size);
+void rflex_request_system_status_load(struct rflex_request_system_status *message,
+                                      const uint8_t *payload);
 
 /* --- system_status ----------------------------------------------------------------------------- */
 
@@ -176,6 +179,7 @@ enum rflex_result rflex_system_status_encode(const struct rflex_system_status *m
                                              uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_system_status_decode(struct rflex_system_status *message,
                                              const uint8_t *payload, size_t size);
+void rflex_system_status_load(struct rflex_system_status *message, const uint8_t *payload);
 
 /* --- motor_00 ---------------------------------------------------------------------------------- */
 
@@ -195,6 +199,7 @@ enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, ui
                                         size_t capacity, size_t *size);
 enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
                                         size_t size);
+void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
 
 /* --- motor_command ----------------------------------------------------------------------------- */
 
@@ -222,6 +227,7 @@ enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *m
                                              uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message,
                                              const uint8_t *payload, size_t size);
+void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t *payload);
 
 /* --- confirm_motor_command --------------------------------------------------------------------- */
 
@@ -246,6 +252,8 @@ enum rflex_result rflex_confirm_motor_command_encode(const struct rflex_confirm_
                                                      size_t *size);
 enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_command *message,
                                                      const uint8_t *payload, size_t size);
+void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
+                                      const uint8_t *payload);
 
 /* --- motor_0a ---------------------------------------------------------------------------------- */
 
@@ -267,6 +275,7 @@ enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message, ui
                                         size_t capacity, size_t *size);
 enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const uint8_t *payload,
                                         size_t size);
+void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload);
 
 /* --- motor_0c ---------------------------------------------------------------------------------- */
 
@@ -289,6 +298,7 @@ enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message, ui
                                         size_t capacity, size_t *size);
 enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const uint8_t *payload,
                                         size_t size);
+void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload);
 
 /* --- motor_0c_answer --------------------------------------------------------------------------- */
 
@@ -310,6 +320,7 @@ enum rflex_result rflex_motor_0c_answer_encode(const struct rflex_motor_0c_answe
                                                uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *message,
                                                const uint8_t *payload, size_t size);
+void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uint8_t *payload);
 
 /* --- read_motor -------------------------------------------------------------------------------- */
 
@@ -341,6 +352,7 @@ enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message
                                           size_t capacity, size_t *size);
 enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message, const uint8_t *payload,
                                           size_t size);
+void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload);
 
 /* --- start_stop_motor_packets ------------------------------------------------------------------ */
 
@@ -363,6 +375,8 @@ enum rflex_result rflex_start_stop_motor_packets_encode(const struct rflex_start
                                                         size_t *size);
 enum rflex_result rflex_start_stop_motor_packets_decode(struct rflex_start_stop_motor_packets *message,
                                                         const uint8_t *payload, size_t size);
+void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
+                                         const uint8_t *payload);
 
 /* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
 
@@ -386,6 +400,8 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_encode(const struct rfl
 enum rflex_result rflex_confirm_start_stop_motor_packets_decode(struct rflex_confirm_start_stop_motor_packets *message,
                                                                 const uint8_t *payload,
                                                                 size_t size);
+void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop_motor_packets *message,
+                                                 const uint8_t *payload);
 
 /* --- request_joystick_data --------------------------------------------------------------------- */
 
@@ -406,6 +422,8 @@ enum rflex_result rflex_request_joystick_data_encode(const struct rflex_request_
                                                      size_t *size);
 enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joystick_data *message,
                                                      const uint8_t *payload, size_t size);
+void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
+                                      const uint8_t *payload);
 
 /* --- joystick_data ----------------------------------------------------------------------------- */
 
@@ -431,6 +449,7 @@ enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *m
                                              uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message,
                                              const uint8_t *payload, size_t size);
+void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t *payload);
 
 /* --- start_stop_sonar_packets ------------------------------------------------------------------ */
 
@@ -457,6 +476,8 @@ enum rflex_result rflex_start_stop_sonar_packets_encode(const struct rflex_start
                                                         size_t *size);
 enum rflex_result rflex_start_stop_sonar_packets_decode(struct rflex_start_stop_sonar_packets *message,
                                                         const uint8_t *payload, size_t size);
+void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
+                                         const uint8_t *payload);
 
 /* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
 
@@ -480,6 +501,8 @@ enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(const struct rfl
 enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(struct rflex_confirm_start_stop_sonar_packets *message,
                                                                 const uint8_t *payload,
                                                                 size_t size);
+void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop_sonar_packets *message,
+                                                 const uint8_t *payload);
 
 /* --- sonar_data -------------------------------------------------------------------------------- */
 
@@ -513,6 +536,7 @@ enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message
                                           size_t capacity, size_t *size);
 enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, const uint8_t *payload,
                                           size_t size);
+void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload, size_t size);
 
 /* --- initialize_digital_io --------------------------------------------------------------------- */
 
@@ -539,6 +563,8 @@ enum rflex_result rflex_initialize_digital_io_encode(const struct rflex_initiali
                                                      size_t *size);
 enum rflex_result rflex_initialize_digital_io_decode(struct rflex_initialize_digital_io *message,
                                                      const uint8_t *payload, size_t size);
+void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
+                                      const uint8_t *payload);
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------- */
 
@@ -565,6 +591,8 @@ enum rflex_result rflex_confirm_initialize_digital_io_encode(const struct rflex_
                                                              size_t *size);
 enum rflex_result rflex_confirm_initialize_digital_io_decode(struct rflex_confirm_initialize_digital_io *message,
                                                              const uint8_t *payload, size_t size);
+void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_digital_io *message,
+                                              const uint8_t *payload);
 
 /* --- changed_bumpers --------------------------------------------------------------------------- */
 
@@ -595,6 +623,7 @@ enum rflex_result rflex_changed_bumpers_encode(const struct rflex_changed_bumper
                                                uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *message,
                                                const uint8_t *payload, size_t size);
+void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uint8_t *payload);
 
 /* --- check_io_changed -------------------------------------------------------------------------- */
 
@@ -614,6 +643,7 @@ enum rflex_result rflex_check_io_changed_encode(const struct rflex_check_io_chan
                                                 uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *message,
                                                 const uint8_t *payload, size_t size);
+void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const uint8_t *payload);
 
 /* --- check_io_changed_answer ------------------------------------------------------------------- */
 
@@ -638,6 +668,8 @@ enum rflex_result rflex_check_io_changed_answer_encode(const struct rflex_check_
                                                        size_t *size);
 enum rflex_result rflex_check_io_changed_answer_decode(struct rflex_check_io_changed_answer *message,
                                                        const uint8_t *payload, size_t size);
+void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
+                                        const uint8_t *payload);
 
 /* --- changed_byte ------------------------------------------------------------------------------ */
 
@@ -663,6 +695,7 @@ enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *mes
                                             uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
                                             const uint8_t *payload, size_t size);
+void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

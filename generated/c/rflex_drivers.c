@@ -48,8 +48,8 @@ enum rflex_drivers_result rflex_drivers_request_system_status_encode(const struc
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
-                                                     const uint8_t *payload) {
+void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
+                                              const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -84,8 +84,8 @@ enum rflex_drivers_result rflex_drivers_system_status_encode(const struct rflex_
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
-                                             const uint8_t *payload) {
+void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
+                                      const uint8_t *payload) {
     message->timestamp = rflex_drivers_load_u32be(payload);
     message->battery_voltage = rflex_drivers_load_u32be(payload + 4);
     message->brake = payload[8];
@@ -160,8 +160,8 @@ static enum rflex_drivers_result rflex_drivers_lcd_dump_check(const uint8_t *pay
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message,
-                                        const uint8_t *payload, size_t size) {
+void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message, const uint8_t *payload,
+                                 size_t size) {
     (void)size;
     message->timestamp = rflex_drivers_load_u32be(payload);
     message->row = payload[4];
@@ -197,8 +197,8 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_encode(const struct rfle
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
-                                               const uint8_t *payload) {
+void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
+                                        const uint8_t *payload) {
     message->axis = payload[0];
 }
 
@@ -234,8 +234,8 @@ enum rflex_drivers_result rflex_drivers_motor_command_encode(const struct rflex_
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
-                                             const uint8_t *payload) {
+void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
+                                      const uint8_t *payload) {
     message->axis = payload[0];
     message->velocity = rflex_drivers_load_u32be(payload + 1);
     message->acceleration = rflex_drivers_load_u32be(payload + 5);
@@ -273,8 +273,8 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(const struc
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor_command *message,
-                                                     const uint8_t *payload) {
+void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor_command *message,
+                                              const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     message->axis = payload[8];
@@ -307,8 +307,8 @@ enum rflex_drivers_result rflex_drivers_set_defaults_encode(const struct rflex_d
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
-                                            const uint8_t *payload) {
+void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
+                                     const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -339,8 +339,7 @@ enum rflex_drivers_result rflex_drivers_brake_set_encode(const struct rflex_driv
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message,
-                                         const uint8_t *payload) {
+void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -371,8 +370,8 @@ enum rflex_drivers_result rflex_drivers_brake_release_encode(const struct rflex_
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
-                                             const uint8_t *payload) {
+void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
+                                      const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -405,8 +404,8 @@ enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(const struct
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_answer *message,
-                                                    const uint8_t *payload) {
+void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_answer *message,
+                                             const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
@@ -445,8 +444,8 @@ enum rflex_drivers_result rflex_drivers_read_motor_encode(const struct rflex_dri
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
-                                          const uint8_t *payload) {
+void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
+                                   const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     message->axis = payload[8];
@@ -485,8 +484,8 @@ enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(const st
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop_motor_packets *message,
-                                                        const uint8_t *payload) {
+void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop_motor_packets *message,
+                                                 const uint8_t *payload) {
     message->period = rflex_drivers_load_u32be(payload);
     message->mask = rflex_drivers_load_u32be(payload + 4);
 }
@@ -521,8 +520,8 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                const uint8_t *payload) {
+void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_confirm_start_stop_motor_packets *message,
+                                                         const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
@@ -555,8 +554,8 @@ enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(const struc
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
-                                                     const uint8_t *payload) {
+void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
+                                              const uint8_t *payload) {
     (void)payload;
     message->unused = 0u;
 }
@@ -592,8 +591,8 @@ enum rflex_drivers_result rflex_drivers_joystick_data_encode(const struct rflex_
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
-                                             const uint8_t *payload) {
+void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
+                                      const uint8_t *payload) {
     message->timestamp = rflex_drivers_load_u32be(payload);
     message->horizontal = (int32_t)rflex_drivers_load_u32be(payload + 4);
     message->vertical = (int32_t)rflex_drivers_load_u32be(payload + 8);
@@ -631,8 +630,8 @@ enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(const st
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop_sonar_packets *message,
-                                                        const uint8_t *payload) {
+void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop_sonar_packets *message,
+                                                 const uint8_t *payload) {
     message->echo_delay = rflex_drivers_load_u32be(payload);
     message->ping_delay = rflex_drivers_load_u32be(payload + 4);
     message->set_delay = rflex_drivers_load_u32be(payload + 8);
@@ -669,8 +668,8 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                const uint8_t *payload) {
+void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
+                                                         const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
@@ -747,8 +746,8 @@ static enum rflex_drivers_result rflex_drivers_sonar_data_check(const uint8_t *p
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message,
-                                          const uint8_t *payload, size_t size) {
+void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, const uint8_t *payload,
+                                   size_t size) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
@@ -790,8 +789,8 @@ enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(const struc
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_digital_io *message,
-                                                     const uint8_t *payload) {
+void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_digital_io *message,
+                                              const uint8_t *payload) {
     message->period = rflex_drivers_load_u32be(payload);
 }
 
@@ -825,8 +824,8 @@ enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(con
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                             const uint8_t *payload) {
+void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confirm_initialize_digital_io *message,
+                                                      const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
@@ -861,8 +860,8 @@ enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(const struct rfle
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *message,
-                                               const uint8_t *payload) {
+void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *message,
+                                        const uint8_t *payload) {
     message->timestamp = rflex_drivers_load_u32be(payload);
     message->address = payload[4];
     message->data = rflex_drivers_load_u16be(payload + 5);
@@ -896,8 +895,8 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_encode(const struct rfl
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *message,
-                                                const uint8_t *payload) {
+void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *message,
+                                         const uint8_t *payload) {
     message->timestamp = rflex_drivers_load_u32be(payload);
 }
 
@@ -932,8 +931,8 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(const str
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_changed_answer *message,
-                                                       const uint8_t *payload) {
+void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_changed_answer *message,
+                                                const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     message->package_count = rflex_drivers_load_u32be(payload + 8);
@@ -969,8 +968,8 @@ enum rflex_drivers_result rflex_drivers_changed_byte_encode(const struct rflex_d
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
-                                            const uint8_t *payload) {
+void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
+                                     const uint8_t *payload) {
     message->timestamp = rflex_drivers_load_u32be(payload);
     message->address = payload[4];
     message->data = rflex_drivers_load_u16be(payload + 5);
@@ -1008,8 +1007,7 @@ enum rflex_drivers_result rflex_drivers_ir_run_encode(const struct rflex_drivers
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message,
-                                      const uint8_t *payload) {
+void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8_t *payload) {
     message->unknown_1 = rflex_drivers_load_u32be(payload);
     message->unknown_2 = rflex_drivers_load_u32be(payload + 4);
     message->unknown_3 = rflex_drivers_load_u32be(payload + 8);
@@ -1077,8 +1075,8 @@ static enum rflex_drivers_result rflex_drivers_ir_report_check(const uint8_t *pa
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message,
-                                         const uint8_t *payload, size_t size) {
+void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message, const uint8_t *payload,
+                                  size_t size) {
     message->data_size = (uint8_t)(size);
     rflex_drivers_copy(message->data, payload, message->data_size);
 }

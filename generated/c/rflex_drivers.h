@@ -133,10 +133,11 @@ struct rflex_drivers_sonar_data_readings {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- request_system_status --------------------------------------------------------------------- */
@@ -159,6 +160,8 @@ enum rflex_drivers_result rflex_drivers_request_system_status_encode(const struc
 enum rflex_drivers_result rflex_drivers_request_system_status_decode(struct rflex_drivers_request_system_status *message,
                                                                      const uint8_t *payload,
                                                                      size_t size);
+void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
+                                              const uint8_t *payload);
 
 /* --- system_status ----------------------------------------------------------------------------- */
 
@@ -189,6 +192,8 @@ enum rflex_drivers_result rflex_drivers_system_status_encode(const struct rflex_
                                                              size_t *size);
 enum rflex_drivers_result rflex_drivers_system_status_decode(struct rflex_drivers_system_status *message,
                                                              const uint8_t *payload, size_t size);
+void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
+                                      const uint8_t *payload);
 
 /* --- lcd_dump ---------------------------------------------------------------------------------- */
 
@@ -217,6 +222,8 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_encode(const struct rflex_drive
                                                         size_t *size);
 enum rflex_drivers_result rflex_drivers_lcd_dump_decode(struct rflex_drivers_lcd_dump *message,
                                                         const uint8_t *payload, size_t size);
+void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message, const uint8_t *payload,
+                                 size_t size);
 
 /* --- axis_get_system --------------------------------------------------------------------------- */
 
@@ -237,6 +244,8 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_encode(const struct rfle
                                                                size_t *size);
 enum rflex_drivers_result rflex_drivers_axis_get_system_decode(struct rflex_drivers_axis_get_system *message,
                                                                const uint8_t *payload, size_t size);
+void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
+                                        const uint8_t *payload);
 
 /* --- motor_command ----------------------------------------------------------------------------- */
 
@@ -271,6 +280,8 @@ enum rflex_drivers_result rflex_drivers_motor_command_encode(const struct rflex_
                                                              size_t *size);
 enum rflex_drivers_result rflex_drivers_motor_command_decode(struct rflex_drivers_motor_command *message,
                                                              const uint8_t *payload, size_t size);
+void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
+                                      const uint8_t *payload);
 
 /* --- confirm_motor_command --------------------------------------------------------------------- */
 
@@ -299,6 +310,8 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(const struc
 enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(struct rflex_drivers_confirm_motor_command *message,
                                                                      const uint8_t *payload,
                                                                      size_t size);
+void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor_command *message,
+                                              const uint8_t *payload);
 
 /* --- set_defaults ------------------------------------------------------------------------------ */
 
@@ -319,6 +332,8 @@ enum rflex_drivers_result rflex_drivers_set_defaults_encode(const struct rflex_d
                                                             size_t *size);
 enum rflex_drivers_result rflex_drivers_set_defaults_decode(struct rflex_drivers_set_defaults *message,
                                                             const uint8_t *payload, size_t size);
+void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
+                                     const uint8_t *payload);
 
 /* --- brake_set --------------------------------------------------------------------------------- */
 
@@ -339,6 +354,7 @@ enum rflex_drivers_result rflex_drivers_brake_set_encode(const struct rflex_driv
                                                          size_t *size);
 enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_brake_set *message,
                                                          const uint8_t *payload, size_t size);
+void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload);
 
 /* --- brake_release ----------------------------------------------------------------------------- */
 
@@ -359,6 +375,8 @@ enum rflex_drivers_result rflex_drivers_brake_release_encode(const struct rflex_
                                                              size_t *size);
 enum rflex_drivers_result rflex_drivers_brake_release_decode(struct rflex_drivers_brake_release *message,
                                                              const uint8_t *payload, size_t size);
+void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
+                                      const uint8_t *payload);
 
 /* --- brake_release_answer ---------------------------------------------------------------------- */
 
@@ -385,6 +403,8 @@ enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(const struct
 enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(struct rflex_drivers_brake_release_answer *message,
                                                                     const uint8_t *payload,
                                                                     size_t size);
+void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_answer *message,
+                                             const uint8_t *payload);
 
 /* --- read_motor -------------------------------------------------------------------------------- */
 
@@ -420,6 +440,8 @@ enum rflex_drivers_result rflex_drivers_read_motor_encode(const struct rflex_dri
                                                           size_t *size);
 enum rflex_drivers_result rflex_drivers_read_motor_decode(struct rflex_drivers_read_motor *message,
                                                           const uint8_t *payload, size_t size);
+void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
+                                   const uint8_t *payload);
 
 /* --- start_stop_motor_packets ------------------------------------------------------------------ */
 
@@ -448,6 +470,8 @@ enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(const st
 enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(struct rflex_drivers_start_stop_motor_packets *message,
                                                                         const uint8_t *payload,
                                                                         size_t size);
+void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop_motor_packets *message,
+                                                 const uint8_t *payload);
 
 /* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
 
@@ -477,6 +501,8 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
 enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(struct rflex_drivers_confirm_start_stop_motor_packets *message,
                                                                                 const uint8_t *payload,
                                                                                 size_t size);
+void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_confirm_start_stop_motor_packets *message,
+                                                         const uint8_t *payload);
 
 /* --- request_joystick_data --------------------------------------------------------------------- */
 
@@ -498,6 +524,8 @@ enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(const struc
 enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(struct rflex_drivers_request_joystick_data *message,
                                                                      const uint8_t *payload,
                                                                      size_t size);
+void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
+                                              const uint8_t *payload);
 
 /* --- joystick_data ----------------------------------------------------------------------------- */
 
@@ -524,6 +552,8 @@ enum rflex_drivers_result rflex_drivers_joystick_data_encode(const struct rflex_
                                                              size_t *size);
 enum rflex_drivers_result rflex_drivers_joystick_data_decode(struct rflex_drivers_joystick_data *message,
                                                              const uint8_t *payload, size_t size);
+void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
+                                      const uint8_t *payload);
 
 /* --- start_stop_sonar_packets ------------------------------------------------------------------ */
 
@@ -558,6 +588,8 @@ enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(const st
 enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(struct rflex_drivers_start_stop_sonar_packets *message,
                                                                         const uint8_t *payload,
                                                                         size_t size);
+void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop_sonar_packets *message,
+                                                 const uint8_t *payload);
 
 /* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
 
@@ -587,6 +619,8 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
 enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
                                                                                 const uint8_t *payload,
                                                                                 size_t size);
+void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
+                                                         const uint8_t *payload);
 
 /* --- sonar_data -------------------------------------------------------------------------------- */
 
@@ -621,6 +655,8 @@ enum rflex_drivers_result rflex_drivers_sonar_data_encode(const struct rflex_dri
                                                           size_t *size);
 enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_sonar_data *message,
                                                           const uint8_t *payload, size_t size);
+void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, const uint8_t *payload,
+                                   size_t size);
 
 /* --- initialize_digital_io --------------------------------------------------------------------- */
 
@@ -649,6 +685,8 @@ enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(const struc
 enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(struct rflex_drivers_initialize_digital_io *message,
                                                                      const uint8_t *payload,
                                                                      size_t size);
+void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_digital_io *message,
+                                              const uint8_t *payload);
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------- */
 
@@ -679,6 +717,8 @@ enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(con
 enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(struct rflex_drivers_confirm_initialize_digital_io *message,
                                                                              const uint8_t *payload,
                                                                              size_t size);
+void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confirm_initialize_digital_io *message,
+                                                      const uint8_t *payload);
 
 /* --- changed_bumpers --------------------------------------------------------------------------- */
 
@@ -706,6 +746,8 @@ enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(const struct rfle
                                                                size_t *size);
 enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(struct rflex_drivers_changed_bumpers *message,
                                                                const uint8_t *payload, size_t size);
+void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *message,
+                                        const uint8_t *payload);
 
 /* --- check_io_changed -------------------------------------------------------------------------- */
 
@@ -727,6 +769,8 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_encode(const struct rfl
 enum rflex_drivers_result rflex_drivers_check_io_changed_decode(struct rflex_drivers_check_io_changed *message,
                                                                 const uint8_t *payload,
                                                                 size_t size);
+void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *message,
+                                         const uint8_t *payload);
 
 /* --- check_io_changed_answer ------------------------------------------------------------------- */
 
@@ -759,6 +803,8 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(const str
 enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(struct rflex_drivers_check_io_changed_answer *message,
                                                                        const uint8_t *payload,
                                                                        size_t size);
+void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_changed_answer *message,
+                                                const uint8_t *payload);
 
 /* --- changed_byte ------------------------------------------------------------------------------ */
 
@@ -786,6 +832,8 @@ enum rflex_drivers_result rflex_drivers_changed_byte_encode(const struct rflex_d
                                                             size_t *size);
 enum rflex_drivers_result rflex_drivers_changed_byte_decode(struct rflex_drivers_changed_byte *message,
                                                             const uint8_t *payload, size_t size);
+void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
+                                     const uint8_t *payload);
 
 /* --- ir_run ------------------------------------------------------------------------------------ */
 
@@ -819,6 +867,7 @@ enum rflex_drivers_result rflex_drivers_ir_run_encode(const struct rflex_drivers
                                                       size_t *size);
 enum rflex_drivers_result rflex_drivers_ir_run_decode(struct rflex_drivers_ir_run *message,
                                                       const uint8_t *payload, size_t size);
+void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8_t *payload);
 
 /* --- ir_report --------------------------------------------------------------------------------- */
 
@@ -844,6 +893,8 @@ enum rflex_drivers_result rflex_drivers_ir_report_encode(const struct rflex_driv
                                                          size_t *size);
 enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir_report *message,
                                                          const uint8_t *payload, size_t size);
+void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message, const uint8_t *payload,
+                                  size_t size);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

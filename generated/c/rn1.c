@@ -88,7 +88,7 @@ static enum rn1_result rn1_move_manual_check(const uint8_t *payload, size_t size
     return RN1_OK;
 }
 
-static void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload) {
+void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload) {
     message->speed = rn1_load_s7(payload);
     message->arc = rn1_load_s7(payload + 1);
 }
@@ -147,8 +147,8 @@ static enum rn1_result rn1_move_relative_twostep_check(const uint8_t *payload, s
     return RN1_OK;
 }
 
-static void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
-                                           const uint8_t *payload) {
+void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
+                                    const uint8_t *payload) {
     message->angle = rn1_load_s14le(payload);
     message->forward = rn1_load_s14le(payload + 2);
 }
@@ -207,8 +207,7 @@ static enum rn1_result rn1_move_relative_arc_check(const uint8_t *payload, size_
     return RN1_OK;
 }
 
-static void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message,
-                                       const uint8_t *payload) {
+void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message, const uint8_t *payload) {
     message->angle = rn1_load_s14le(payload);
     message->forward = rn1_load_s14le(payload + 2);
 }
@@ -385,8 +384,7 @@ static enum rn1_result rn1_maintenance_check(const uint8_t *payload, size_t size
     return RN1_OK;
 }
 
-static void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload,
-                                 size_t size) {
+void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload, size_t size) {
     message->operation = payload[3];
     switch (message->operation) {
     case 65u:
@@ -465,7 +463,7 @@ static enum rn1_result rn1_gyro_check(const uint8_t *payload, size_t size, size_
     return RN1_OK;
 }
 
-static void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload) {
+void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload) {
     message->status = payload[0];
     message->int_x = rn1_load_s14le(payload + 1);
     message->int_y = rn1_load_s14le(payload + 3);
@@ -531,7 +529,7 @@ static enum rn1_result rn1_xcel_check(const uint8_t *payload, size_t size, size_
     return RN1_OK;
 }
 
-static void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload) {
+void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload) {
     message->status = payload[0];
     message->int_x = rn1_load_s14le(payload + 1);
     message->int_y = rn1_load_s14le(payload + 3);
@@ -597,7 +595,7 @@ static enum rn1_result rn1_compass_check(const uint8_t *payload, size_t size, si
     return RN1_OK;
 }
 
-static void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload) {
+void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload) {
     message->status = payload[0];
     message->avg_x = rn1_load_s14le(payload + 1);
     message->avg_y = rn1_load_s14le(payload + 3);
@@ -664,7 +662,7 @@ static enum rn1_result rn1_optflow_check(const uint8_t *payload, size_t size, si
     return RN1_OK;
 }
 
-static void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload) {
+void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload) {
     message->status = payload[0];
     message->dx = rn1_load_s14le(payload + 1);
     message->dy = rn1_load_s14le(payload + 3);
@@ -727,7 +725,7 @@ static enum rn1_result rn1_lidar_check(const uint8_t *payload, size_t size, size
     return RN1_OK;
 }
 
-static void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload) {
+void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
     for (size_t i = 0; i < 360u; i++) {
         message->distances[i] = rn1_load_u14le(payload + 1 + 2 * i);
@@ -789,7 +787,7 @@ static enum rn1_result rn1_sonar_check(const uint8_t *payload, size_t size, size
     return RN1_OK;
 }
 
-static void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload) {
+void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
     for (size_t i = 0; i < 7u; i++) {
         message->distances[i] = rn1_load_u14le(payload + 1 + 2 * i);
@@ -851,7 +849,7 @@ static enum rn1_result rn1_facing_check(const uint8_t *payload, size_t size, siz
     return RN1_OK;
 }
 
-static void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload) {
+void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload) {
     message->status = payload[0];
     message->heading = rn1_load_u14le(payload + 1);
     message->speed = rn1_load_s14le(payload + 3);

@@ -118,10 +118,11 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------- */
@@ -143,6 +144,7 @@ enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message, ui
                                        size_t capacity, size_t *size);
 enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const uint8_t *payload,
                                        size_t size);
+void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload);
 
 /* --- move_relative_twostep --------------------------------------------------------------------- */
 
@@ -167,6 +169,8 @@ enum rn1_result rn1_move_relative_twostep_encode(const struct rn1_move_relative_
                                                  uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twostep *message,
                                                  const uint8_t *payload, size_t size);
+void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
+                                    const uint8_t *payload);
 
 /* --- move_relative_arc ------------------------------------------------------------------------- */
 
@@ -191,6 +195,7 @@ enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc 
                                              uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_result rn1_move_relative_arc_decode(struct rn1_move_relative_arc *message,
                                              const uint8_t *payload, size_t size);
+void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message, const uint8_t *payload);
 
 /* --- maintenance ------------------------------------------------------------------------------- */
 
@@ -223,6 +228,7 @@ enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message, ui
                                        size_t capacity, size_t *size);
 enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message, const uint8_t *payload,
                                        size_t size);
+void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload, size_t size);
 
 /* --- gyro -------------------------------------------------------------------------------------- */
 
@@ -246,6 +252,7 @@ struct rn1_gyro {
 enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload, size_t capacity,
                                 size_t *size);
 enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload, size_t size);
+void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
 
 /* --- xcel -------------------------------------------------------------------------------------- */
 
@@ -269,6 +276,7 @@ struct rn1_xcel {
 enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload, size_t capacity,
                                 size_t *size);
 enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload, size_t size);
+void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
 
 /* --- compass ----------------------------------------------------------------------------------- */
 
@@ -293,6 +301,7 @@ enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *p
                                    size_t capacity, size_t *size);
 enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *payload,
                                    size_t size);
+void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload);
 
 /* --- optflow ----------------------------------------------------------------------------------- */
 
@@ -317,6 +326,7 @@ enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *p
                                    size_t capacity, size_t *size);
 enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *payload,
                                    size_t size);
+void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload);
 
 /* --- lidar ------------------------------------------------------------------------------------- */
 
@@ -347,6 +357,7 @@ struct rn1_lidar {
 enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *payload, size_t capacity,
                                  size_t *size);
 enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *payload, size_t size);
+void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t index) {
@@ -375,6 +386,7 @@ struct rn1_sonar {
 enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *payload, size_t capacity,
                                  size_t *size);
 enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *payload, size_t size);
+void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -404,6 +416,7 @@ struct rn1_facing {
 enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
                                   size_t capacity, size_t *size);
 enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *payload, size_t size);
+void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

@@ -110,8 +110,8 @@ static enum rn1_firmware_result rn1_firmware_move_manual_check(const uint8_t *pa
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
-                                          const uint8_t *payload) {
+void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
+                                   const uint8_t *payload) {
     message->speed = rn1_firmware_load_s7(payload);
     message->arc = rn1_firmware_load_s7(payload + 1);
 }
@@ -172,8 +172,8 @@ static enum rn1_firmware_result rn1_firmware_move_relative_twostep_check(const u
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_twostep *message,
-                                                    const uint8_t *payload) {
+void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_twostep *message,
+                                             const uint8_t *payload) {
     message->angle = rn1_firmware_load_s14be(payload);
     message->forward = rn1_firmware_load_s14be(payload + 2);
 }
@@ -230,8 +230,8 @@ static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_check(const ui
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
-                                                   const uint8_t *payload) {
+void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
+                                            const uint8_t *payload) {
     message->ignored = payload[0];
 }
 
@@ -287,8 +287,8 @@ static enum rn1_firmware_result rn1_firmware_increase_phase_angle_check(const ui
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
-                                                   const uint8_t *payload) {
+void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
+                                            const uint8_t *payload) {
     message->ignored = payload[0];
 }
 
@@ -445,8 +445,8 @@ static enum rn1_firmware_result rn1_firmware_maintenance_check(const uint8_t *pa
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message,
-                                          const uint8_t *payload, size_t size) {
+void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, const uint8_t *payload,
+                                   size_t size) {
     message->operation = payload[3];
     switch (message->operation) {
     case 82u:
@@ -522,7 +522,7 @@ static enum rn1_firmware_result rn1_firmware_gyro_check(const uint8_t *payload, 
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *payload) {
+void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *payload) {
     message->status = payload[0];
     message->int_x = rn1_firmware_load_s14le(payload + 1);
     message->int_y = rn1_firmware_load_s14le(payload + 3);
@@ -590,7 +590,7 @@ static enum rn1_firmware_result rn1_firmware_xcel_check(const uint8_t *payload, 
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *payload) {
+void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *payload) {
     message->status = payload[0];
     message->int_x = rn1_firmware_load_s14le(payload + 1);
     message->int_y = rn1_firmware_load_s14le(payload + 3);
@@ -660,8 +660,7 @@ static enum rn1_firmware_result rn1_firmware_compass_check(const uint8_t *payloa
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_compass_load(struct rn1_firmware_compass *message,
-                                      const uint8_t *payload) {
+void rn1_firmware_compass_load(struct rn1_firmware_compass *message, const uint8_t *payload) {
     message->status = payload[0];
     message->avg_x = rn1_firmware_load_s14le(payload + 1);
     message->avg_y = rn1_firmware_load_s14le(payload + 3);
@@ -726,7 +725,7 @@ static enum rn1_firmware_result rn1_firmware_lidar_check(const uint8_t *payload,
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload) {
+void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
     for (size_t i = 0; i < 360u; i++) {
         message->distances[i] = rn1_firmware_load_u14le(payload + 1 + 2 * i);
@@ -791,7 +790,7 @@ static enum rn1_firmware_result rn1_firmware_sonar_check(const uint8_t *payload,
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload) {
+void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
     for (size_t i = 0; i < 3u; i++) {
         message->distances[i] = rn1_firmware_load_u14le(payload + 1 + 2 * i);
@@ -856,7 +855,7 @@ static enum rn1_firmware_result rn1_firmware_facing_check(const uint8_t *payload
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t *payload) {
+void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t *payload) {
     message->status = payload[0];
     message->heading = rn1_firmware_load_s14le(payload + 1);
     message->speed = rn1_firmware_load_s14le(payload + 3);
@@ -921,8 +920,8 @@ static enum rn1_firmware_result rn1_firmware_optflow_integral_check(const uint8_
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *message,
-                                               const uint8_t *payload) {
+void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *message,
+                                        const uint8_t *payload) {
     message->status = payload[0];
     message->int_x = rn1_firmware_load_s14be(payload + 1);
     message->int_y = rn1_firmware_load_s14be(payload + 3);
@@ -981,8 +980,8 @@ static enum rn1_firmware_result rn1_firmware_motor_controller_message_check(cons
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_controller_message *message,
-                                                       const uint8_t *payload) {
+void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_controller_message *message,
+                                                const uint8_t *payload) {
     message->last_msg = rn1_firmware_load_u14be(payload);
 }
 
@@ -1051,8 +1050,8 @@ static enum rn1_firmware_result rn1_firmware_debug_numbers_check(const uint8_t *
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
-                                            const uint8_t *payload) {
+void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
+                                     const uint8_t *payload) {
     message->dbg1 = (int32_t)rn1_firmware_load_u32be(payload);
     message->dbg2 = (int32_t)rn1_firmware_load_u32be(payload + 5);
     message->dbg3 = (int32_t)rn1_firmware_load_u32be(payload + 10);

@@ -103,10 +103,11 @@ struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
 };
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------- */
@@ -131,6 +132,8 @@ enum rn1_firmware_result rn1_firmware_move_manual_encode(const struct rn1_firmwa
                                                          size_t *size);
 enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_move_manual *message,
                                                          const uint8_t *payload, size_t size);
+void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
+                                   const uint8_t *payload);
 
 /* --- move_relative_twostep --------------------------------------------------------------------- */
 
@@ -163,6 +166,8 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(const struct 
 enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(struct rn1_firmware_move_relative_twostep *message,
                                                                    const uint8_t *payload,
                                                                    size_t size);
+void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_twostep *message,
+                                             const uint8_t *payload);
 
 /* --- decrease_phase_angle ---------------------------------------------------------------------- */
 
@@ -191,6 +196,8 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(const struct r
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(struct rn1_firmware_decrease_phase_angle *message,
                                                                   const uint8_t *payload,
                                                                   size_t size);
+void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
+                                            const uint8_t *payload);
 
 /* --- increase_phase_angle ---------------------------------------------------------------------- */
 
@@ -219,6 +226,8 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(const struct r
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(struct rn1_firmware_increase_phase_angle *message,
                                                                   const uint8_t *payload,
                                                                   size_t size);
+void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
+                                            const uint8_t *payload);
 
 /* --- maintenance ------------------------------------------------------------------------------- */
 
@@ -252,6 +261,8 @@ enum rn1_firmware_result rn1_firmware_maintenance_encode(const struct rn1_firmwa
                                                          size_t *size);
 enum rn1_firmware_result rn1_firmware_maintenance_decode(struct rn1_firmware_maintenance *message,
                                                          const uint8_t *payload, size_t size);
+void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, const uint8_t *payload,
+                                   size_t size);
 
 /* --- gyro -------------------------------------------------------------------------------------- */
 
@@ -289,6 +300,7 @@ enum rn1_firmware_result rn1_firmware_gyro_encode(const struct rn1_firmware_gyro
                                                   uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_gyro_decode(struct rn1_firmware_gyro *message,
                                                   const uint8_t *payload, size_t size);
+void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *payload);
 
 /* --- xcel -------------------------------------------------------------------------------------- */
 
@@ -326,6 +338,7 @@ enum rn1_firmware_result rn1_firmware_xcel_encode(const struct rn1_firmware_xcel
                                                   uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_xcel_decode(struct rn1_firmware_xcel *message,
                                                   const uint8_t *payload, size_t size);
+void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *payload);
 
 /* --- compass ----------------------------------------------------------------------------------- */
 
@@ -364,6 +377,7 @@ enum rn1_firmware_result rn1_firmware_compass_encode(const struct rn1_firmware_c
                                                      size_t *size);
 enum rn1_firmware_result rn1_firmware_compass_decode(struct rn1_firmware_compass *message,
                                                      const uint8_t *payload, size_t size);
+void rn1_firmware_compass_load(struct rn1_firmware_compass *message, const uint8_t *payload);
 
 /* --- lidar ------------------------------------------------------------------------------------- */
 
@@ -395,6 +409,7 @@ enum rn1_firmware_result rn1_firmware_lidar_encode(const struct rn1_firmware_lid
                                                    uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *message,
                                                    const uint8_t *payload, size_t size);
+void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, size_t index) {
@@ -427,6 +442,7 @@ enum rn1_firmware_result rn1_firmware_sonar_encode(const struct rn1_firmware_son
                                                    uint8_t *payload, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *message,
                                                    const uint8_t *payload, size_t size);
+void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -463,6 +479,7 @@ enum rn1_firmware_result rn1_firmware_facing_encode(const struct rn1_firmware_fa
                                                     size_t *size);
 enum rn1_firmware_result rn1_firmware_facing_decode(struct rn1_firmware_facing *message,
                                                     const uint8_t *payload, size_t size);
+void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t *payload);
 
 /* --- optflow_integral -------------------------------------------------------------------------- */
 
@@ -492,6 +509,8 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_encode(const struct rn1_f
                                                               size_t *size);
 enum rn1_firmware_result rn1_firmware_optflow_integral_decode(struct rn1_firmware_optflow_integral *message,
                                                               const uint8_t *payload, size_t size);
+void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *message,
+                                        const uint8_t *payload);
 
 /* --- motor_controller_message ------------------------------------------------------------------ */
 
@@ -513,6 +532,8 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(const stru
 enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(struct rn1_firmware_motor_controller_message *message,
                                                                       const uint8_t *payload,
                                                                       size_t size);
+void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_controller_message *message,
+                                                const uint8_t *payload);
 
 /* --- debug_numbers ----------------------------------------------------------------------------- */
 
@@ -542,6 +563,8 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_encode(const struct rn1_firm
                                                            size_t *size);
 enum rn1_firmware_result rn1_firmware_debug_numbers_decode(struct rn1_firmware_debug_numbers *message,
                                                            const uint8_t *payload, size_t size);
+void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
+                                     const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

@@ -34,8 +34,8 @@ enum uherobot_result uherobot_motors_servos_leds_encode(const struct uherobot_mo
     return UHEROBOT_OK;
 }
 
-static void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
-                                             const uint8_t *payload) {
+void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
+                                      const uint8_t *payload) {
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
     for (size_t i = 0; i < 8u; i++) {
@@ -75,8 +75,8 @@ enum uherobot_result uherobot_motors_two_servos_encode(const struct uherobot_mot
     return UHEROBOT_OK;
 }
 
-static void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
-                                            const uint8_t *payload) {
+void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
+                                     const uint8_t *payload) {
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
     for (size_t i = 0; i < 2u; i++) {
@@ -110,7 +110,7 @@ enum uherobot_result uherobot_motor_test_encode(const struct uherobot_motor_test
     return UHEROBOT_OK;
 }
 
-static void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t *payload) {
+void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t *payload) {
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
 }
@@ -142,7 +142,7 @@ enum uherobot_result uherobot_status_encode(const struct uherobot_status *messag
     return UHEROBOT_OK;
 }
 
-static void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload) {
+void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload) {
     message->voltage = (int16_t)uherobot_load_u16be(payload);
     message->current = (int16_t)uherobot_load_u16be(payload + 2);
     message->temperature = (int16_t)uherobot_load_u16be(payload + 4);

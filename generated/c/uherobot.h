@@ -59,10 +59,11 @@ enum uherobot_message {
 #define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80u
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- motors_servos_leds ------------------------------------------------------------------------ */
@@ -89,6 +90,8 @@ enum uherobot_result uherobot_motors_servos_leds_encode(const struct uherobot_mo
                                                         size_t *size);
 enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_servos_leds *message,
                                                         const uint8_t *payload, size_t size);
+void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
+                                      const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_servos_leds_servos_at(const uint8_t *payload, size_t index) {
@@ -118,6 +121,8 @@ enum uherobot_result uherobot_motors_two_servos_encode(const struct uherobot_mot
                                                        size_t *size);
 enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_two_servos *message,
                                                        const uint8_t *payload, size_t size);
+void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
+                                     const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_two_servos_servos_at(const uint8_t *payload, size_t index) {
@@ -144,6 +149,7 @@ enum uherobot_result uherobot_motor_test_encode(const struct uherobot_motor_test
                                                 uint8_t *payload, size_t capacity, size_t *size);
 enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *message,
                                                 const uint8_t *payload, size_t size);
+void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t *payload);
 
 /* --- status ------------------------------------------------------------------------------------ */
 
@@ -177,6 +183,7 @@ enum uherobot_result uherobot_status_encode(const struct uherobot_status *messag
                                             size_t capacity, size_t *size);
 enum uherobot_result uherobot_status_decode(struct uherobot_status *message, const uint8_t *payload,
                                             size_t size);
+void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

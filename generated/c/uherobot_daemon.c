@@ -54,8 +54,8 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(const stru
     return UHEROBOT_DAEMON_OK;
 }
 
-static void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servos_leds *message,
-                                                    const uint8_t *payload) {
+void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servos_leds *message,
+                                             const uint8_t *payload) {
     message->right_motor = (int16_t)uherobot_daemon_load_u16be(payload);
     message->left_motor = (int16_t)uherobot_daemon_load_u16be(payload + 2);
     for (size_t i = 0; i < 8u; i++) {
@@ -97,8 +97,7 @@ enum uherobot_daemon_result uherobot_daemon_status_encode(const struct uherobot_
     return UHEROBOT_DAEMON_OK;
 }
 
-static void uherobot_daemon_status_load(struct uherobot_daemon_status *message,
-                                        const uint8_t *payload) {
+void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const uint8_t *payload) {
     message->reserved = (int16_t)uherobot_daemon_load_u16be(payload);
     message->pcb_temperature = (int16_t)uherobot_daemon_load_u16be(payload + 2);
     message->cpu_current = uherobot_daemon_load_u16be(payload + 4);

@@ -61,10 +61,11 @@ enum uherobot_daemon_message {
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80u
 
 /*
- * Each message has two functions for its payload. `encode` puts it into a buffer of `capacity`
+ * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
- * all where they fail.
+ * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
+ * message brings, which the decoder has checked, and for nothing else.
  */
 
 /* --- motors_servos_leds ------------------------------------------------------------------------ */
@@ -109,6 +110,8 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(const stru
 enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(struct uherobot_daemon_motors_servos_leds *message,
                                                                       const uint8_t *payload,
                                                                       size_t size);
+void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servos_leds *message,
+                                             const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_daemon_motors_servos_leds_servos_at(const uint8_t *payload,
@@ -160,6 +163,7 @@ enum uherobot_daemon_result uherobot_daemon_status_encode(const struct uherobot_
                                                           size_t *size);
 enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon_status *message,
                                                           const uint8_t *payload, size_t size);
+void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const uint8_t *payload);
 
 /* --- frames ------------------------------------------------------------------------------------ */
 

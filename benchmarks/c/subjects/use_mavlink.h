@@ -3,7 +3,11 @@
 #include <string.h>
 
 #define MAVLINK_USE_CONVENIENCE_FUNCTIONS
+#if defined(LINKS)
+#define MAVLINK_COMM_NUM_BUFFERS LINKS
+#else
 #define MAVLINK_COMM_NUM_BUFFERS 1
+#endif
 #define MAVLINK_NO_SIGN_PACKET
 #define MAVLINK_NO_SIGNATURE_CHECK
 

@@ -5,15 +5,11 @@ static struct atrv_flex_decoder decoder;
 static void take(void *user, const struct atrv_flex_event *event) {
     (void)user;
     if (event->message == ATRV_MESSAGE_READ_MOTOR) {
-        if (atrv_read_motor_decode(BENCH_MESSAGE, event->payload, event->payload_size) ==
-            ATRV_OK) {
-            bench_seen(0);
-        }
+        atrv_read_motor_load(BENCH_MESSAGE, event->payload);
+        bench_seen(0);
     } else if (event->message == ATRV_MESSAGE_SONAR_DATA) {
-        if (atrv_sonar_data_decode(BENCH_MESSAGE, event->payload, event->payload_size) ==
-            ATRV_OK) {
-            bench_seen(1);
-        }
+        atrv_sonar_data_load(BENCH_MESSAGE, event->payload, event->payload_size);
+        bench_seen(1);
     }
 }
 

@@ -4,8 +4,8 @@ static struct matty_esp_decoder decoder;
 
 static void take(void *user, const struct matty_esp_event *event) {
     (void)user;
-    if (event->message == MATTY_MESSAGE_STATUS &&
-        matty_status_decode(BENCH_MESSAGE, event->payload, event->payload_size) == MATTY_OK) {
+    if (event->message == MATTY_MESSAGE_STATUS) {
+        matty_status_load(BENCH_MESSAGE, event->payload);
         bench_seen(0);
     }
 }

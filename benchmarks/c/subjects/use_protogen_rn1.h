@@ -5,13 +5,11 @@ static struct rn1_brain_decoder decoder;
 static void take(void *user, const struct rn1_brain_event *event) {
     (void)user;
     if (event->message == RN1_MESSAGE_GYRO) {
-        if (rn1_gyro_decode(BENCH_MESSAGE, event->payload, event->payload_size) == RN1_OK) {
-            bench_seen(0);
-        }
+        rn1_gyro_load(BENCH_MESSAGE, event->payload);
+        bench_seen(0);
     } else if (event->message == RN1_MESSAGE_LIDAR) {
-        if (rn1_lidar_decode(BENCH_MESSAGE, event->payload, event->payload_size) == RN1_OK) {
-            bench_seen(1);
-        }
+        rn1_lidar_load(BENCH_MESSAGE, event->payload);
+        bench_seen(1);
     }
 }
 

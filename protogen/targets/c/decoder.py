@@ -38,7 +38,7 @@ from protogen.targets.c.expressions import (
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.spelling import unsigned_type, width
-from protogen.targets.c.stuffing import Stuffing, stuffing_of
+from protogen.targets.c.stuffing import Node, Stuffing, stuffing_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +153,25 @@ class LengthView:
     """Bytes that it counts only where there is a payload."""
     payload: int
     """The greatest payload."""
+
+    @property
+    def wrapping(self) -> str:
+        """The type in which the size of a payload that is too short turns out too great."""
+        is_narrow = self.bits <= 8 and self.base + self.payload < 256
+        return "uint8_t" if is_narrow else self.type
+
+    @property
+    def tests(self) -> tuple[str, ...]:
+        """What says that `length`, or the payload's `size` after it, is none that a frame has."""
+        most = (1 << (8 if self.wrapping == "uint8_t" else self.bits)) - 1
+        found = []
+        if self.least > self.base:
+            found.append(f"length < {self.least}U")
+        if self.greatest < min(self.base + self.payload, (1 << self.bits) - 1):
+            found.append(f"length > {self.greatest}U")
+        if self.payload < most or self.base:
+            found.append(f"size > {self.payload}U")
+        return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -343,6 +362,130 @@ class DecoderView:
         """What bounds a payload or all content while its size is unknown: the room for it."""
         size = self.content_size
         return str(size - self.head_size - self.tail_size if self.simple else size) + "U"
+
+    @property
+    def first_head(self) -> int:
+        """Bytes of a start."""
+        return self.start_size if self.start == "literal" else 1
+
+    @property
+    def known_by_identity(self) -> bool:
+        """Whether the identity tells the payload's size."""
+        return self.length is None and self.geometry.early_identity
+
+    @property
+    def always_known(self) -> bool:
+        """Whether every frame that gets to its end is a message."""
+        messages = [message for group in self.groups for message in group.messages]
+        return self.known_by_identity and not any(message.checks for message in messages)
+
+    @property
+    def early_at_start(self) -> bool:
+        """Whether a start of one byte is the whole identity, and tells the payload's size."""
+        return self.start == "set" and any(n.identifies and n.last == 0 for n in self.head_numbers)
+
+    @property
+    def start_completes(self) -> bool:
+        """Whether some frame is a start and nothing else."""
+        around = self.head_size + self.tail_size
+        return any(group.fixed == 0 and around == self.first_head for group in self.groups)
+
+    @property
+    def escape_starts(self) -> bool:
+        """Whether delimiters are told by the nodes of the stuffing.
+
+        They have two bytes, the first of which always leads to a node that ends with it.
+        """
+        delimiters = [self.geometry.start, *filter(None, [self.geometry.end])]
+        stuffing = self.stuffing
+        if stuffing is None or stuffing.kind != "codes" or any(len(d) != 2 for d in delimiters):
+            return False
+        first = delimiters[0][0]
+        seconds = {delimiter[1] for delimiter in delimiters}
+        taken = {branch.byte for node in self.escape_nodes for branch in node.branches}
+        return (
+            all(delimiter[0] == first for delimiter in delimiters)
+            and len(seconds) == len(delimiters)
+            and first not in seconds
+            and any(node.beginning == bytes((first,)) for node in stuffing.nodes)
+            and not any(code.sequence[-1] == first for code in stuffing.codes)
+            and not taken & seconds
+        )
+
+    @property
+    def escape_nodes(self) -> tuple[Node, ...]:
+        """The nodes behind a delimiter's first byte, the one behind nothing else first."""
+        nodes = () if self.stuffing is None else self.stuffing.nodes
+        return tuple(node for node in nodes if node.beginning.endswith(self.geometry.start[:1]))
+
+    @property
+    def flat(self) -> bool:
+        """Whether a candidate needs no more states than how much of it is there.
+
+        It begins with a protected start, tells its size in its head, and nobody asks what was wrong
+        with it: a byte of a start is always one, and whatever does not fit is given up.
+        """
+        end = len(self.geometry.end)
+        single = self.first_head == 1 and end <= 1
+        return (
+            not self.all_events
+            and self.store == "content"
+            and self.start in ("literal", "set")
+            and self.start_protected
+            and (single or self.escape_starts)
+            and (not end or self.end_protected)
+            and self.simple
+            and self.known_from > 0
+            and not self.shares
+            and not self.optional_size
+            and not (self.seven_bit and not self.gives_up_high_bytes)
+            and not self.tail_literals
+            and not self.tail_numbers
+            and not any(n.last < self.first_head for n in self.head_numbers if not n.identifies)
+            and self._is_stuffed_flatly
+        )
+
+    @property
+    def gives_up_high_bytes(self) -> bool:
+        """Whether a high byte is either the identity of a frame, or ends what goes before it."""
+        return self.early_at_start and self.seven_bit and self.least_start == 128
+
+    @property
+    def _is_stuffed_flatly(self) -> bool:
+        if self.stuffing is None:
+            return True
+        kinds = ("codes", "lenient_escape", "base16")
+        begins = self.region_begin == f"{self.first_head}U"
+        return self.region_to_end and begins and self.stuffing.kind in kinds
+
+    @property
+    def never_passed(self) -> tuple[int, ...]:
+        """Bytes that are a start or an end by themselves, so that nothing else sees them."""
+        if self.start == "set":
+            starts = list(range(self.least_start, self.greatest_start + 1))
+        else:
+            starts = list(self.geometry.start)
+        return (*starts, *self.geometry.end)
+
+    @property
+    def keeps_start(self) -> bool:
+        """Whether something reads the start's bytes again."""
+        covers = [cover for item in self.checksums for cover in item.covers if not cover.literal]
+        firsts = [cover.first for cover in covers]
+        return self.start == "set" or any(
+            first == f"{index}U" for first in firsts for index in range(self.first_head)
+        )
+
+    @property
+    def flat_heads(self) -> bool:
+        """Whether something behind the start, in front of the payload, is looked at."""
+        indices = [item.index for item in self.head_literals] + [n.last for n in self.head_numbers]
+        return any(index >= self.first_head for index in indices)
+
+    @property
+    def tail_parts(self) -> bool:
+        """Whether events show a part from behind the payload."""
+        return any("tail[" in part.value for part in self.parts)
 
     @property
     def wire_ends(self) -> bool:

@@ -46,6 +46,9 @@ def memory_of(members: tuple[Member, ...]) -> int:
 
 def _counters(view: DecoderView) -> Iterator[Member]:
     type_ = view.counter
+    if view.flat:
+        yield from (Member(type_, name) for name in ("content", "limit"))
+        return
     if view.all_events:
         yield Member("uint32_t", "offset")
     named = {
@@ -68,14 +71,14 @@ def _counters(view: DecoderView) -> Iterator[Member]:
 def _states(view: DecoderView) -> Iterator[Member]:
     stuffing = view.stuffing
     named = {
-        "state": True,
+        "state": not view.flat,
         "reason": view.all_events and (view.keeps_wire or view.decides_later),
-        "flags": view.has_flags,
+        "flags": not view.flat and view.has_flags,
         "group": view.can_measure,
-        "behind": view.keeps_behind,
-        "match": view.keeps_match,
+        "behind": not view.flat and view.keeps_behind,
+        "match": not view.flat and view.keeps_match,
         "shared": view.shares,
-        "held": view.searches and len(view.delimiter) > 1,
+        "held": not view.flat and view.searches and len(view.delimiter) > 1,
         "end_left": view.awaits_end,
         "region": stuffing is not None and not view.region_to_end,
         "node": stuffing is not None,

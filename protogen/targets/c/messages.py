@@ -31,6 +31,7 @@ from protogen.targets.c.storage import fills, is_stored
 from protogen.targets.c.storing import Put, Store
 from protogen.targets.c.validating import Validate, can_be_refused
 
+_PARAMETERS = ("message", "payload", "size", "need", "writer")
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
 _OTHERS = ("frame", "send")
 """What else is called after a message."""
@@ -236,7 +237,7 @@ class _Codec:
 
     def _static(self, word: str, result: str, arguments: Sequence[str], lines: Lines) -> str:
         lines.drop_unused_places()
-        lines = _with_unused(lines, ("message", "payload", "size", "need", "writer"), arguments)
+        lines = _with_unused(lines, _PARAMETERS, arguments)
         return function(f"static {result} {self._names[word]}", tuple(arguments), lines)
 
     def _measure(self) -> str:
@@ -330,9 +331,15 @@ class _Codec:
         Load(self._printer.helpers, lines).message(self._item.fields)
         if not any(is_stored(field) or fills(field) for field in self._item.fields):
             lines.add("message->unused = 0u;")
+        head, arguments = self._load_head
+        lines.drop_unused_places()
+        return function(head, arguments, _with_unused(lines, _PARAMETERS, arguments))
+
+    @property
+    def _load_head(self) -> tuple[str, tuple[str, ...]]:
         arguments = [f"{self._struct} *message", "const uint8_t *payload"]
         arguments += ["size_t size"] if self._fixed is None else []
-        return self._static("load", "void", arguments, lines)
+        return f"void {self._names['load']}", tuple(arguments)
 
     def _decode(self) -> str:
         lines = Lines()
@@ -358,7 +365,8 @@ class _Codec:
 
     def prototypes(self) -> tuple[str, ...]:
         """What the header declares."""
-        return prototype(*self._encode_head), prototype(*self._decode_head)
+        heads = (self._encode_head, self._decode_head, self._load_head)
+        return tuple(prototype(*head) for head in heads)
 
 
 def _bounds(item: Message) -> tuple[int, int]:

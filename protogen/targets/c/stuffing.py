@@ -31,6 +31,7 @@ class Node:
     """A beginning of sequences. Node 0 is the empty one."""
 
     number: int
+    beginning: bytes
     branches: tuple[Branch, ...]
     plain: bool
     """Whether any other byte stands for itself."""
@@ -121,4 +122,4 @@ def _node(beginning: bytes, numbers: dict[bytes, int], codes: tuple[Code, ...]) 
     listed = {code.byte for code in codes}
     refused = tuple(sorted(listed - set(branches))) if not beginning else ()
     ordered = tuple(branches[byte] for byte in sorted(branches))
-    return Node(numbers[beginning], ordered, not beginning, refused)
+    return Node(numbers[beginning], beginning, ordered, not beginning, refused)
