@@ -19,6 +19,7 @@ from protogen.targets.c.emit import texts
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
+from protogen.targets.c.writers import is_stateless, writer_parameter
 
 OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
 RESULTS = {"size": SIZE, "value": VALUE, "encoding": ENCODING}
@@ -41,18 +42,19 @@ _GUARDS = 16
 _SHIM = """#include "{name}.c"
 
 struct {name}_writer {{
-    uint8_t *next;
+    uint8_t **next;
 }};
 
-void {name}_write(struct {name}_writer *writer, uint8_t byte) {{
-    *writer->next++ = byte;
+void {name}_write({writer}, uint8_t byte) {{
+    *(*writer{member}next)++ = byte;
 }}
 """
 _PUT = """
 size_t shim_{prefix}_put(const {struct} *message, uint8_t *bytes) {{
-    struct {name}_writer writer = {{bytes}};
-    {put}(message, &writer);
-    return (size_t)(writer.next - bytes);
+    uint8_t *next = bytes;
+    struct {name}_writer writer = {{&next}};
+    {put}(message, {by}writer);
+    return (size_t)(next - bytes);
 }}
 """
 _CHECK = """
@@ -69,9 +71,12 @@ def write_sources(protocol: Protocol, folder: Path, *, payloads_only: bool = Fal
     (folder / f"{protocol.name}.c").write_text(source, encoding="utf-8")
 
 
-def shim_of(module: Module) -> str:
+def shim_of(protocol: Protocol, module: Module) -> str:
     """A source that includes the generated one and makes its static functions callable."""
-    parts = [_SHIM.format(name=module.name), *module.sinks]
+    by_value = is_stateless(protocol)
+    member = "." if by_value else "->"
+    writer = {"writer": writer_parameter(protocol), "member": member}
+    parts = [_SHIM.format(name=module.name, **writer), *module.sinks]
     for message in module.messages:
         given = {
             "name": module.name,
@@ -79,6 +84,7 @@ def shim_of(module: Module) -> str:
             "struct": message.struct,
             "put": message.put,
             "check": message.check,
+            "by": "" if by_value else "&",
         }
         parts += [message.put_function, _PUT.format(**given)]
         parts += [_CHECK.format(**given)] if message.checks else []
@@ -113,7 +119,7 @@ class CLibrary:
         folder = Path(self._folder.name)
         write_sources(protocol, folder, payloads_only=True)
         shim = folder / f"{protocol.name}_shim.c"
-        shim.write_text(shim_of(self.module), encoding="utf-8")
+        shim.write_text(shim_of(protocol, self.module), encoding="utf-8")
         library = folder / f"{protocol.name}.so"
         compiler = require_tool("cc")
         command = [compiler, *FLAGS, *flags, "-fPIC", "-shared", "-o", str(library), str(shim)]

@@ -170,12 +170,13 @@ def selections() -> list[tuple[Path, tuple[str, ...] | None, tuple[str, ...] | N
     return found
 
 
+@pytest.mark.parametrize("events", ["all", "messages"])
 @pytest.mark.parametrize(("path", "only", "senders"), selections(), ids=str)
 def test_a_selection_decodes_as_the_same_selection_does_in_python(
-    path: Path, only: tuple[str, ...] | None, senders: tuple[str, ...] | None
+    path: Path, only: tuple[str, ...] | None, senders: tuple[str, ...] | None, events: Any
 ) -> None:
     """What is left out is unknown, and a length beyond what is left is wrong."""
-    process = Process(protocol_of(path), COptions(only=only, senders=senders))
+    process = Process(protocol_of(path), COptions(only=only, senders=senders, events=events))
     protocol = select(protocol_of(path), only, senders)
     module = module_of(protocol)
     for sender in protocol.senders:

@@ -846,8 +846,8 @@ enum {
 
 /* xor-8 */
 static uint8_t dagny_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
+    size_t index = 0;
+    for (; index < size; index++) {
         const uint8_t byte = data[index];
         sum = (uint8_t)(sum ^ byte);
     }

@@ -598,13 +598,17 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
     (void)tail;
     content[0u] = (uint8_t)id;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    to = 0;
     from = 0;
-    for (; from < 1U + payload; from++) {
-        to += dagny_library_host_stuff(&frame[to], content[from]);
-    }
+    to = 0;
     for (; from < size; from++) {
-        frame[to] = content[from];
+        const uint8_t byte = content[from];
+        if (byte == 0x0D || byte == 0x1B) {
+            frame[to] = 0x1B;
+            to++;
+            frame[to] = (uint8_t)(byte ^ 0x1Bu);
+        } else {
+            frame[to] = byte;
+        }
         to++;
     }
     size = to;

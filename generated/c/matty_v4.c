@@ -548,10 +548,50 @@ enum {
 
 #define MATTY_V4_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define MATTY_V4_FAST_FEED as 1 or 0 to choose.
+ * Define MATTY_V4_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef MATTY_V4_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define MATTY_V4_FAST_FEED 1
+#else
+#define MATTY_V4_FAST_FEED 0
+#endif
+#endif
+#ifndef MATTY_V4_SSE2
+#define MATTY_V4_SSE2 0
+#endif
+#if MATTY_V4_SSE2
+#include <emmintrin.h>
+#endif
+#if MATTY_V4_FAST_FEED
+#include <string.h>
+
+#define MATTY_V4_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
+
+/* Not zero where one of eight bytes is this one. */
+#define MATTY_V4_HAS(word, byte) \
+    ((((word) ^ MATTY_V4_EACH(byte)) - MATTY_V4_EACH(1U)) & ~((word) ^ MATTY_V4_EACH(byte)) & MATTY_V4_EACH(0x80U))
+#endif
+
 /* sum-8/negated */
 static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
+    size_t index = 0;
+#if MATTY_V4_FAST_FEED
+    while (size - index >= 8U) { /* No lane of 16 bits overflows in 128 words. */
+        const size_t end = index + ((size - index > 1024U ? 1024U : size - index) & ~(size_t)7U);
+        uint64_t lanes = 0;
+        for (; index < end; index += 8U) {
+            uint64_t word;
+            memcpy(&word, &data[index], 8);
+            lanes += (word & UINT64_C(0x00FF00FF00FF00FF)) + ((word >> 8) & UINT64_C(0x00FF00FF00FF00FF));
+        }
+        sum = (uint8_t)(sum + (lanes * UINT64_C(0x0001000100010001) >> 48));
+    }
+#endif
+    for (; index < size; index++) {
         const uint8_t byte = data[index];
         sum = (uint8_t)(sum + byte);
     }
@@ -607,16 +647,18 @@ static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, 
         tail[0u] = (uint8_t)due;
     }
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    to = 0;
-    for (from = 0; from < 1U; from++) {
-        frame[to] = content[from];
-        to++;
-    }
-    for (; from < 5U + payload; from++) {
-        to += matty_v4_pc_stuff(&frame[to], content[from]);
-    }
+    frame[0] = content[0];
+    from = 1;
+    to = 1;
     for (; from < size; from++) {
-        frame[to] = content[from];
+        const uint8_t byte = content[from];
+        if (byte == 0x55 || byte == 0x56) {
+            frame[to] = 0x56;
+            to++;
+            frame[to] = (uint8_t)(byte ^ 0xFFu);
+        } else {
+            frame[to] = byte;
+        }
         to++;
     }
     size = to;
@@ -1458,10 +1500,134 @@ void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte)
     }
 }
 
+#if MATTY_V4_FAST_FEED
+
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
+   0 where something stands in between that `push` has to look at. */
+static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+    uint8_t *const buffer = decoder->buffer;
+#if MATTY_V4_SSE2
+    while (need - at >= 16U && size - from >= 16U) {
+        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
+        if (_mm_movemask_epi8(found) != 0) {
+            break;
+        }
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        from += 16U;
+        at += 16U;
+    }
+#endif
+    while (at < need) {
+        uint8_t byte;
+        while (need - at >= 8U && size - from >= 8U) {
+            uint64_t word;
+            memcpy(&word, &data[from], 8);
+            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) != 0U) {
+                break;
+            }
+            memcpy(&buffer[at], &word, 8);
+            from += 8U;
+            at += 8U;
+        }
+        if (need - at >= 4U && size - from >= 4U) {
+            uint64_t word = 0;
+            memcpy(&word, &data[from], 4);
+            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) == 0U) {
+                memcpy(&buffer[at], &word, 4);
+                from += 4U;
+                at += 4U;
+            }
+        }
+        if (at == need) {
+            return from;
+        }
+        if (from == size) {
+            return 0;
+        }
+        byte = data[from];
+        from++;
+        switch (byte) {
+        case 0x55:
+            return 0;
+        case 0x56:
+            if (size - from >= 1U && data[from] == 0xAA) {
+                byte = 0x55;
+                from += 1U;
+            } else if (size - from >= 1U && data[from] == 0xA9) {
+                byte = 0x56;
+                from += 1U;
+            } else {
+                return 0;
+            }
+            break;
+        default:
+            break;
+        }
+        buffer[at] = byte;
+        at++;
+    }
+    return from;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = decoder->buffer;
+    size_t payload;
+    size_t wire;
+    if (size < 5U) {
+        return 0;
+    }
+    if (data[0] != 0x55) {
+        return 0;
+    }
+    decoder->buffer[0] = data[0];
+    wire = matty_v4_pc_unstuff_to(decoder, data, size, 1, 1, 2);
+    if (wire == 0U) {
+        return 0;
+    }
+    {
+        const uint8_t length = content[1];
+        const uint8_t left = (uint8_t)(length - 2U);
+        if (left > 122U) {
+            return 0;
+        }
+        payload = left;
+    }
+    wire = matty_v4_pc_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+    if (wire == 0U) {
+        return 0;
+    }
+    if (wire > 252U) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return matty_v4_pc_complete(decoder) == MATTY_V4_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool matty_v4_pc_is_idle(const struct matty_v4_pc_decoder *decoder) {
+    return decoder->state == MATTY_V4_SEEKING;
+}
+#endif
+
 void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        matty_v4_pc_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if MATTY_V4_FAST_FEED
+        if (matty_v4_pc_is_idle(decoder)) {
+            taken = matty_v4_pc_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            matty_v4_pc_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 
@@ -1776,10 +1942,134 @@ void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byt
     }
 }
 
+#if MATTY_V4_FAST_FEED
+
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
+   0 where something stands in between that `push` has to look at. */
+static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+    uint8_t *const buffer = decoder->buffer;
+#if MATTY_V4_SSE2
+    while (need - at >= 16U && size - from >= 16U) {
+        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
+        if (_mm_movemask_epi8(found) != 0) {
+            break;
+        }
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        from += 16U;
+        at += 16U;
+    }
+#endif
+    while (at < need) {
+        uint8_t byte;
+        while (need - at >= 8U && size - from >= 8U) {
+            uint64_t word;
+            memcpy(&word, &data[from], 8);
+            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) != 0U) {
+                break;
+            }
+            memcpy(&buffer[at], &word, 8);
+            from += 8U;
+            at += 8U;
+        }
+        if (need - at >= 4U && size - from >= 4U) {
+            uint64_t word = 0;
+            memcpy(&word, &data[from], 4);
+            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) == 0U) {
+                memcpy(&buffer[at], &word, 4);
+                from += 4U;
+                at += 4U;
+            }
+        }
+        if (at == need) {
+            return from;
+        }
+        if (from == size) {
+            return 0;
+        }
+        byte = data[from];
+        from++;
+        switch (byte) {
+        case 0x55:
+            return 0;
+        case 0x56:
+            if (size - from >= 1U && data[from] == 0xAA) {
+                byte = 0x55;
+                from += 1U;
+            } else if (size - from >= 1U && data[from] == 0xA9) {
+                byte = 0x56;
+                from += 1U;
+            } else {
+                return 0;
+            }
+            break;
+        default:
+            break;
+        }
+        buffer[at] = byte;
+        at++;
+    }
+    return from;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = decoder->buffer;
+    size_t payload;
+    size_t wire;
+    if (size < 5U) {
+        return 0;
+    }
+    if (data[0] != 0x55) {
+        return 0;
+    }
+    decoder->buffer[0] = data[0];
+    wire = matty_v4_esp_unstuff_to(decoder, data, size, 1, 1, 2);
+    if (wire == 0U) {
+        return 0;
+    }
+    {
+        const uint8_t length = content[1];
+        const uint8_t left = (uint8_t)(length - 2U);
+        if (left > 122U) {
+            return 0;
+        }
+        payload = left;
+    }
+    wire = matty_v4_esp_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+    if (wire == 0U) {
+        return 0;
+    }
+    if (wire > 252U) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return matty_v4_esp_complete(decoder) == MATTY_V4_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool matty_v4_esp_is_idle(const struct matty_v4_esp_decoder *decoder) {
+    return decoder->state == MATTY_V4_SEEKING;
+}
+#endif
+
 void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        matty_v4_esp_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if MATTY_V4_FAST_FEED
+        if (matty_v4_esp_is_idle(decoder)) {
+            taken = matty_v4_esp_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            matty_v4_esp_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 

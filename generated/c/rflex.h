@@ -135,6 +135,12 @@ struct rflex_sonar_data_readings {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
+/* What the functions below share that read an element of an array. */
+
+static inline uint16_t rflex_load_u16be(const uint8_t *at) {
+    return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
+}
+
 /* --- request_system_status --------------------------------------------------------------------- */
 
 #define RFLEX_REQUEST_SYSTEM_STATUS_ID_CLASS_ID 0x01u
@@ -537,6 +543,14 @@ enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message
 enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, const uint8_t *payload,
                                           size_t size);
 void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload, size_t size);
+
+/** Reads readings[index] from a payload that was received, unchecked. */
+static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t index,
+                                                struct rflex_sonar_data_readings *out) {
+    const uint8_t *at = payload + 8 + 3 * index;
+    out->cluster = at[0];
+    out->distance = rflex_load_u16be(at + 1);
+}
 
 /* --- initialize_digital_io --------------------------------------------------------------------- */
 

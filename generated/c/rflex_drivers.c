@@ -26,10 +26,6 @@ static void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
     at[1] = (uint8_t)value;
 }
 
-static uint16_t rflex_drivers_load_u16be(const uint8_t *at) {
-    return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
-}
-
 /* --- request_system_status --------------------------------------------------------------------- */
 
 static void rflex_drivers_request_system_status_store(const struct rflex_drivers_request_system_status *message,
@@ -1116,10 +1112,49 @@ enum {
 
 #define RFLEX_DRIVERS_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RFLEX_DRIVERS_FAST_FEED as 1 or 0 to choose.
+ * Define RFLEX_DRIVERS_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RFLEX_DRIVERS_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RFLEX_DRIVERS_FAST_FEED 1
+#else
+#define RFLEX_DRIVERS_FAST_FEED 0
+#endif
+#endif
+#ifndef RFLEX_DRIVERS_SSE2
+#define RFLEX_DRIVERS_SSE2 0
+#endif
+#if RFLEX_DRIVERS_SSE2
+#include <emmintrin.h>
+#endif
+#if RFLEX_DRIVERS_FAST_FEED
+#include <string.h>
+
+#define RFLEX_DRIVERS_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
+
+/* Not zero where one of eight bytes is this one. */
+#define RFLEX_DRIVERS_HAS(word, byte) \
+    ((((word) ^ RFLEX_DRIVERS_EACH(byte)) - RFLEX_DRIVERS_EACH(1U)) & ~((word) ^ RFLEX_DRIVERS_EACH(byte)) & RFLEX_DRIVERS_EACH(0x80U))
+#endif
+
 /* xor-8 */
 static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
+    size_t index = 0;
+#if RFLEX_DRIVERS_FAST_FEED
+    uint64_t all = 0;
+    for (; size - index >= 8U; index += 8U) {
+        uint64_t word;
+        memcpy(&word, &data[index], 8);
+        all ^= word;
+    }
+    all ^= all >> 32;
+    all ^= all >> 16;
+    sum = (uint8_t)(sum ^ all ^ (all >> 8));
+#endif
+    for (; index < size; index++) {
         const uint8_t byte = data[index];
         sum = (uint8_t)(sum ^ byte);
     }
@@ -1184,16 +1219,29 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
         tail[0u] = (uint8_t)due;
     }
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    to = 0;
-    for (from = 0; from < 2U; from++) {
-        frame[to] = content[from];
-        to++;
-    }
-    for (; from < 7U + payload; from++) {
-        to += rflex_drivers_linux_stuff(&frame[to], content[from]);
-    }
+    frame[0] = content[0];
+    frame[1] = content[1];
+    from = 2;
+    to = 2;
     for (; from < size; from++) {
-        frame[to] = content[from];
+        const uint8_t byte = content[from];
+        switch (byte) {
+        case 0x1B:
+            frame[to] = 0x1B;
+            to++;
+            frame[to] = 0x00;
+            break;
+        case 0x7C:
+            frame[to] = 0x7C;
+            to++;
+            frame[to] = 0x1B;
+            to++;
+            frame[to] = 0x01;
+            break;
+        default:
+            frame[to] = byte;
+            break;
+        }
         to++;
     }
     size = to;
@@ -2684,10 +2732,139 @@ void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decode
     }
 }
 
+#if RFLEX_DRIVERS_FAST_FEED
+
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
+   0 where something stands in between that `push` has to look at. */
+static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+    uint8_t *const buffer = decoder->buffer;
+#if RFLEX_DRIVERS_SSE2
+    while (need - at >= 16U && size - from >= 16U) {
+        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
+        if (_mm_movemask_epi8(found) != 0) {
+            break;
+        }
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        from += 16U;
+        at += 16U;
+    }
+#endif
+    while (at < need) {
+        uint8_t byte;
+        while (need - at >= 8U && size - from >= 8U) {
+            uint64_t word;
+            memcpy(&word, &data[from], 8);
+            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) != 0U) {
+                break;
+            }
+            memcpy(&buffer[at], &word, 8);
+            from += 8U;
+            at += 8U;
+        }
+        if (need - at >= 4U && size - from >= 4U) {
+            uint64_t word = 0;
+            memcpy(&word, &data[from], 4);
+            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) == 0U) {
+                memcpy(&buffer[at], &word, 4);
+                from += 4U;
+                at += 4U;
+            }
+        }
+        if (at == need) {
+            return from;
+        }
+        if (from == size) {
+            return 0;
+        }
+        byte = data[from];
+        from++;
+        switch (byte) {
+        case 0x1B:
+            if (size - from >= 1U && data[from] == 0x00) {
+                byte = 0x1B;
+                from += 1U;
+            } else {
+                return 0;
+            }
+            break;
+        case 0x7C:
+            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
+                byte = 0x7C;
+                from += 2U;
+            } else {
+                return 0;
+            }
+            break;
+        default:
+            break;
+        }
+        buffer[at] = byte;
+        at++;
+    }
+    return from;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = decoder->buffer;
+    size_t payload;
+    size_t wire;
+    if (size < 9U) {
+        return 0;
+    }
+    if (data[0] != 0x1B || data[1] != 0x02) {
+        return 0;
+    }
+    decoder->buffer[0] = data[0];
+    decoder->buffer[1] = data[1];
+    wire = rflex_drivers_linux_unstuff_to(decoder, data, size, 2, 2, 6);
+    if (wire == 0U) {
+        return 0;
+    }
+    {
+        const uint8_t length = content[5];
+        const uint8_t left = length;
+        payload = left;
+    }
+    wire = rflex_drivers_linux_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
+    if (wire == 0U) {
+        return 0;
+    }
+    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+        return 0;
+    }
+    wire += 2U;
+    if (wire > 780U) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return rflex_drivers_linux_complete(decoder) == RFLEX_DRIVERS_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool rflex_drivers_linux_is_idle(const struct rflex_drivers_linux_decoder *decoder) {
+    return decoder->state == RFLEX_DRIVERS_SEEKING && decoder->match == 0U;
+}
+#endif
+
 void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        rflex_drivers_linux_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if RFLEX_DRIVERS_FAST_FEED
+        if (rflex_drivers_linux_is_idle(decoder)) {
+            taken = rflex_drivers_linux_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            rflex_drivers_linux_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 
@@ -3187,10 +3364,139 @@ void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder,
     }
 }
 
+#if RFLEX_DRIVERS_FAST_FEED
+
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
+   0 where something stands in between that `push` has to look at. */
+static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+    uint8_t *const buffer = decoder->buffer;
+#if RFLEX_DRIVERS_SSE2
+    while (need - at >= 16U && size - from >= 16U) {
+        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
+        if (_mm_movemask_epi8(found) != 0) {
+            break;
+        }
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        from += 16U;
+        at += 16U;
+    }
+#endif
+    while (at < need) {
+        uint8_t byte;
+        while (need - at >= 8U && size - from >= 8U) {
+            uint64_t word;
+            memcpy(&word, &data[from], 8);
+            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) != 0U) {
+                break;
+            }
+            memcpy(&buffer[at], &word, 8);
+            from += 8U;
+            at += 8U;
+        }
+        if (need - at >= 4U && size - from >= 4U) {
+            uint64_t word = 0;
+            memcpy(&word, &data[from], 4);
+            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) == 0U) {
+                memcpy(&buffer[at], &word, 4);
+                from += 4U;
+                at += 4U;
+            }
+        }
+        if (at == need) {
+            return from;
+        }
+        if (from == size) {
+            return 0;
+        }
+        byte = data[from];
+        from++;
+        switch (byte) {
+        case 0x1B:
+            if (size - from >= 1U && data[from] == 0x00) {
+                byte = 0x1B;
+                from += 1U;
+            } else {
+                return 0;
+            }
+            break;
+        case 0x7C:
+            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
+                byte = 0x7C;
+                from += 2U;
+            } else {
+                return 0;
+            }
+            break;
+        default:
+            break;
+        }
+        buffer[at] = byte;
+        at++;
+    }
+    return from;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = decoder->buffer;
+    size_t payload;
+    size_t wire;
+    if (size < 9U) {
+        return 0;
+    }
+    if (data[0] != 0x1B || data[1] != 0x02) {
+        return 0;
+    }
+    decoder->buffer[0] = data[0];
+    decoder->buffer[1] = data[1];
+    wire = rflex_drivers_flex_unstuff_to(decoder, data, size, 2, 2, 6);
+    if (wire == 0U) {
+        return 0;
+    }
+    {
+        const uint8_t length = content[5];
+        const uint8_t left = length;
+        payload = left;
+    }
+    wire = rflex_drivers_flex_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
+    if (wire == 0U) {
+        return 0;
+    }
+    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+        return 0;
+    }
+    wire += 2U;
+    if (wire > 780U) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return rflex_drivers_flex_complete(decoder) == RFLEX_DRIVERS_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool rflex_drivers_flex_is_idle(const struct rflex_drivers_flex_decoder *decoder) {
+    return decoder->state == RFLEX_DRIVERS_SEEKING && decoder->match == 0U;
+}
+#endif
+
 void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        rflex_drivers_flex_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if RFLEX_DRIVERS_FAST_FEED
+        if (rflex_drivers_flex_is_idle(decoder)) {
+            taken = rflex_drivers_flex_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            rflex_drivers_flex_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 

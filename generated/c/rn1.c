@@ -889,6 +889,54 @@ enum {
 
 #define RN1_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RN1_FAST_FEED as 1 or 0 to choose.
+ * Define RN1_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RN1_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RN1_FAST_FEED 1
+#else
+#define RN1_FAST_FEED 0
+#endif
+#endif
+#ifndef RN1_SSE2
+#define RN1_SSE2 0
+#endif
+#if RN1_SSE2
+#include <emmintrin.h>
+#endif
+#if RN1_FAST_FEED
+#include <string.h>
+
+#define RN1_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
+
+/* Whether some byte has its most significant bit set. */
+static bool rn1_is_high(const uint8_t *data, size_t size) {
+    uint64_t all = 0;
+    size_t index = 0;
+#if RN1_SSE2
+    __m128i found = _mm_setzero_si128();
+    for (; size - index >= 16U; index += 16U) {
+        found = _mm_or_si128(found, _mm_loadu_si128((const __m128i *)(const void *)&data[index]));
+    }
+    if (_mm_movemask_epi8(found) != 0) {
+        return true;
+    }
+#endif
+    for (; size - index >= 8U; index += 8U) {
+        uint64_t word;
+        memcpy(&word, &data[index], 8);
+        all |= word;
+    }
+    for (; index < size; index++) {
+        all |= data[index];
+    }
+    return (all & RN1_EACH(0x80U)) != 0U;
+}
+#endif
+
 /* --- what host sends: frames -------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
@@ -943,96 +991,69 @@ static size_t rn1_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
 struct rn1_writer {
     rn1_put put;
     void *user;
-    uint8_t sender;
-    uint8_t flags;
 };
 
-enum { RN1_STUFFED = 128 };
-
-/* The next byte of content. */
-static void rn1_host_write(struct rn1_writer *writer, uint8_t byte) {
-    writer->put(writer->user, byte);
+static inline void rn1_write(struct rn1_writer writer, uint8_t byte) {
+    writer.put(writer.user, byte);
 }
 
-static void rn1_host_send_head(struct rn1_writer *writer, size_t payload, uint8_t start) {
+static void rn1_host_send_head(struct rn1_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    rn1_host_write(writer, (uint8_t)start);
+    rn1_write(writer, (uint8_t)start);
 }
 
-static void rn1_host_send_tail(struct rn1_writer *writer, size_t payload, uint8_t start) {
+static void rn1_host_send_tail(struct rn1_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    writer->put(writer->user, 0xFF);
+    writer.put(writer.user, 0xFF);
 }
 
-/* The next byte of content. */
-static void rn1_brain_write(struct rn1_writer *writer, uint8_t byte) {
-    writer->put(writer->user, byte);
-}
-
-static void rn1_brain_send_head(struct rn1_writer *writer, size_t payload, uint8_t start) {
+static void rn1_brain_send_head(struct rn1_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    rn1_brain_write(writer, (uint8_t)start);
+    rn1_write(writer, (uint8_t)start);
 }
 
-static void rn1_brain_send_tail(struct rn1_writer *writer, size_t payload, uint8_t start) {
-    (void)writer;
-    (void)payload;
-    (void)start;
-}
-
-static void rn1_write(struct rn1_writer *writer, uint8_t byte) {
-    switch (writer->sender) {
-    case 0:
-        rn1_host_write(writer, byte);
-        break;
-    default:
-        rn1_brain_write(writer, byte);
-        break;
-    }
-}
-
-static void rn1_write_u14le(struct rn1_writer *writer, uint16_t value) {
+static void rn1_write_u14le(struct rn1_writer writer, uint16_t value) {
     rn1_write(writer, (uint8_t)(value & 0x7Fu));
     rn1_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
 }
 
-static void rn1_write_u16le(struct rn1_writer *writer, uint16_t value) {
+static void rn1_write_u16le(struct rn1_writer writer, uint16_t value) {
     rn1_write(writer, (uint8_t)(value & 0x7Fu));
     rn1_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
     rn1_write(writer, (uint8_t)(value >> 14));
 }
 
-static void rn1_write_bytes(struct rn1_writer *writer, const void *from, size_t size) {
+static void rn1_write_bytes(struct rn1_writer writer, const void *from, size_t size) {
     const uint8_t *bytes = (const uint8_t *)from;
     for (size_t i = 0; i < size; i++) {
         rn1_write(writer, bytes[i]);
     }
 }
 
-static void rn1_move_manual_put(const struct rn1_move_manual *message, struct rn1_writer *writer) {
+static void rn1_move_manual_put(const struct rn1_move_manual *message, struct rn1_writer writer) {
     rn1_write(writer, (uint8_t)((uint8_t)message->speed & 0x7Fu));
     rn1_write(writer, (uint8_t)((uint8_t)message->arc & 0x7Fu));
 }
 
 static void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
-                                          struct rn1_writer *writer) {
+                                          struct rn1_writer writer) {
     rn1_write_u14le(writer, (uint16_t)message->angle);
     rn1_write_u14le(writer, (uint16_t)message->forward);
 }
 
 static void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *message,
-                                      struct rn1_writer *writer) {
+                                      struct rn1_writer writer) {
     rn1_write_u14le(writer, (uint16_t)message->angle);
     rn1_write_u14le(writer, (uint16_t)message->forward);
 }
 
-static void rn1_maintenance_put(const struct rn1_maintenance *message, struct rn1_writer *writer) {
+static void rn1_maintenance_put(const struct rn1_maintenance *message, struct rn1_writer writer) {
     rn1_write(writer, 0x42u);
     rn1_write(writer, 0x11u);
     rn1_write(writer, 0x7Au);
@@ -1053,49 +1074,49 @@ static void rn1_maintenance_put(const struct rn1_maintenance *message, struct rn
     }
 }
 
-static void rn1_gyro_put(const struct rn1_gyro *message, struct rn1_writer *writer) {
+static void rn1_gyro_put(const struct rn1_gyro *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     rn1_write_u14le(writer, (uint16_t)message->int_x);
     rn1_write_u14le(writer, (uint16_t)message->int_y);
     rn1_write_u14le(writer, (uint16_t)message->int_z);
 }
 
-static void rn1_xcel_put(const struct rn1_xcel *message, struct rn1_writer *writer) {
+static void rn1_xcel_put(const struct rn1_xcel *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     rn1_write_u14le(writer, (uint16_t)message->int_x);
     rn1_write_u14le(writer, (uint16_t)message->int_y);
     rn1_write_u14le(writer, (uint16_t)message->int_z);
 }
 
-static void rn1_compass_put(const struct rn1_compass *message, struct rn1_writer *writer) {
+static void rn1_compass_put(const struct rn1_compass *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     rn1_write_u14le(writer, (uint16_t)message->avg_x);
     rn1_write_u14le(writer, (uint16_t)message->avg_y);
     rn1_write_u14le(writer, (uint16_t)message->avg_z);
 }
 
-static void rn1_optflow_put(const struct rn1_optflow *message, struct rn1_writer *writer) {
+static void rn1_optflow_put(const struct rn1_optflow *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     rn1_write_u14le(writer, (uint16_t)message->dx);
     rn1_write_u14le(writer, (uint16_t)message->dy);
     rn1_write(writer, message->q);
 }
 
-static void rn1_lidar_put(const struct rn1_lidar *message, struct rn1_writer *writer) {
+static void rn1_lidar_put(const struct rn1_lidar *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     for (size_t i = 0; i < 360u; i++) {
         rn1_write_u14le(writer, message->distances[i]);
     }
 }
 
-static void rn1_sonar_put(const struct rn1_sonar *message, struct rn1_writer *writer) {
+static void rn1_sonar_put(const struct rn1_sonar *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     for (size_t i = 0; i < 7u; i++) {
         rn1_write_u14le(writer, message->distances[i]);
     }
 }
 
-static void rn1_facing_put(const struct rn1_facing *message, struct rn1_writer *writer) {
+static void rn1_facing_put(const struct rn1_facing *message, struct rn1_writer writer) {
     rn1_write(writer, message->status);
     rn1_write_u14le(writer, message->heading);
     rn1_write_u14le(writer, (uint16_t)message->speed);
@@ -1126,11 +1147,9 @@ enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_host_send_head(&writer, payload, 0x80);
-    rn1_move_manual_put(message, &writer);
-    rn1_host_send_tail(&writer, payload, 0x80);
+    rn1_host_send_head(writer, payload, 0x80);
+    rn1_move_manual_put(message, writer);
+    rn1_host_send_tail(writer, payload, 0x80);
     return RN1_OK;
 }
 
@@ -1159,11 +1178,9 @@ enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_tw
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_host_send_head(&writer, payload, 0x81);
-    rn1_move_relative_twostep_put(message, &writer);
-    rn1_host_send_tail(&writer, payload, 0x81);
+    rn1_host_send_head(writer, payload, 0x81);
+    rn1_move_relative_twostep_put(message, writer);
+    rn1_host_send_tail(writer, payload, 0x81);
     return RN1_OK;
 }
 
@@ -1192,11 +1209,9 @@ enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *m
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_host_send_head(&writer, payload, 0x82);
-    rn1_move_relative_arc_put(message, &writer);
-    rn1_host_send_tail(&writer, payload, 0x82);
+    rn1_host_send_head(writer, payload, 0x82);
+    rn1_move_relative_arc_put(message, writer);
+    rn1_host_send_tail(writer, payload, 0x82);
     return RN1_OK;
 }
 
@@ -1227,11 +1242,9 @@ enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_
     payload = rn1_maintenance_measure(message);
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_host_send_head(&writer, payload, 0xFE);
-    rn1_maintenance_put(message, &writer);
-    rn1_host_send_tail(&writer, payload, 0xFE);
+    rn1_host_send_head(writer, payload, 0xFE);
+    rn1_maintenance_put(message, writer);
+    rn1_host_send_tail(writer, payload, 0xFE);
     return RN1_OK;
 }
 
@@ -1259,11 +1272,8 @@ enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void 
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x80);
-    rn1_gyro_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x80);
+    rn1_brain_send_head(writer, payload, 0x80);
+    rn1_gyro_put(message, writer);
     return RN1_OK;
 }
 
@@ -1291,11 +1301,8 @@ enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void 
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x81);
-    rn1_xcel_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x81);
+    rn1_brain_send_head(writer, payload, 0x81);
+    rn1_xcel_put(message, writer);
     return RN1_OK;
 }
 
@@ -1323,11 +1330,8 @@ enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put,
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x82);
-    rn1_compass_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x82);
+    rn1_brain_send_head(writer, payload, 0x82);
+    rn1_compass_put(message, writer);
     return RN1_OK;
 }
 
@@ -1355,11 +1359,8 @@ enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put,
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x83);
-    rn1_optflow_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x83);
+    rn1_brain_send_head(writer, payload, 0x83);
+    rn1_optflow_put(message, writer);
     return RN1_OK;
 }
 
@@ -1387,11 +1388,8 @@ enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, voi
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x84);
-    rn1_lidar_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x84);
+    rn1_brain_send_head(writer, payload, 0x84);
+    rn1_lidar_put(message, writer);
     return RN1_OK;
 }
 
@@ -1419,11 +1417,8 @@ enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, voi
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0x85);
-    rn1_sonar_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0x85);
+    rn1_brain_send_head(writer, payload, 0x85);
+    rn1_sonar_put(message, writer);
     return RN1_OK;
 }
 
@@ -1451,11 +1446,8 @@ enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, v
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_brain_send_head(&writer, payload, 0xA0);
-    rn1_facing_put(message, &writer);
-    rn1_brain_send_tail(&writer, payload, 0xA0);
+    rn1_brain_send_head(writer, payload, 0xA0);
+    rn1_facing_put(message, writer);
     return RN1_OK;
 }
 
@@ -1866,8 +1858,7 @@ static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uin
 }
 
 /* All parts are there: verify the checksums, read the message, and deliver it. */
-static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
+static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder, const uint8_t *content) {
     struct rn1_brain_event event;
     uint8_t message;
     uint8_t reason;
@@ -1968,7 +1959,7 @@ static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t i
 static uint8_t rn1_brain_cross(struct rn1_brain_decoder *decoder) {
     if (((decoder->flags & RN1_KNOWN) != 0U && decoder->content == decoder->limit)) {
         if ((decoder->flags & RN1_SEARCHING) == 0U) {
-            return rn1_brain_complete(decoder);
+            return rn1_brain_complete(decoder, decoder->buffer);
         }
     } else if ((decoder->flags & RN1_OPEN) != 0U && (decoder->flags & RN1_KNOWN) == 0U && (decoder->flags & RN1_SEARCHING) == 0U) {
         decoder->flags |= RN1_SEARCHING;
@@ -2032,7 +2023,7 @@ static uint8_t rn1_brain_close(struct rn1_brain_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_NO_REASON ? rn1_brain_complete(decoder) : reason;
+    return reason == RN1_NO_REASON ? rn1_brain_complete(decoder, decoder->buffer) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2133,10 +2124,78 @@ void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte) {
     }
 }
 
+#if RN1_FAST_FEED
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t rn1_brain_take_whole(struct rn1_brain_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = data;
+    size_t payload;
+    size_t wire;
+    if (size < 1U) {
+        return 0;
+    }
+    if (!(data[0] >= 0x80U && data[0] <= 0xFEU)) {
+        return 0;
+    }
+    switch (content[0]) {
+    case UINT8_C(0x80):
+        payload = 7;
+        break;
+    case UINT8_C(0x81):
+        payload = 7;
+        break;
+    case UINT8_C(0x82):
+        payload = 7;
+        break;
+    case UINT8_C(0x83):
+        payload = 6;
+        break;
+    case UINT8_C(0x84):
+        payload = 721;
+        break;
+    case UINT8_C(0x85):
+        payload = 15;
+        break;
+    case UINT8_C(0xA0):
+        payload = 5;
+        break;
+    default:
+        return 0;
+    }
+    wire = 1U + payload;
+    if (size < wire + 0U) {
+        return 0;
+    }
+    if (rn1_is_high(&data[1], payload)) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return rn1_brain_complete(decoder, data) == RN1_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool rn1_brain_is_idle(const struct rn1_brain_decoder *decoder) {
+    return decoder->state == RN1_SEEKING;
+}
+#endif
+
 void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        rn1_brain_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if RN1_FAST_FEED
+        if (rn1_brain_is_idle(decoder)) {
+            taken = rn1_brain_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            rn1_brain_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 

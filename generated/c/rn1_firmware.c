@@ -1093,6 +1093,54 @@ enum {
 
 #define RN1_FIRMWARE_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RN1_FIRMWARE_FAST_FEED as 1 or 0 to choose.
+ * Define RN1_FIRMWARE_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RN1_FIRMWARE_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RN1_FIRMWARE_FAST_FEED 1
+#else
+#define RN1_FIRMWARE_FAST_FEED 0
+#endif
+#endif
+#ifndef RN1_FIRMWARE_SSE2
+#define RN1_FIRMWARE_SSE2 0
+#endif
+#if RN1_FIRMWARE_SSE2
+#include <emmintrin.h>
+#endif
+#if RN1_FIRMWARE_FAST_FEED
+#include <string.h>
+
+#define RN1_FIRMWARE_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
+
+/* Whether some byte has its most significant bit set. */
+static bool rn1_firmware_is_high(const uint8_t *data, size_t size) {
+    uint64_t all = 0;
+    size_t index = 0;
+#if RN1_FIRMWARE_SSE2
+    __m128i found = _mm_setzero_si128();
+    for (; size - index >= 16U; index += 16U) {
+        found = _mm_or_si128(found, _mm_loadu_si128((const __m128i *)(const void *)&data[index]));
+    }
+    if (_mm_movemask_epi8(found) != 0) {
+        return true;
+    }
+#endif
+    for (; size - index >= 8U; index += 8U) {
+        uint64_t word;
+        memcpy(&word, &data[index], 8);
+        all |= word;
+    }
+    for (; index < size; index++) {
+        all |= data[index];
+    }
+    return (all & RN1_FIRMWARE_EACH(0x80U)) != 0U;
+}
+#endif
+
 /* --- what host sends: frames -------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
@@ -1147,66 +1195,39 @@ static size_t rn1_firmware_brain_wrap(uint8_t *frame, size_t payload, uint8_t st
 struct rn1_firmware_writer {
     rn1_firmware_put put;
     void *user;
-    uint8_t sender;
-    uint8_t flags;
 };
 
-enum { RN1_FIRMWARE_STUFFED = 128 };
-
-/* The next byte of content. */
-static void rn1_firmware_host_write(struct rn1_firmware_writer *writer, uint8_t byte) {
-    writer->put(writer->user, byte);
+static inline void rn1_firmware_write(struct rn1_firmware_writer writer, uint8_t byte) {
+    writer.put(writer.user, byte);
 }
 
-static void rn1_firmware_host_send_head(struct rn1_firmware_writer *writer, size_t payload, uint8_t start) {
+static void rn1_firmware_host_send_head(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    rn1_firmware_host_write(writer, (uint8_t)start);
+    rn1_firmware_write(writer, (uint8_t)start);
 }
 
-static void rn1_firmware_host_send_tail(struct rn1_firmware_writer *writer, size_t payload, uint8_t start) {
+static void rn1_firmware_host_send_tail(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    writer->put(writer->user, 0xFF);
+    writer.put(writer.user, 0xFF);
 }
 
-/* The next byte of content. */
-static void rn1_firmware_brain_write(struct rn1_firmware_writer *writer, uint8_t byte) {
-    writer->put(writer->user, byte);
-}
-
-static void rn1_firmware_brain_send_head(struct rn1_firmware_writer *writer, size_t payload, uint8_t start) {
+static void rn1_firmware_brain_send_head(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
     (void)writer;
     (void)payload;
     (void)start;
-    rn1_firmware_brain_write(writer, (uint8_t)start);
+    rn1_firmware_write(writer, (uint8_t)start);
 }
 
-static void rn1_firmware_brain_send_tail(struct rn1_firmware_writer *writer, size_t payload, uint8_t start) {
-    (void)writer;
-    (void)payload;
-    (void)start;
-}
-
-static void rn1_firmware_write(struct rn1_firmware_writer *writer, uint8_t byte) {
-    switch (writer->sender) {
-    case 0:
-        rn1_firmware_host_write(writer, byte);
-        break;
-    default:
-        rn1_firmware_brain_write(writer, byte);
-        break;
-    }
-}
-
-static void rn1_firmware_write_u14be(struct rn1_firmware_writer *writer, uint16_t value) {
+static void rn1_firmware_write_u14be(struct rn1_firmware_writer writer, uint16_t value) {
     rn1_firmware_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
     rn1_firmware_write(writer, (uint8_t)(value & 0x7Fu));
 }
 
-static void rn1_firmware_write_bytes(struct rn1_firmware_writer *writer, const void *from,
+static void rn1_firmware_write_bytes(struct rn1_firmware_writer writer, const void *from,
                                      size_t size) {
     const uint8_t *bytes = (const uint8_t *)from;
     for (size_t i = 0; i < size; i++) {
@@ -1214,12 +1235,12 @@ static void rn1_firmware_write_bytes(struct rn1_firmware_writer *writer, const v
     }
 }
 
-static void rn1_firmware_write_u14le(struct rn1_firmware_writer *writer, uint16_t value) {
+static void rn1_firmware_write_u14le(struct rn1_firmware_writer writer, uint16_t value) {
     rn1_firmware_write(writer, (uint8_t)(value & 0x7Fu));
     rn1_firmware_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
 }
 
-static void rn1_firmware_write_u32be(struct rn1_firmware_writer *writer, uint32_t value) {
+static void rn1_firmware_write_u32be(struct rn1_firmware_writer writer, uint32_t value) {
     rn1_firmware_write(writer, (uint8_t)(value >> 28));
     rn1_firmware_write(writer, (uint8_t)((value >> 21) & 0x7Fu));
     rn1_firmware_write(writer, (uint8_t)((value >> 14) & 0x7Fu));
@@ -1228,29 +1249,29 @@ static void rn1_firmware_write_u32be(struct rn1_firmware_writer *writer, uint32_
 }
 
 static void rn1_firmware_move_manual_put(const struct rn1_firmware_move_manual *message,
-                                         struct rn1_firmware_writer *writer) {
+                                         struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, (uint8_t)((uint8_t)message->speed & 0x7Fu));
     rn1_firmware_write(writer, (uint8_t)((uint8_t)message->arc & 0x7Fu));
 }
 
 static void rn1_firmware_move_relative_twostep_put(const struct rn1_firmware_move_relative_twostep *message,
-                                                   struct rn1_firmware_writer *writer) {
+                                                   struct rn1_firmware_writer writer) {
     rn1_firmware_write_u14be(writer, (uint16_t)message->angle);
     rn1_firmware_write_u14be(writer, (uint16_t)message->forward);
 }
 
 static void rn1_firmware_decrease_phase_angle_put(const struct rn1_firmware_decrease_phase_angle *message,
-                                                  struct rn1_firmware_writer *writer) {
+                                                  struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->ignored);
 }
 
 static void rn1_firmware_increase_phase_angle_put(const struct rn1_firmware_increase_phase_angle *message,
-                                                  struct rn1_firmware_writer *writer) {
+                                                  struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->ignored);
 }
 
 static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *message,
-                                         struct rn1_firmware_writer *writer) {
+                                         struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, 0x42u);
     rn1_firmware_write(writer, 0x11u);
     rn1_firmware_write(writer, 0x7Au);
@@ -1268,7 +1289,7 @@ static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *
 }
 
 static void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
-                                  struct rn1_firmware_writer *writer) {
+                                  struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     rn1_firmware_write_u14le(writer, (uint16_t)message->int_x);
     rn1_firmware_write_u14le(writer, (uint16_t)message->int_y);
@@ -1276,7 +1297,7 @@ static void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
 }
 
 static void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
-                                  struct rn1_firmware_writer *writer) {
+                                  struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     rn1_firmware_write_u14le(writer, (uint16_t)message->int_x);
     rn1_firmware_write_u14le(writer, (uint16_t)message->int_y);
@@ -1284,7 +1305,7 @@ static void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
 }
 
 static void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
-                                     struct rn1_firmware_writer *writer) {
+                                     struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     rn1_firmware_write_u14le(writer, (uint16_t)message->avg_x);
     rn1_firmware_write_u14le(writer, (uint16_t)message->avg_y);
@@ -1292,7 +1313,7 @@ static void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
 }
 
 static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
-                                   struct rn1_firmware_writer *writer) {
+                                   struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     for (size_t i = 0; i < 360u; i++) {
         rn1_firmware_write_u14le(writer, message->distances[i]);
@@ -1300,7 +1321,7 @@ static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
 }
 
 static void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
-                                   struct rn1_firmware_writer *writer) {
+                                   struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     for (size_t i = 0; i < 3u; i++) {
         rn1_firmware_write_u14le(writer, message->distances[i]);
@@ -1308,26 +1329,26 @@ static void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
 }
 
 static void rn1_firmware_facing_put(const struct rn1_firmware_facing *message,
-                                    struct rn1_firmware_writer *writer) {
+                                    struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     rn1_firmware_write_u14le(writer, (uint16_t)message->heading);
     rn1_firmware_write_u14le(writer, (uint16_t)message->speed);
 }
 
 static void rn1_firmware_optflow_integral_put(const struct rn1_firmware_optflow_integral *message,
-                                              struct rn1_firmware_writer *writer) {
+                                              struct rn1_firmware_writer writer) {
     rn1_firmware_write(writer, message->status);
     rn1_firmware_write_u14be(writer, (uint16_t)message->int_x);
     rn1_firmware_write_u14be(writer, (uint16_t)message->int_y);
 }
 
 static void rn1_firmware_motor_controller_message_put(const struct rn1_firmware_motor_controller_message *message,
-                                                      struct rn1_firmware_writer *writer) {
+                                                      struct rn1_firmware_writer writer) {
     rn1_firmware_write_u14be(writer, message->last_msg);
 }
 
 static void rn1_firmware_debug_numbers_put(const struct rn1_firmware_debug_numbers *message,
-                                           struct rn1_firmware_writer *writer) {
+                                           struct rn1_firmware_writer writer) {
     rn1_firmware_write_u32be(writer, (uint32_t)message->dbg1);
     rn1_firmware_write_u32be(writer, (uint32_t)message->dbg2);
     rn1_firmware_write_u32be(writer, (uint32_t)message->dbg3);
@@ -1360,11 +1381,9 @@ enum rn1_firmware_result rn1_firmware_move_manual_send(const struct rn1_firmware
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_firmware_host_send_head(&writer, payload, 0x80);
-    rn1_firmware_move_manual_put(message, &writer);
-    rn1_firmware_host_send_tail(&writer, payload, 0x80);
+    rn1_firmware_host_send_head(writer, payload, 0x80);
+    rn1_firmware_move_manual_put(message, writer);
+    rn1_firmware_host_send_tail(writer, payload, 0x80);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1394,11 +1413,9 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(const struct rn
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_firmware_host_send_head(&writer, payload, 0x81);
-    rn1_firmware_move_relative_twostep_put(message, &writer);
-    rn1_firmware_host_send_tail(&writer, payload, 0x81);
+    rn1_firmware_host_send_head(writer, payload, 0x81);
+    rn1_firmware_move_relative_twostep_put(message, writer);
+    rn1_firmware_host_send_tail(writer, payload, 0x81);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1428,11 +1445,9 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(const struct rn1
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_firmware_host_send_head(&writer, payload, 0xD1);
-    rn1_firmware_decrease_phase_angle_put(message, &writer);
-    rn1_firmware_host_send_tail(&writer, payload, 0xD1);
+    rn1_firmware_host_send_head(writer, payload, 0xD1);
+    rn1_firmware_decrease_phase_angle_put(message, writer);
+    rn1_firmware_host_send_tail(writer, payload, 0xD1);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1462,11 +1477,9 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(const struct rn1
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_firmware_host_send_head(&writer, payload, 0xD2);
-    rn1_firmware_increase_phase_angle_put(message, &writer);
-    rn1_firmware_host_send_tail(&writer, payload, 0xD2);
+    rn1_firmware_host_send_head(writer, payload, 0xD2);
+    rn1_firmware_increase_phase_angle_put(message, writer);
+    rn1_firmware_host_send_tail(writer, payload, 0xD2);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1498,11 +1511,9 @@ enum rn1_firmware_result rn1_firmware_maintenance_send(const struct rn1_firmware
     payload = rn1_firmware_maintenance_measure(message);
     writer.put = put;
     writer.user = user;
-    writer.sender = 0;
-    writer.flags = 0;
-    rn1_firmware_host_send_head(&writer, payload, 0xFE);
-    rn1_firmware_maintenance_put(message, &writer);
-    rn1_firmware_host_send_tail(&writer, payload, 0xFE);
+    rn1_firmware_host_send_head(writer, payload, 0xFE);
+    rn1_firmware_maintenance_put(message, writer);
+    rn1_firmware_host_send_tail(writer, payload, 0xFE);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1531,11 +1542,8 @@ enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0x80);
-    rn1_firmware_gyro_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0x80);
+    rn1_firmware_brain_send_head(writer, payload, 0x80);
+    rn1_firmware_gyro_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1564,11 +1572,8 @@ enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0x81);
-    rn1_firmware_xcel_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0x81);
+    rn1_firmware_brain_send_head(writer, payload, 0x81);
+    rn1_firmware_xcel_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1597,11 +1602,8 @@ enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_com
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0x82);
-    rn1_firmware_compass_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0x82);
+    rn1_firmware_brain_send_head(writer, payload, 0x82);
+    rn1_firmware_compass_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1630,11 +1632,8 @@ enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0x84);
-    rn1_firmware_lidar_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0x84);
+    rn1_firmware_brain_send_head(writer, payload, 0x84);
+    rn1_firmware_lidar_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1663,11 +1662,8 @@ enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0x85);
-    rn1_firmware_sonar_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0x85);
+    rn1_firmware_brain_send_head(writer, payload, 0x85);
+    rn1_firmware_sonar_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1696,11 +1692,8 @@ enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_faci
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0xA0);
-    rn1_firmware_facing_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0xA0);
+    rn1_firmware_brain_send_head(writer, payload, 0xA0);
+    rn1_firmware_facing_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1730,11 +1723,8 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_send(const struct rn1_fir
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0xA1);
-    rn1_firmware_optflow_integral_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0xA1);
+    rn1_firmware_brain_send_head(writer, payload, 0xA1);
+    rn1_firmware_optflow_integral_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1766,11 +1756,8 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_send(const struct
     }
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0xD1);
-    rn1_firmware_motor_controller_message_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0xD1);
+    rn1_firmware_brain_send_head(writer, payload, 0xD1);
+    rn1_firmware_motor_controller_message_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1792,11 +1779,8 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_send(const struct rn1_firmwa
     const size_t payload = 20u;
     writer.put = put;
     writer.user = user;
-    writer.sender = 1;
-    writer.flags = 0;
-    rn1_firmware_brain_send_head(&writer, payload, 0xD2);
-    rn1_firmware_debug_numbers_put(message, &writer);
-    rn1_firmware_brain_send_tail(&writer, payload, 0xD2);
+    rn1_firmware_brain_send_head(writer, payload, 0xD2);
+    rn1_firmware_debug_numbers_put(message, writer);
     return RN1_FIRMWARE_OK;
 }
 
@@ -2219,8 +2203,7 @@ static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts
 }
 
 /* All parts are there: verify the checksums, read the message, and deliver it. */
-static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *decoder) {
-    const uint8_t *const content = decoder->buffer;
+static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *decoder, const uint8_t *content) {
     struct rn1_firmware_brain_event event;
     uint8_t message;
     uint8_t reason;
@@ -2327,7 +2310,7 @@ static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *d
 static uint8_t rn1_firmware_brain_cross(struct rn1_firmware_brain_decoder *decoder) {
     if (((decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && decoder->content == decoder->limit)) {
         if ((decoder->flags & RN1_FIRMWARE_SEARCHING) == 0U) {
-            return rn1_firmware_brain_complete(decoder);
+            return rn1_firmware_brain_complete(decoder, decoder->buffer);
         }
     } else if ((decoder->flags & RN1_FIRMWARE_OPEN) != 0U && (decoder->flags & RN1_FIRMWARE_KNOWN) == 0U && (decoder->flags & RN1_FIRMWARE_SEARCHING) == 0U) {
         decoder->flags |= RN1_FIRMWARE_SEARCHING;
@@ -2391,7 +2374,7 @@ static uint8_t rn1_firmware_brain_close(struct rn1_firmware_brain_decoder *decod
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_brain_complete(decoder) : reason;
+    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_brain_complete(decoder, decoder->buffer) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2492,10 +2475,84 @@ void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder,
     }
 }
 
+#if RN1_FIRMWARE_FAST_FEED
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
+   look at it, because it is cut off or is none. */
+static size_t rn1_firmware_brain_take_whole(struct rn1_firmware_brain_decoder *decoder, const uint8_t *data, size_t size) {
+    const uint8_t *const content = data;
+    size_t payload;
+    size_t wire;
+    if (size < 1U) {
+        return 0;
+    }
+    if (!(data[0] >= 0x80U && data[0] <= 0xFEU)) {
+        return 0;
+    }
+    switch (content[0]) {
+    case UINT8_C(0x80):
+        payload = 7;
+        break;
+    case UINT8_C(0x81):
+        payload = 7;
+        break;
+    case UINT8_C(0x82):
+        payload = 7;
+        break;
+    case UINT8_C(0x84):
+        payload = 721;
+        break;
+    case UINT8_C(0x85):
+        payload = 7;
+        break;
+    case UINT8_C(0xA0):
+        payload = 5;
+        break;
+    case UINT8_C(0xA1):
+        payload = 5;
+        break;
+    case UINT8_C(0xD1):
+        payload = 2;
+        break;
+    case UINT8_C(0xD2):
+        payload = 20;
+        break;
+    default:
+        return 0;
+    }
+    wire = 1U + payload;
+    if (size < wire + 0U) {
+        return 0;
+    }
+    if (rn1_firmware_is_high(&data[1], payload)) {
+        return 0;
+    }
+    decoder->payload = (uint16_t)payload;
+    decoder->wire = (uint16_t)wire;
+    decoder->behind = 0;
+    return rn1_firmware_brain_complete(decoder, data) == RN1_FIRMWARE_FRAME ? wire : (size_t)0;
+}
+
+/* Whether nothing of a frame is there. */
+static bool rn1_firmware_brain_is_idle(const struct rn1_firmware_brain_decoder *decoder) {
+    return decoder->state == RN1_FIRMWARE_SEEKING;
+}
+#endif
+
 void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder, const uint8_t *data, size_t size) {
-    size_t index;
-    for (index = 0; index < size; index++) {
-        rn1_firmware_brain_decoder_push(decoder, data[index]);
+    size_t index = 0;
+    while (index < size) {
+        size_t taken = 0;
+#if RN1_FIRMWARE_FAST_FEED
+        if (rn1_firmware_brain_is_idle(decoder)) {
+            taken = rn1_firmware_brain_take_whole(decoder, &data[index], size - index);
+        }
+#endif
+        if (taken == 0U) {
+            rn1_firmware_brain_decoder_push(decoder, data[index]);
+            taken = 1;
+        }
+        index += taken;
     }
 }
 

@@ -217,16 +217,16 @@ static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type)
     content[1u] = (uint8_t)length;
     content[2u] = (uint8_t)type;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    to = 0;
-    for (from = 0; from < 1U; from++) {
-        frame[to] = content[from];
-        to++;
-    }
-    for (; from < 3U + payload; from++) {
-        to += uherobot_daemon_stuff(&frame[to], content[from]);
-    }
+    frame[0] = content[0];
+    from = 1;
+    to = 1;
     for (; from < size; from++) {
-        frame[to] = content[from];
+        const uint8_t byte = content[from];
+        const uint8_t high = (uint8_t)(byte >> 4);
+        const uint8_t low = (uint8_t)(byte & 0x0Fu);
+        frame[to] = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
+        to++;
+        frame[to] = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
         to++;
     }
     size = to;

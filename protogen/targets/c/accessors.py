@@ -3,26 +3,63 @@
 from __future__ import annotations
 
 from protogen.model.fields import Field
-from protogen.model.types import Array, Integer
+from protogen.model.types import Array, Float, Integer, Struct
 from protogen.targets.c.comments import comment
-from protogen.targets.c.helpers import is_plain, is_whole, joined, sign_extended
+from protogen.targets.c.helpers import Helpers, is_plain, is_whole, joined, sign_extended
 from protogen.targets.c.lines import Lines, function
+from protogen.targets.c.loading import Load
+from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
+from protogen.targets.c.storage import holds_values, needed_by
 
 
-def accessor(record: str, field: Field, names: Names) -> str:
-    """The function that reads an element of `field`, which lies at a fixed place."""
-    assert isinstance(field.type, Array) and isinstance(field.type.element, Integer)
-    type_ = field.type.element
-    name = names.claim(record, field.name, "at")
-    body = Lines()
-    start = f"payload + {field.position}" if field.position else "payload"
-    step = f"{type_.size} * index" if type_.size > 1 else "index"
-    body.add(f"const uint8_t *at = {start} + {step};")
-    _read(type_, body)
-    doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
-    head = f"static inline {integer_type(type_)} {name}"
-    return "\n".join([*doc, function(head, ("const uint8_t *payload", "size_t index"), body)])
+def is_readable(field: Field) -> bool:
+    """Whether there is such a function: elements of one size lie at a place that is known."""
+    if field.position is None or field.const is not None or not isinstance(field.type, Array):
+        return False
+    element = field.type.element
+    if isinstance(element, Struct):
+        # Nothing outside of it may say what is in it.
+        return bool(element.sizes.fixed and holds_values(element)) and not needed_by(element.fields)
+    return isinstance(element, Integer | Float)
+
+
+class Accessors:
+    """Writes these functions."""
+
+    def __init__(self, names: Names, helpers: Helpers, records: Records) -> None:
+        self._names = names
+        self._helpers = helpers
+        self._records = records
+
+    def of(self, record: str, field: Field) -> str:
+        """The function that reads an element of a field that `is_readable`."""
+        assert isinstance(field.type, Array)
+        element = field.type.element
+        name = self._names.claim(record, field.name, "at")
+        body = Lines()
+        start = f"payload + {field.position}" if field.position else "payload"
+        size = element.sizes.greatest
+        step = f"{size} * index" if size > 1 else "index"
+        body.add(f"const uint8_t *at = {start} + {step};")
+        arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
+        match element:
+            case Integer():
+                type_ = integer_type(element)
+                _read(element, body)
+            case Float():
+                type_ = self._helpers.float_type(element)
+                with self._helpers.public():
+                    body.add(f"return {self._helpers.load(element)}(at);")
+            case Struct():
+                type_ = "void"
+                arguments = (*arguments, f"{self._records.spelled(element)} *out")
+                with self._helpers.public():
+                    Load(self._helpers, body).pointed(element.fields, "out->")
+            case _:
+                raise AssertionError(element)
+        doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
+        return "\n".join([*doc, function(f"static inline {type_} {name}", arguments, body)])
 
 
 def _read(type_: Integer, body: Lines) -> None:

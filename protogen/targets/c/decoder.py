@@ -38,7 +38,7 @@ from protogen.targets.c.expressions import (
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.spelling import unsigned_type, width
-from protogen.targets.c.stuffing import Node, Stuffing, stuffing_of
+from protogen.targets.c.stuffing import Code, Node, Stuffing, stuffing_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -438,7 +438,7 @@ class DecoderView:
             and self.known_from > 0
             and not self.shares
             and not self.optional_size
-            and not (self.seven_bit and not self.gives_up_high_bytes)
+            and not (self.seven_bit and not self._high_bytes_show)
             and not self.tail_literals
             and not self.tail_numbers
             and not any(n.last < self.first_head for n in self.head_numbers if not n.identifies)
@@ -448,7 +448,13 @@ class DecoderView:
     @property
     def gives_up_high_bytes(self) -> bool:
         """Whether a high byte is either the identity of a frame, or ends what goes before it."""
-        return self.early_at_start and self.seven_bit and self.least_start == 128
+        all_end = self.early_at_start and self.seven_bit and not self.end_size
+        return all_end and self.least_start == 128
+
+    @property
+    def _high_bytes_show(self) -> bool:
+        """Whether no byte with its most significant bit set can get into a payload unseen."""
+        return self.gives_up_high_bytes or set(range(128, 256)) <= set(self.never_passed)
 
     @property
     def _is_stuffed_flatly(self) -> bool:
@@ -457,6 +463,61 @@ class DecoderView:
         kinds = ("codes", "lenient_escape", "base16")
         begins = self.region_begin == f"{self.first_head}U"
         return self.region_to_end and begins and self.stuffing.kind in kinds
+
+    @property
+    def whole(self) -> bool:
+        """Whether `feed` can take a whole frame at once, where one stands in the input."""
+        if self.stuffing is not None and (
+            self.stuffing.kind != "codes" or not self._is_stuffed_flatly or len(self.specials) > 5
+        ):
+            return False
+        return (
+            self.store in ("content", "wire")
+            and self.start in ("literal", "set")
+            and self.known_from > 0
+            and (self.length is not None or any(g.fixed is not None for g in self.groups))
+            and not self.shares
+            and not self.optional_size
+            and not self.tail_literals
+            and not self.tail_numbers
+            and not (self.start_protected and self.stuffing is None and not self._starts_show)
+        )
+
+    @property
+    def takes_content(self) -> bool:
+        """Whether a frame may be delivered from where it stands in the input."""
+        return self.whole and self.stuffing is None
+
+    @property
+    def _starts_show(self) -> bool:
+        """Whether a start inside a payload is seen because its bytes carry seven bits alone."""
+        is_high = self.start == "set" and self.least_start >= 128
+        return self.seven_bit and is_high and self.head_size == 1 and not self.tail_size
+
+    @property
+    def takes_content(self) -> bool:
+        """Whether a frame may be delivered from where it stands in the input."""
+        return self.whole and self.stuffing is None
+
+    @property
+    def _starts_show(self) -> bool:
+        """Whether a frame with a start inside is never taken, without a search for starts."""
+        return self.gives_up_high_bytes and self.head_size == 1 and not self.tail_size
+
+    @property
+    def specials(self) -> tuple[int, ...]:
+        """The bytes of a stuffed region that do not stand for themselves, or begin a delimiter."""
+        assert self.stuffing is not None
+        root = self.stuffing.nodes[0]
+        starts = set(self.never_passed) if self.start == "set" else set(self.geometry.start[:1])
+        taken = {branch.byte for branch in root.branches} | set(root.refused)
+        return tuple(sorted(taken | starts | set(self.geometry.end[:1])))
+
+    def codes_from(self, byte: int) -> tuple[Code, ...]:
+        """The sequences of the stuffing that begin with a byte, the longest first."""
+        codes = () if self.stuffing is None else self.stuffing.codes
+        found = [code for code in codes if code.sequence[0] == byte]
+        return tuple(sorted(found, key=lambda code: -len(code.sequence)))
 
     @property
     def never_passed(self) -> tuple[int, ...]:

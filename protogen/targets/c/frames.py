@@ -96,6 +96,17 @@ class FrameView:
         """Where the parts lie."""
         return self.decoder.geometry
 
+    @property
+    def sends_tail(self) -> bool:
+        """Whether something is sent behind the payload."""
+        return bool(self.geometry.end) or any(not step.in_head for step in self.stream)
+
+    @property
+    def begins_at(self) -> int | None:
+        """Bytes in front of the stuffed region, where these are few and always as many."""
+        text = self.region_begin.removesuffix("U")
+        return int(text) if text.isdigit() and int(text) <= 4 else None
+
 
 @dataclass(frozen=True, slots=True)
 class MessageFrame:

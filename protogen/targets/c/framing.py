@@ -12,6 +12,7 @@ from protogen.targets.c.frames import FrameView, MessageFrame, frame_view, messa
 from protogen.targets.c.handlers import Dispatch, dispatches
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
+from protogen.targets.c.writers import is_stateless
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +40,29 @@ class FramingView:
     """The frames, by their sender, that some message can be sent in byte by byte."""
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
+    stateless: bool
+    """Whether what is sent byte by byte goes out as it is."""
     writes: bool
     """Whether any of these hands over a byte."""
     cut_checks: frozenset[str]
     """The frames, by their sender, some of which a decoder might end too early."""
     idle_checks: frozenset[str]
     """Those some of which a decoder might take for an idle line."""
+
+    @property
+    def takes_whole(self) -> bool:
+        """Whether some decoder takes whole frames out of what it is fed."""
+        return any(decoder.whole for decoder in self.decoders)
+
+    @property
+    def unstuffs_whole(self) -> bool:
+        """Whether some of these frames are stuffed."""
+        return any(decoder.whole and decoder.stuffing for decoder in self.decoders)
+
+    @property
+    def finds_high(self) -> bool:
+        """Whether some of these frames have bytes that carry seven bits alone."""
+        return any(d.whole and d.seven_bit and not d.stuffing for d in self.decoders)
 
 
 def framing_view(
@@ -87,6 +105,7 @@ def framing_view(
             dict.fromkeys(item.frame.decoder.name for item in message_frames if item.sends)
         ),
         puts=puts,
+        stateless=is_stateless(protocol),
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
         cut_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_cut_check

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from math import inf, nextafter
 
@@ -30,24 +31,48 @@ class Helpers:
     def __init__(self, names: Names) -> None:
         self._names = names
         self._known: dict[str, str] = {}
-        self._texts: list[str] = []
+        self._functions: list[tuple[str, tuple[str, ...], Lines]] = []
+        self._public: set[str] = set()
+        self._is_public = False
         self.floats: set[int] = set()
         """Bits of the floats that were asked for."""
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The functions' definitions."""
-        return tuple(self._texts)
+        """The definitions of the functions that only the source calls."""
+        return self._texts("static", public=False)
+
+    @property
+    def public_texts(self) -> tuple[str, ...]:
+        """The definitions of those that inline functions of the header call as well."""
+        return self._texts("static inline", public=True)
+
+    def _texts(self, words: str, *, public: bool) -> tuple[str, ...]:
+        return tuple(
+            function(f"{words} {head}", arguments, body)
+            for head, arguments, body in self._functions
+            if (head.split()[-1] in self._public) == public
+        )
+
+    @contextmanager
+    def public(self) -> Iterator[None]:
+        """What is asked for meanwhile, an inline function of the header calls."""
+        self._is_public = True
+        yield
+        self._is_public = False
 
     def _name(self, key: str) -> str | None:
         """A new name, or None where the helper is there already."""
-        if key in self._known:
-            return None
-        self._known[key] = self._names.claim(key)
-        return self._known[key]
+        is_new = key not in self._known
+        if is_new:
+            self._known[key] = self._names.claim(key)
+        if self._is_public:
+            self._public.add(self._known[key])
+        return self._known[key] if is_new else None
 
     def _define(self, head: str, arguments: tuple[str, ...], body: Lines) -> None:
-        self._texts.append(function(f"static {head}", arguments, body))
+        """`head` ends with the name."""
+        self._functions.append((head, arguments, body))
 
     # --- reading --------------------------------------------------------------------------------
 
@@ -175,7 +200,7 @@ class Helpers:
         body = Lines()
         for byte in parted(layout, "value"):
             body.add(f"{self._names.prefix}_write(writer, {byte});")
-        arguments = (f"struct {self._names.prefix}_writer *writer",)
+        arguments = (self._names.writer,)
         self._define(f"void {name}", (*arguments, f"{unsigned_type(type_.bits)} value"), body)
         return name
 
@@ -188,7 +213,7 @@ class Helpers:
         body.add("const uint8_t *bytes = (const uint8_t *)from;")
         with body.block("for (size_t i = 0; i < size; i++)"):
             body.add(f"{self._names.prefix}_write(writer, bytes[i]);")
-        arguments = (f"struct {self._names.prefix}_writer *writer", "const void *from")
+        arguments = (self._names.writer, "const void *from")
         self._define(f"void {name}", (*arguments, "size_t size"), body)
         return name
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.model.fields import Field
 from protogen.model.types import Array, Fill, Float, Integer, Octets, Switch, Text
 from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers, is_plain, is_whole
@@ -37,6 +38,11 @@ class Load(Walk):
         super().__init__(helpers, lines)
         self._place = Place(lines, "const uint8_t *")
         self.uses_size = False
+
+    def pointed(self, fields: Sequence[Field], base: str) -> None:
+        """Take fields that lie where there is an `at` already; what counts is among them."""
+        self._place.settled()
+        self.fields(fields, base, {}, last=True)
 
     def constant(self, value: Value, scope: Scope) -> None:
         """It was checked, and nothing keeps it."""

@@ -11,14 +11,13 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Array, Integer, total
+from protogen.model.types import total
 from protogen.passes.capacity import is_delimited
 from protogen.targets.c import comments
-from protogen.targets.c.accessors import accessor
+from protogen.targets.c.accessors import Accessors, is_readable
 from protogen.targets.c.checking import Check, field_can_be_wrong, has_wrong_values
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines, function, prototype
@@ -102,6 +101,7 @@ class MessagePrinter:
         self._helpers = helpers
         self._sinks = sinks
         self._records = records
+        self._accessors = Accessors(names, helpers, records)
         self._error = f"{names.prefix.upper()}_ERROR_"
         self._ok = f"{names.prefix.upper()}_OK"
         self._result = f"enum {names.prefix}_result"
@@ -135,7 +135,7 @@ class MessagePrinter:
             bits=tuple(b for f in item.fields for b in bits_views(item.name, f, names)),
             prototypes=codec.prototypes(),
             accessors=tuple(
-                accessor(item.name, field, names) for field in item.fields if _is_readable(field)
+                self._accessors.of(item.name, field) for field in item.fields if is_readable(field)
             ),
             functions=codec.functions(),
             put_function=codec.put(),
@@ -160,6 +160,11 @@ class MessagePrinter:
     def helpers(self) -> Helpers:
         """The helpers of codecs."""
         return self._helpers
+
+    @property
+    def writer(self) -> str:
+        """The parameter of what writes into a writer."""
+        return self._names.writer
 
     @property
     def sinks(self) -> Helpers:
@@ -192,13 +197,6 @@ def _sizes(item: Message, names: Names) -> tuple[Macro, ...]:
     if sizes.fixed is not None:
         macros.insert(0, ("payload_size", sizes.fixed))
     return tuple(Macro(names.claim_macro(item.name, word), f"{size}u") for word, size in macros)
-
-
-def _is_readable(field: Field) -> bool:
-    """Whether elements can be read straight out of a payload."""
-    if field.position is None or field.const is not None or not isinstance(field.type, Array):
-        return False
-    return isinstance(field.type.element, Integer)
 
 
 class _Codec:
@@ -275,7 +273,7 @@ class _Codec:
         """The function that hands the payload to a writer."""
         lines = Lines()
         Put(self._printer.sinks, lines, self._prefix).message(self._item.fields)
-        writer = f"struct {self._prefix}_writer *writer"
+        writer = self._printer.writer
         return self._static("put", "void", [self._message, writer], lines)
 
     def _encode(self) -> str:

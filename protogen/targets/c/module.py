@@ -27,6 +27,7 @@ from protogen.targets.c.own_names import claim_own_names
 from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.storage import holds_values
+from protogen.targets.c.writers import writer_parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,8 @@ class Module:
     messages: tuple[MessageView, ...]
     helpers: tuple[str, ...]
     """Functions that the codecs share."""
+    public_helpers: tuple[str, ...]
+    """Those of them that inline functions of the header call."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""
     floats: frozenset[int]
@@ -69,7 +72,7 @@ class Module:
 
 def view(protocol: Protocol, options: COptions) -> Module:
     """The module of a protocol."""
-    names = Names(protocol.name)
+    names = Names(protocol.name, writer_parameter(protocol))
     claim_own_names(protocol, names)
     chosen = options.chosen(protocol)
     used = _Used(chosen)
@@ -93,6 +96,7 @@ def view(protocol: Protocol, options: COptions) -> Module:
         structs=struct_views,
         messages=messages,
         helpers=helpers.texts,
+        public_helpers=helpers.public_texts,
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
     )

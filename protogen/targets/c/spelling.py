@@ -16,8 +16,10 @@ class Names:
     number.
     """
 
-    def __init__(self, prefix: str) -> None:
+    def __init__(self, prefix: str, writer: str = "") -> None:
         self.prefix = prefix
+        self.writer = writer
+        """The parameter of functions that send byte by byte."""
         self._taken: set[str] = set()
 
     def claim(self, *words: str) -> str:

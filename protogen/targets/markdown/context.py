@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from protogen.model.fields import Field
 from protogen.model.framing import MessageFraming
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Integer
+from protogen.targets.c.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.walk import type_users
 
 
@@ -21,6 +23,7 @@ class Context:
     shared: frozenset[str]
     """The enums and flags that several fields use: they are explained once."""
     framings: Mapping[tuple[str, str], MessageFraming]
+    structs: tuple[StructSizes, StructSizes]
 
     @classmethod
     def of(cls, protocol: Protocol) -> Context:
@@ -32,11 +35,17 @@ class Context:
             for sender in protocol.senders
             for framing in sender.framing.messages
         }
-        return cls(protocol, users, shared, framings)
+        structs = StructSizes(NATURAL), StructSizes(BYTES)
+        return cls(protocol, users, shared, framings, structs)
 
     def framing(self, sender: str, message: str) -> MessageFraming:
         """Return the sizes and the rate of a message of this sender."""
         return self.framings[sender, message]
+
+    def struct_sizes(self, fields: Sequence[Field]) -> tuple[int, int]:
+        """Return the bytes of a message's struct in C: on 32-bit machines, and on an AVR."""
+        natural, small = self.structs
+        return natural.of(fields), small.of(fields)
 
 
 def by_frame(senders: Iterable[Sender]) -> list[list[Sender]]:

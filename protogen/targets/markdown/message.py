@@ -100,9 +100,15 @@ def _facts(context: Context, message: Message) -> Iterator[str]:
         if framing.per_second is not None:
             yield f"{rate(framing.per_second)} a second"
     yield f"payload {plural(message.sizes, 'byte')}"
+    yield _struct_size(*context.struct_sizes(message.fields))
     source = place(message.about.source)
     if source:
         yield source
+
+
+def _struct_size(natural: int, small: int) -> str:
+    size = f"C struct {plural(SizeSet.exactly(natural), 'byte')}"
+    return size if natural == small else f"{size} ({small} on AVR)"
 
 
 def _notes(senders: Iterable[Sender], message: Message) -> Iterator[str]:

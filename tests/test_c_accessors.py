@@ -1,0 +1,147 @@
+"""The inline functions that read an element of an array, held against decoders, on any machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from c_library import write_sources
+from c_structs import count_name
+from compiled import ROOT, SCHEMAS, name_of, protocol_of
+from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
+from tooling import require_tool
+
+from protogen.model.fields import Field
+from protogen.model.types import Array, Fill, Fixed, Struct
+from protogen.targets.c.accessors import is_readable
+from protogen.targets.c.module import view
+from protogen.targets.c.options import COptions
+
+ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
+PATHS = [
+    path
+    for path in (*SCHEMAS, *SAMPLERS)
+    if any(is_readable(field) for item in protocol_of(path).messages for field in item.fields)
+]
+SANITIZED = ["-O2", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+WAYS = {
+    **{
+        name: (compiler, ["-static", "-O2"], runner)
+        for name, (compiler, runner) in MACHINES.items()
+    },
+    "sanitized": ("clang", SANITIZED, []),
+}
+"""By name: a compiler, its flags, and what runs its programs."""
+
+CHECK = """
+static int check_{name}(const uint8_t *payload, size_t size) {{
+    static {struct} message;
+    memset(&message, 0, sizeof message);
+    if ({decode}(&message, payload, size) != {ok}) {{
+        return 0;
+    }}
+{loops}
+    return 1;
+}}
+"""
+LOOP = """
+    for (size_t i = 0; i < {count}; i++) {{
+        {type} found;
+        memset(&found, 0, sizeof found);
+        {read}
+        if (memcmp(&found, &message.{field}[i], sizeof found) != 0) {{
+            return 0;
+        }}
+    }}
+"""
+MAIN = """
+int main(void) {{
+{calls}
+    return 0;
+}}
+"""
+
+
+@pytest.mark.parametrize("path", PATHS, ids=name_of)
+@pytest.mark.parametrize("way", WAYS)
+def test_every_element_is_what_the_decoder_reads(way: str, path: Path, tmp_path: Path) -> None:
+    compiler, flags, runner = WAYS[way]
+    made = protocol_of(path)
+    write_sources(made, tmp_path, payloads_only=True)
+    (tmp_path / "main.c").write_text(program(path))
+    sources = ["main.c", f"{made.name}.c"]
+    run([require_tool(compiler), *FLAGS, *flags, *sources, "-o", "main"], tmp_path)
+    run([*map(require_tool, runner), tmp_path / "main"], tmp_path)
+
+
+def program(path: Path) -> str:
+    """What reads the elements of each payload in both ways, and ends with another code than 0."""
+    made = protocol_of(path)
+    parts = [f'#include "{made.name}.h"\n#include <string.h>\n']
+    calls: list[str] = []
+    for item in view(made, COptions()).messages:
+        case = Case(path, made.message(item.name))
+        fields = case.message.fields
+        readable = [field for field in fields if is_readable(field)]
+        if not readable:
+            continue
+        loops = "".join(loop(item.prefix, made.name, fields, field) for field in readable)
+        given = {"name": item.name, "struct": item.struct, "decode": item.decode, "loops": loops}
+        parts.append(CHECK.format(ok=f"{made.name.upper()}_OK", **given))
+        for payload in case.payloads():
+            # Just as many bytes as there are, for the sanitizer.
+            literal = ", ".join(map(str, payload)) or "0"
+            check = f"check_{item.name}((const uint8_t[]){{{literal}}}, {len(payload)})"
+            calls.append(f"    if (!{check}) {{ return {min(len(calls) + 1, 255)}; }}")
+    return "".join([*parts, MAIN.format(calls="\n".join(calls))])
+
+
+def loop(prefix: str, protocol: str, fields: tuple[Field, ...], field: Field) -> str:
+    """The comparison of all elements of a field."""
+    assert isinstance(field.type, Array)
+    name = f"{prefix}_{field.name}_at"
+    type_ = f"__typeof__(((struct {prefix} *)0)->{field.name}[0])"
+    read = f"found = {name}(payload, i);"
+    if isinstance(field.type.element, Struct):
+        read = f"{name}(payload, i, &found);"
+    return LOOP.format(count=count_of(fields, field), type=type_, read=read, field=field.name)
+
+
+def count_of(fields: tuple[Field, ...], field: Field) -> str:
+    """The number of a field's elements, in C."""
+    assert isinstance(field.type, Array)
+    extent = field.type.extent
+    if isinstance(extent, Fixed):
+        return f"{extent.count}u"
+    if isinstance(extent, Fill):
+        return f"message.{count_name(fields, field)}"
+    counter = next(item for item in fields if item.name == extent.field)
+    return f"message.{counter.name}" if counter.const is None else f"{counter.const}u"
+
+
+def test_there_is_one_for_each_array_of_elements_of_one_size_at_a_known_place() -> None:
+    made = protocol_of(ELEMENTS)
+    printed = {item.name: "\n".join(item.accessors) for item in view(made, COptions()).messages}
+    for text in (
+        "static inline float elements_floats_singles_at(const uint8_t *payload, size_t index) {",
+        "static inline elements_float64 elements_floats_doubles_at(",
+    ):
+        assert text in printed["floats"]
+    head = "static inline void elements_counted_structs_points_at("
+    assert head in printed["counted_structs"]
+    assert "struct elements_point *out) {" in printed["counted_structs"]
+    assert "_readings_at(" in printed["filled_structs"]
+    # What is in them depends on a field in front; they vary in size; there is nothing in them.
+    for name in ("chosen_outside", "varying", "without_values"):
+        assert printed[name] == ""
+
+
+def test_what_they_share_is_in_the_header_alone(tmp_path: Path) -> None:
+    write_sources(protocol_of(ELEMENTS), tmp_path)
+    header = (tmp_path / "elements.h").read_text()
+    source = (tmp_path / "elements.c").read_text()
+    for name in ("elements_load_u32be", "elements_load_f64le", "elements_copy"):
+        assert header.count(f"{name}(") > 1
+        assert f"static inline {name}" not in source
+        assert source.count(f" {name}(const") == 0
+    assert "elements_load_u16be(" in source  # The codecs call it, too.

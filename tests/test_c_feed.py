@@ -1,0 +1,58 @@
+"""The fast ways of C's `feed` find what `push` finds, byte by byte, and what Python finds."""
+
+from __future__ import annotations
+
+import platform
+from random import Random
+from typing import Any
+
+import pytest
+from c_engine import SANITIZERS, Process, check_events
+from compiled import DIALECTS, DOCUMENTS, FRAMINGS, module_at, name_of, protocol_of
+from corpus import material_of, stream_of
+from hypothesis import settings
+
+from protogen.fuzzing.c_calls import Step
+from protogen.model.protocol import Protocol
+from protogen.targets.c.framing import framing_view
+from protogen.targets.c.module import view
+from protogen.targets.c.options import COptions
+
+MACROS = {"none": "_FAST_FEED=0", "portable": "_FAST_FEED=1", "sse2": "_SSE2=1"}
+SEEDS = range(max(6, settings().max_examples // 8))
+
+
+def takes_whole(protocol: Protocol) -> bool:
+    """Whether the C of a protocol has a fast way."""
+    module = view(protocol, COptions())
+    return framing_view(protocol, module.messages, module.sinks, COptions()).takes_whole
+
+
+PATHS = [path for path in (*DOCUMENTS, *DIALECTS, *FRAMINGS) if takes_whole(protocol_of(path))]
+
+
+def test_the_fast_way_is_there_where_frames_tell_their_size_in_front() -> None:
+    found = {path.stem for path in PATHS}
+    assert {"rn1", "rflex", "matty", "bounded_length", "sync_length_crc"} <= found
+
+
+@pytest.mark.parametrize("events", ["all", "messages"])
+@pytest.mark.parametrize("way", MACROS)
+@pytest.mark.parametrize("path", PATHS, ids=name_of)
+def test_whole_streams_and_large_parts_of_them(path: Any, way: str, events: Any) -> None:
+    if way == "sse2" and platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("only x86 has SSE2")
+    protocol = protocol_of(path)
+    define = f"-D{protocol.name.upper()}{MACROS[way]}"
+    process = Process(protocol, COptions(events=events), ("-O0", define, *SANITIZERS))
+    for sender in protocol.senders:
+        material = material_of(path, sender.name)
+        for seed in SEEDS:
+            dice = Random(f"{path.stem} {sender.name} {seed}")
+            stream = stream_of(material, dice, 60).data
+            cuts = sorted(dice.randrange(len(stream)) for _ in range(seed % 4))
+            ends = [*cuts, len(stream)]
+            parts = [stream[low:high] for low, high in zip([0, *cuts], ends, strict=True)]
+            steps: list[Step] = [*(("feed", part) for part in parts), ("flush",)]
+            check_events(process, module_at(path), sender.name, steps)
+    process.close()
