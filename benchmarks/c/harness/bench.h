@@ -8,6 +8,10 @@
  *   subject_encode(which, frame, capacity)   frame of the message in BENCH_MESSAGE; 0 if refused
  *   subject_fill(which)             random values into BENCH_MESSAGE, the same for every subject
  *
+ * One that frames nothing defines SUBJECT_UNFRAMED and has, in the place of push and feed,
+ *
+ *   subject_decode(which, payload, size)
+ *
  * The RAM of BENCH_MESSAGE is the application's and nobody's cost.
  */
 #ifndef BENCH_H

@@ -14,7 +14,12 @@
 #define SAY (*(volatile uint8_t *)0x004A)
 
 static uint8_t seen;
+#if defined(SUBJECT_UNFRAMED)
+/* Holds a whole payload also before it is decoded: as a receiver has it. */
+static uint8_t frame_out[800];
+#else
 static uint8_t frame_out[256];
+#endif
 
 static void bench_seen(uint8_t which) {
     (void)which;
@@ -24,10 +29,12 @@ static void bench_seen(uint8_t which) {
 static void decode(uint8_t index) {
     const uint8_t *at = &frame_bytes[pgm_read_word(&frame_at[index])];
     const uint8_t *const end = at + pgm_read_word(&frame_size[index]);
-    MARK = 1;
 #if defined(SUBJECT_UNFRAMED)
-    subject_decode(pgm_read_byte(&frame_which[index]), at, (size_t)(end - at));
+    memcpy_P(frame_out, at, (size_t)(end - at));
+    MARK = 1;
+    subject_decode(pgm_read_byte(&frame_which[index]), frame_out, (size_t)(end - at));
 #else
+    MARK = 1;
     do {
         subject_push(pgm_read_byte(at));
         at++;

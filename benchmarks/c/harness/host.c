@@ -2,6 +2,8 @@
  * host frames WHICH COUNT       prints frames of random messages, in hex
  * host time WHICH COUNT BYTES   prints ns per frame of push, feed and encode over so many bytes
  * host stream                   reads a stream, prints after how many bytes each message came
+ * host messages SIZE            reads a stream, feeds it in pieces of that size, 0: pushes each byte;
+ *                               prints each message as the frame that is sent of it, in hex
  */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
@@ -13,12 +15,23 @@
 
 static size_t seen;
 static size_t place;
-static int prints;
+static enum { NOTHING, PLACES, MESSAGES } prints;
+
+static void print_frame(const uint8_t *frame, size_t size) {
+    size_t index;
+    for (index = 0; index < size; index++) {
+        printf("%02x", frame[index]);
+    }
+    printf("\n");
+}
 
 static void bench_seen(uint8_t which) {
     seen++;
-    if (prints) {
+    if (prints == PLACES) {
         printf("%zu %d\n", place, which);
+    } else if (prints == MESSAGES) {
+        static uint8_t frame[4096];
+        print_frame(frame, subject_encode(which, frame, sizeof frame));
     }
 }
 
@@ -92,27 +105,42 @@ static int time_all(uint8_t which, size_t count, size_t bytes) {
     return 0;
 }
 
+static void print_messages(size_t piece) {
+    const size_t size = fread(stream, 1, sizeof stream, stdin);
+    size_t at = 0;
+    prints = MESSAGES;
+    while (at < size) {
+        if (piece == 0) {
+            subject_push(stream[at++]);
+        } else {
+            const size_t part = size - at < piece ? size - at : piece;
+            subject_feed(&stream[at], part);
+            at += part;
+        }
+    }
+}
+
 int main(int count, char **arguments) {
     subject_init();
     if (count == 2) {
         int byte;
-        prints = 1;
+        prints = PLACES;
         while ((byte = getchar()) != EOF) {
             place++;
             subject_push((uint8_t)byte);
         }
         return 0;
     }
+    if (count == 3) {
+        print_messages((size_t)atol(arguments[2]));
+        return 0;
+    }
     if (count == 4) {
         const uint8_t which = (uint8_t)atoi(arguments[2]);
         int index;
         for (index = 0; index < atoi(arguments[3]); index++) {
-            size_t at;
             make(which, 1);
-            for (at = 0; at < total; at++) {
-                printf("%02x", stream[at]);
-            }
-            printf("\n");
+            print_frame(stream, total);
         }
         return 0;
     }

@@ -22,7 +22,11 @@ static void bench_seen(uint8_t which) {
 int main(void) {
     subject_init();
     for (;;) {
+#if defined(SUBJECT_UNFRAMED)
+        subject_decode(IN, FRAME, WORD);
+#else
         subject_push(IN);
+#endif
         if (RESULT != 0) {
             WORD = (uint16_t)subject_encode(IN, FRAME, WORD);
         }

@@ -484,11 +484,6 @@ class DecoderView:
         )
 
     @property
-    def takes_content(self) -> bool:
-        """Whether a frame may be delivered from where it stands in the input."""
-        return self.whole and self.stuffing is None
-
-    @property
     def _starts_show(self) -> bool:
         """Whether a start inside a payload is seen because its bytes carry seven bits alone."""
         is_high = self.start == "set" and self.least_start >= 128
