@@ -484,12 +484,6 @@ class DecoderView:
         )
 
     @property
-    def _starts_show(self) -> bool:
-        """Whether a start inside a payload is seen because its bytes carry seven bits alone."""
-        is_high = self.start == "set" and self.least_start >= 128
-        return self.seven_bit and is_high and self.head_size == 1 and not self.tail_size
-
-    @property
     def takes_content(self) -> bool:
         """Whether a frame may be delivered from where it stands in the input."""
         return self.whole and self.stuffing is None
