@@ -46,6 +46,14 @@ static uint16_t rn1_load_u16le(const uint8_t *at) {
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7) | ((uint16_t)at[2] << 14));
 }
 
+static uint16_t rn1_all_bits_u16(const uint16_t *numbers, size_t count) {
+    uint16_t all = 0u;
+    for (size_t i = 0; i < count; i++) {
+        all |= numbers[i];
+    }
+    return all;
+}
+
 /* --- move_manual ------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
@@ -685,10 +693,8 @@ static enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
     if (message->status > 127u) {
         return RN1_ERROR_RANGE;
     }
-    for (size_t i = 0; i < 360u; i++) {
-        if (message->distances[i] > 16383u) {
-            return RN1_ERROR_RANGE;
-        }
+    if (rn1_all_bits_u16(message->distances, 360u) > 16383u) {
+        return RN1_ERROR_RANGE;
     }
     return RN1_OK;
 }
@@ -747,10 +753,8 @@ static enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
     if (message->status > 127u) {
         return RN1_ERROR_RANGE;
     }
-    for (size_t i = 0; i < 7u; i++) {
-        if (message->distances[i] > 16383u) {
-            return RN1_ERROR_RANGE;
-        }
+    if (rn1_all_bits_u16(message->distances, 7u) > 16383u) {
+        return RN1_ERROR_RANGE;
     }
     return RN1_OK;
 }

@@ -49,6 +49,14 @@ static int16_t rn1_firmware_load_s14le(const uint8_t *at) {
     return (int16_t)((rn1_firmware_load_u14le(at) ^ 0x2000u) - 0x2000u);
 }
 
+static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count) {
+    uint16_t all = 0u;
+    for (size_t i = 0; i < count; i++) {
+        all |= numbers[i];
+    }
+    return all;
+}
+
 static void rn1_firmware_store_u32be(uint8_t *at, uint32_t value) {
     at[0] = (uint8_t)(value >> 28);
     at[1] = (uint8_t)((value >> 21) & 0x7Fu);
@@ -683,10 +691,8 @@ static enum rn1_firmware_result rn1_firmware_lidar_validate(const struct rn1_fir
     if (message->status > 127u) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    for (size_t i = 0; i < 360u; i++) {
-        if (message->distances[i] > 16383u) {
-            return RN1_FIRMWARE_ERROR_RANGE;
-        }
+    if (rn1_firmware_all_bits_u16(message->distances, 360u) > 16383u) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
 }
@@ -748,10 +754,8 @@ static enum rn1_firmware_result rn1_firmware_sonar_validate(const struct rn1_fir
     if (message->status > 127u) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    for (size_t i = 0; i < 3u; i++) {
-        if (message->distances[i] > 16383u) {
-            return RN1_FIRMWARE_ERROR_RANGE;
-        }
+    if (rn1_firmware_all_bits_u16(message->distances, 3u) > 16383u) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
 }

@@ -245,6 +245,21 @@ class Helpers:
         self._define(f"bool {name}", ("const void *at", "size_t size"), body)
         return name
 
+    def all_bits(self, type_: Integer) -> str:
+        """The function that says which bits are set in some number of an array."""
+        kind = unsigned_type(type_.bits)
+        key = f"all_bits_u{width(type_.bits)}"
+        name = self._name(key)
+        if name is None:
+            return self._known[key]
+        body = Lines()
+        body.add(f"{kind} all = 0u;")
+        with body.block("for (size_t i = 0; i < count; i++)"):
+            body.add("all |= numbers[i];")
+        body.add("return all;")
+        self._define(f"{kind} {name}", (f"const {kind} *numbers", "size_t count"), body)
+        return name
+
     def missing(self) -> str:
         """The function that says how many bytes a payload needs at least."""
         name = self._name("missing")

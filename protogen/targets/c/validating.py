@@ -85,6 +85,14 @@ def _outside(field: Field, type_: Integer, expression: str) -> str:
     return " && ".join([f"({both})" if len(tests) > 1 else both, *others])
 
 
+def _is_bounded_by_bits(field: Field, type_: Integer) -> bool:
+    """Whether numbers can't be sent just where some of their upper bits are set."""
+    least, greatest = _bounds(field, type_)
+    is_plain = not type_.signed and type_.role != "bool" and not _is_closed(type_)
+    fits = least == 0 and greatest & (greatest + 1) == 0 and bool(_outside(field, type_, "x"))
+    return is_plain and fits and not any(item.value > greatest for item in field.special)
+
+
 def _bounds(field: Field, type_: Integer) -> tuple[int, int]:
     if not field.ranged:
         return type_.least, type_.greatest
@@ -171,7 +179,12 @@ class Validate(Walk):
 
     def array(self, value: Value, type_: Array, count: int | str, scope: Scope) -> None:
         """Elements."""
-        if _can_be_refused(value.field, type_.element):
+        element = type_.element
+        if isinstance(element, Integer) and _is_bounded_by_bits(value.field, element):
+            amount = unsigned(count) if isinstance(count, int) else count
+            found = f"{self.helpers.all_bits(element)}({value.expression}, {amount})"
+            self._refuse(_outside(value.field, element, found))
+        elif _can_be_refused(value.field, element):
             with self.loop(count) as index:
                 self.value(self.element(value, type_, index), scope)
 
