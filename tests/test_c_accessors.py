@@ -82,7 +82,8 @@ def program(path: Path) -> str:
     for item in view(made, COptions()).messages:
         case = Case(path, made.message(item.name))
         fields = case.message.fields
-        readable = [field for field in fields if is_readable(field)]
+        printed = "\n".join(item.accessors)
+        readable = [field for field in fields if f" {item.prefix}_{field.name}_at(" in printed]
         if not readable:
             continue
         loops = "".join(loop(item.prefix, made.name, fields, field) for field in readable)

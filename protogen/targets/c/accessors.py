@@ -32,16 +32,16 @@ class Accessors:
         self._helpers = helpers
         self._records = records
 
-    def of(self, record: str, field: Field) -> str:
-        """The function that reads an element of a field that `is_readable`."""
+    def of(self, record: str, field: Field) -> tuple[str, ...]:
+        """The function that reads an element of a field that `is_readable`, if there is any."""
         assert isinstance(field.type, Array)
         element = field.type.element
-        name = self._names.claim(record, field.name, "at")
         body = Lines()
         start = f"payload + {field.position}" if field.position else "payload"
         size = element.sizes.greatest
         step = f"{size} * index" if size > 1 else "index"
-        body.add(f"const uint8_t *at = {start} + {step};")
+        place = f"const uint8_t *at = {start} + {step};"
+        body.add(place)
         arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
         match element:
             case Integer():
@@ -58,8 +58,13 @@ class Accessors:
                     Load(self._helpers, body).pointed(element.fields, "out->")
             case _:
                 raise AssertionError(element)
+        body.drop_unused_places()
+        if place not in map(str.strip, body.lines):
+            return ()
+        name = self._names.claim(record, field.name, "at")
         doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
-        return "\n".join([*doc, function(f"static inline {type_} {name}", arguments, body)])
+        text = function(f"static inline {type_} {name}", arguments, body)
+        return ("\n".join([*doc, text]),)
 
 
 def _read(type_: Integer, body: Lines) -> None:

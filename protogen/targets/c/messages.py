@@ -135,7 +135,10 @@ class MessagePrinter:
             bits=tuple(b for f in item.fields for b in bits_views(item.name, f, names)),
             prototypes=codec.prototypes(),
             accessors=tuple(
-                self._accessors.of(item.name, field) for field in item.fields if is_readable(field)
+                text
+                for field in item.fields
+                if is_readable(field)
+                for text in self._accessors.of(item.name, field)
             ),
             functions=codec.functions(),
             put_function=codec.put(),
