@@ -468,7 +468,10 @@ class DecoderView:
     def whole(self) -> bool:
         """Whether `feed` can take a whole frame at once, where one stands in the input."""
         if self.stuffing is not None and (
-            self.stuffing.kind != "codes" or not self._is_stuffed_flatly or len(self.specials) > 5
+            self.stuffing.kind != "codes"
+            or not self._is_stuffed_flatly
+            or len(self.specials) > 5
+            or any(len(code.sequence) < 2 for code in self.stuffing.codes)
         ):
             return False
         return (
@@ -540,7 +543,14 @@ class DecoderView:
     @property
     def wire_ends(self) -> bool:
         """Whether a checksum covers stuffed bytes, so that their places are kept."""
-        return self.store == "both" and any(item.over_wire for item in self.checksums)
+        over_wire = [cover for item in self.checksums if item.over_wire for cover in item.covers]
+        return self.store == "both" and any(not cover.literal for cover in over_wire)
+
+    @property
+    def sees_content(self) -> bool:
+        """Whether something is done with a byte of content besides counting it."""
+        looks = self.head_size or self.seven_bit or self.tail_literals or self.tail_numbers
+        return self.store != "wire" or bool(looks)
 
     @property
     def buffer_size(self) -> int:
