@@ -12,7 +12,19 @@ from typing import Annotated
 
 import typer
 
-from protogen.cli import check, decode, encode, explain, fuzz, generate, schema_json, size
+from protogen.cli import (
+    breaking,
+    check,
+    decode,
+    diff,
+    encode,
+    explain,
+    fuzz,
+    generate,
+    rules,
+    schema_json,
+    size,
+)
 from protogen.cli.command import Command
 from protogen.cli.exits import guarded
 
@@ -32,6 +44,9 @@ app.command("decode", cls=Command, epilog=decode.EXAMPLE)(guarded(decode.decode)
 app.command("encode", cls=Command, epilog=encode.EXAMPLE)(guarded(encode.encode))
 app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.explain))
 app.command("fuzz", cls=Command, epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
+app.command("diff", cls=Command, epilog=diff.EXAMPLE)(guarded(diff.diff))
+app.command("breaking", cls=Command, epilog=breaking.EXAMPLE)(guarded(breaking.breaking))
+app.command("rules", cls=Command, epilog=rules.EXAMPLE)(guarded(rules.rules))
 app.command("size", cls=Command, epilog=size.EXAMPLE)(guarded(size.size))
 app.command("schema-json", cls=Command, epilog=schema_json.EXAMPLE)(
     guarded(schema_json.schema_json)

@@ -162,7 +162,9 @@ def _integer_choices(field: Field, type: Integer, need: Need | None) -> Choices:
         values = values if values or closed else _distinct([least, greatest])
         greatest = min(greatest, least + _USUAL_COUNT)
     if closed:
-        return Choices(values, lambda random: random.choice(values))
+        # Without a value that can be sent, one that the encoder refuses has to do.
+        sendable = values or [least]
+        return Choices(sendable, lambda random: random.choice(sendable))
     return Choices(values, lambda random: _any_integer(least, greatest, random))
 
 

@@ -1,0 +1,125 @@
+"""`protogen breaking`: a gate for changes that hurt the other end of the wire."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.diff import print_findings
+from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+
+if TYPE_CHECKING:
+    from protogen.evolution.compare import Comparison
+    from protogen.evolution.findings import Finding, Gate
+
+EXAMPLE = "Example: protogen breaking schemas --against git:main"
+
+
+class BreakingFormat(StrEnum):
+    """How findings are printed."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+def breaking(
+    versions: Annotated[
+        list[str],
+        typer.Argument(metavar="[OLD] NEW", help="Schemas, folders of them, or git:REV:PATH."),
+    ],
+    against: Annotated[
+        str | None,
+        typer.Option(metavar="VERSION", help="What NEW is held against: git:REV, or a path."),
+    ] = None,
+    use: Annotated[
+        list[str] | None,
+        typer.Option(metavar="RULE", help="Rules or categories that count. Default: WIRE, VALUE."),
+    ] = None,
+    except_: Annotated[
+        list[str] | None, typer.Option("--except", metavar="RULE", help="Rules that do not count.")
+    ] = None,
+    ignore: Annotated[
+        list[str] | None,
+        typer.Option(metavar="[RULE=]PLACE", help="Places that do not count, as in rn1.gyro.*."),
+    ] = None,
+    format: Annotated[
+        BreakingFormat, typer.Option(help="For people, programs, or GitHub Actions.")
+    ] = BreakingFormat.TEXT,
+) -> int:
+    """Refuse changes that the other end of the wire would misread or lose.
+
+    Each finding has a rule, who is hurt and how, and a frame that shows it. Exits with 0 if nothing
+    is broken, 1 if something is.
+    """
+    import json
+
+    from protogen.cli.console import console
+    from protogen.cli.versions import both
+    from protogen.evolution.findings import findings
+    from protogen.evolution.report import as_json
+
+    gate = _gate(use or [], except_ or [], ignore or [])
+    stopped = False
+    reports = []
+    out = console()
+    for old, new in _pairs(versions, against):
+        with both(old, new) as pairs:
+            for name, before, after in pairs:
+                if before is None or after is None:
+                    continue
+                comparison, found = findings(before, after, gate)
+                stopped = stopped or bool(found)
+                if format is BreakingFormat.JSON:
+                    reports.append({"schema": name} | as_json(comparison, found))
+                elif format is BreakingFormat.GITHUB:
+                    _print_github(comparison, found)
+                elif found:
+                    print_findings(out, comparison, found)
+    if format is BreakingFormat.JSON:
+        typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
+    elif format is BreakingFormat.TEXT and not stopped:
+        out.print("nothing is broken", style="bold")
+    return FINDINGS if stopped else CLEAN
+
+
+def _pairs(versions: list[str], against: str | None) -> list[tuple[str, str]]:
+    if against is not None:
+        return [(against, new) for new in versions]
+    if len(versions) != 2:
+        message = "give OLD and NEW, or NEW with --against"
+        raise UsageError(message, "protogen breaking schemas --against git:main")
+    return [(versions[0], versions[1])]
+
+
+def _gate(use: list[str], except_: list[str], ignore: list[str]) -> Gate:
+    from protogen.evolution.findings import Gate
+    from protogen.evolution.rules import BY_NAME, Category
+    from protogen.problems import hint_for
+
+    places: dict[str, list[str]] = {}
+    for item in ignore:
+        rule, equals, place = item.rpartition("=")
+        places.setdefault(rule if equals else "*", []).append(place)
+    gate = Gate(tuple(use) or Gate().use, tuple(except_), places)
+    for name in gate.unknown():
+        known = [*BY_NAME, *(category.value for category in Category)]
+        message = f"there is no rule `{name}`"
+        raise UsageError(message, hint_for(name, known) or "protogen rules lists them")
+    return gate
+
+
+def _print_github(comparison: Comparison, found: list[Finding]) -> None:
+    from protogen.evolution.report import title
+
+    new = {message.name: message for message in comparison.new.messages}
+    for item in found:
+        name = item.change.message or ""
+        message = new.get(comparison.messages.get(name, name))
+        where = f" file={comparison.new.files[0]}"
+        if message is not None:
+            where = f" file={message.span.file},line={message.span.line}"
+        words = "%0A".join([title(item), *(witness.words for witness in item.witnesses)])
+        typer.echo(f"::error{where},title={item.rule.name}::{words}")

@@ -1,0 +1,35 @@
+"""One difference between two versions of a protocol."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """A difference that has one rule."""
+
+    rule: str
+    """The name in `protogen.evolution.rules`."""
+    place: str
+    """Where it is: `gyro.int_x`, `frame.checksum`, `enum axis`."""
+    text: str
+    """What changed, in words: `from uint16 little to uint16 big`."""
+    message: str | None = None
+    """The message, by its name in OLD where it has one; None for what concerns all."""
+    sender: str | None = None
+    """The sender, by its name in OLD; None for every one that has the message."""
+    path: str | None = None
+    """The field in the message: `encoders` or `limits.upper`."""
+    now: str | None = None
+    """The path in NEW of a field that has another name there."""
+    old_part: str | None = None
+    new_part: str | None = None
+    """The names of a frame's part that has another one now."""
+    places: tuple[str, ...] = field(default=())
+    """Other places with the same change, as an enum has that several fields use."""
+
+
+def named(old: str, new: str) -> str:
+    """The words for a value that changed."""
+    return f"from {old} to {new}"

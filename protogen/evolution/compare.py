@@ -1,0 +1,217 @@
+"""Two resolved protocols -> what changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from protogen.evolution.change import Change, named
+from protogen.evolution.compare_fields import FieldComparison
+from protogen.evolution.compare_frames import compare_frames
+from protogen.evolution.rules import BY_NAME, Category
+from protogen.model.messages import Message
+from protogen.model.protocol import Link, Protocol, Sender
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two versions of a protocol, and what changed between them."""
+
+    old: Protocol
+    new: Protocol
+    endpoints: dict[str, str]
+    """Senders of OLD with their names in NEW."""
+    messages: dict[str, str]
+    """Messages of OLD with their names in NEW."""
+    changes: tuple[Change, ...]
+
+
+def compare(old: Protocol, new: Protocol) -> Comparison:
+    """Compare the models; texts for people, examples and the order of keys don't count."""
+    endpoints = _paired_endpoints(old, new)
+    messages = _paired_messages(old, new, endpoints)
+    found = list(_changes(old, new, endpoints, messages))
+    if _is_unbumped(old, new, found):
+        words = f"both are {new.version}"
+        found.append(Change(rule="version-not-bumped", place="version", text=words))
+    return Comparison(old, new, endpoints, messages, tuple(_joined(found)))
+
+
+def _changes(
+    old: Protocol, new: Protocol, endpoints: dict[str, str], messages: dict[str, str]
+) -> Iterator[Change]:
+    if old.name != new.name:
+        yield Change(rule="protocol-renamed", place="protocol", text=named(old.name, new.name))
+    for before, after in endpoints.items():
+        if before != after:
+            yield Change(
+                rule="endpoint-renamed", place=f"endpoint {before}", text=named(before, after)
+            )
+    if _line(old.link) != _line(new.link):
+        yield Change(rule="link", place="link", text=named(_line(old.link), _line(new.link)))
+    for sender in old.senders:
+        other = _sender(new, endpoints.get(sender.name, sender.name))
+        if other is not None:
+            yield from compare_frames(sender, other)
+            yield from _overloads(sender, other, messages)
+            yield from _identities(sender, other, new, messages)
+    yield from _messages(old, new, endpoints, messages)
+
+
+# --- messages -------------------------------------------------------------------------------------
+
+
+def _messages(
+    old: Protocol, new: Protocol, endpoints: dict[str, str], messages: dict[str, str]
+) -> Iterator[Change]:
+    after = {message.name: message for message in new.messages}
+    for message in old.messages:
+        name = messages.get(message.name)
+        if name is None:
+            yield _deleted(message, new, endpoints)
+            continue
+        other = after[name]
+        if name != message.name:
+            yield _change("message-renamed", message, named(message.name, name))
+        senders = tuple(endpoints.get(item, item) for item in message.senders)
+        if set(senders) != set(other.senders):
+            words = named(", ".join(message.senders), ", ".join(other.senders))
+            yield _change("message-sender", message, words)
+        found = list(FieldComparison(message.name).compare(message.fields, other.fields))
+        yield from found
+        if message.sizes != other.sizes and not any(_is_wire(item) for item in found):
+            yield _change("message-size", message, named(str(message.sizes), str(other.sizes)))
+    known = set(messages.values())
+    for message in new.messages:
+        if message.name not in known:
+            text = f"{', '.join(message.senders)} sends it, {_identity(message)}"
+            yield _change("message-added", message, text)
+
+
+def _deleted(message: Message, new: Protocol, endpoints: dict[str, str]) -> Change:
+    reserved = {(item.sender, item.identity) for item in new.reserved.identities}
+    senders = [endpoints.get(item, item) for item in message.senders]
+    if all((sender, message.identity) in reserved for sender in senders):
+        return _change("message-reserved", message, f"{_identity(message)} is reserved")
+    return _change("message-deleted", message, f"{_identity(message)} is free for another meaning")
+
+
+def _identities(
+    old: Sender, new: Sender, protocol: Protocol, messages: dict[str, str]
+) -> Iterator[Change]:
+    after = {message.name: message for message in new.messages}
+    owners: dict[tuple[int, ...], list[str]] = {}
+    for message in new.messages:
+        owners.setdefault(message.identity, []).append(message.name)
+    for message in old.messages:
+        name = messages.get(message.name)
+        if name in after and after[name].identity != message.identity:
+            words = named(_shown(message.identity), _shown(after[name].identity))
+            yield replace(_change("message-identity", message, words), sender=old.name)
+        taken = [item for item in owners.get(message.identity, ()) if item != name]
+        mine = {messages.get(m.name) for m in old.messages if m.identity == message.identity}
+        taken = [item for item in taken if item not in mine]
+        if taken:
+            words = f"{_shown(message.identity)} was {message.name}, is {', '.join(taken)}"
+            yield replace(_change("identity-reused", message, words), sender=old.name)
+
+
+def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:
+    before = {o.identity: messages.get(o.yields or "", o.yields) for o in old.overloads}
+    after = {o.identity: o.yields for o in new.overloads}
+    for identity in before.keys() & after.keys():
+        if before[identity] != after[identity]:
+            words = named(before[identity] or "told by size", after[identity] or "told by size")
+            yield Change(
+                rule="message-overload",
+                place=f"{old.name} {_shown(identity)}",
+                text=words,
+                sender=old.name,
+            )
+
+
+def _change(rule: str, message: Message, text: str) -> Change:
+    return Change(rule=rule, place=message.name, text=text, message=message.name)
+
+
+def _identity(message: Message) -> str:
+    return f"identity {_shown(message.identity)}" if message.identity else "without an identity"
+
+
+def _shown(identity: tuple[int, ...]) -> str:
+    return " ".join(f"0x{value:02X}" for value in identity) or "none"
+
+
+# --- what belongs together ------------------------------------------------------------------------
+
+
+def _paired_endpoints(old: Protocol, new: Protocol) -> dict[str, str]:
+    before = [endpoint.name for endpoint in old.endpoints]
+    after = [endpoint.name for endpoint in new.endpoints]
+    gone = [name for name in before if name not in after]
+    fresh = [name for name in after if name not in before]
+    pairs = {name: name for name in before if name in after}
+    if len(before) == len(after) and [before.index(n) for n in gone] == [
+        after.index(n) for n in fresh
+    ]:
+        pairs |= dict(zip(gone, fresh, strict=True))
+    return pairs
+
+
+def _paired_messages(old: Protocol, new: Protocol, endpoints: dict[str, str]) -> dict[str, str]:
+    """Messages with the same name; else with the same senders, identity and layout."""
+    after = {message.name for message in new.messages}
+    before = {message.name for message in old.messages}
+    pairs = {name: name for name in before & after}
+    fresh = [message for message in new.messages if message.name not in before]
+    for message in old.messages:
+        if message.name in after:
+            continue
+        senders = {endpoints.get(item, item) for item in message.senders}
+        for other in fresh:
+            same = (set(other.senders), other.identity) == (senders, message.identity)
+            if same and _layout(other) == _layout(message) and message.identity:
+                pairs[message.name] = other.name
+                fresh.remove(other)
+                break
+    return pairs
+
+
+def _layout(message: Message) -> list[object]:
+    return [(field.type, field.position) for field in message.fields]
+
+
+def _sender(protocol: Protocol, name: str) -> Sender | None:
+    return next((item for item in protocol.senders if item.name == name), None)
+
+
+def _line(link: Link) -> str:
+    return f"{link.baud} baud {link.data_bits}{link.parity[0].upper()}{link.stop_bits}"
+
+
+# --- the whole ------------------------------------------------------------------------------------
+
+
+def _is_wire(change: Change) -> bool:
+    return BY_NAME[change.rule].category is Category.WIRE
+
+
+def _is_unbumped(old: Protocol, new: Protocol, found: Iterable[Change]) -> bool:
+    """Whether two meanings have one version."""
+    if new.version is None or new.version != old.version:
+        return False
+    grave = (Category.WIRE, Category.VALUE)
+    return any(BY_NAME[change.rule].category in grave for change in found)
+
+
+def _joined(found: Iterable[Change]) -> Iterator[Change]:
+    """The same change of a type that many fields have, once."""
+    kept: dict[tuple[str, str, str], Change] = {}
+    for change in found:
+        shared = change.rule.startswith(("enum-", "flag-")) or change.rule == "bits"
+        key = (change.rule, change.text, "" if shared else change.place)
+        if key in kept:
+            kept[key] = replace(kept[key], places=(*kept[key].places, change.place))
+        else:
+            kept[key] = change
+    yield from kept.values()

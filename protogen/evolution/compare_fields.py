@@ -1,0 +1,151 @@
+"""What changed between the fields of two messages or structs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from protogen.evolution.change import Change, named
+from protogen.evolution.compare_types import TypeComparison
+from protogen.model.fields import Field
+from protogen.model.readings import decimal, type_name
+
+
+@dataclass(frozen=True, slots=True)
+class FieldComparison:
+    """Compares fields, and what is inside them, of one message."""
+
+    message: str
+
+    def compare(
+        self, old: Sequence[Field], new: Sequence[Field], prefix: str = ""
+    ) -> Iterator[Change]:
+        """Yield what changed; `prefix` is the path of the struct that the fields are in."""
+        renamed = dict(_renamed(old, new))
+        after = {field.name: field for field in new}
+        kept = {renamed.get(field.name, field.name) for field in old} & after.keys()
+        places = {field.name: _place(new, index, kept) for index, field in enumerate(new)}
+        for index, field in enumerate(old):
+            path = _joined(prefix, field.name)
+            other = after.get(renamed.get(field.name, field.name))
+            if other is None:
+                yield self._change("field-deleted", path, _described(field))
+                continue
+            if other.name != field.name:
+                change = self._change("field-renamed", path, named(field.name, other.name))
+                yield replace(change, now=_joined(prefix, other.name))
+            words = _moved(_place(old, index, kept, renamed), places[other.name])
+            if words:
+                yield self._change("field-moved", path, words)
+            yield from self._field(field, other, path)
+        known = {field.name for field in old} | set(renamed.values())
+        for field in new:
+            if field.name not in known:
+                yield self._change("field-added", _joined(prefix, field.name), _described(field))
+
+    def _change(self, rule: str, path: str, text: str) -> Change:
+        place = f"{self.message}.{path}"
+        return Change(rule=rule, place=place, text=text, message=self.message, path=path)
+
+    def _field(self, old: Field, new: Field, path: str) -> Iterator[Change]:
+        types = TypeComparison(self._change, self.compare)
+        yield from types.compare(old.type, new.type, path)
+        if old.const != new.const:
+            yield self._change("field-constant", path, named(_shown(old.const), _shown(new.const)))
+        if old.default != new.default:
+            words = named(_shown(old.default), _shown(new.default))
+            yield self._change("field-default", path, words)
+        if old.type == new.type or old.ranged or new.ranged:
+            yield from self._range(old, new, path)
+        if old.scale != new.scale:
+            words = named(decimal(old.scale), decimal(new.scale))
+            yield self._change("field-scale", path, words)
+        if old.offset != new.offset:
+            words = named(decimal(old.offset), decimal(new.offset))
+            yield self._change("field-offset", path, words)
+        if old.unit != new.unit:
+            yield self._change("field-unit", path, named(old.unit or "none", new.unit or "none"))
+        before = {item.name: item.value for item in old.special}
+        after = {item.name: item.value for item in new.special}
+        if before != after:
+            words = named(_specials(before), _specials(after))
+            yield self._change("field-special", path, words)
+
+    def _range(self, old: Field, new: Field, path: str) -> Iterator[Change]:
+        if (old.least, old.greatest) == (new.least, new.greatest):
+            return
+        words = named(_bounds(old), _bounds(new))
+        narrower = _above(new.least, old.least) or _above(old.greatest, new.greatest, up=True)
+        rule = "field-range-narrowed" if narrower else "field-range-widened"
+        yield self._change(rule, path, words)
+
+
+def _above(one: Fraction | None, other: Fraction | None, *, up: bool = False) -> bool:
+    """Whether a bound is tighter than another; `up` compares greatest values, in swapped order."""
+    if up:
+        return other is not None and (one is None or other < one)
+    return one is not None and (other is None or one > other)
+
+
+def _renamed(old: Sequence[Field], new: Sequence[Field]) -> Iterator[tuple[str, str]]:
+    """Fields that are the same but for their names."""
+    before = {field.name for field in old}
+    after = {field.name for field in new}
+    gone = [(index, field) for index, field in enumerate(old) if field.name not in after]
+    fresh = {index: field for index, field in enumerate(new) if field.name not in before}
+    for index, field in gone:
+        other = fresh.get(index)
+        if other and (field.type, field.position) == (other.type, other.position):
+            yield field.name, other.name
+
+
+def _place(
+    fields: Sequence[Field],
+    index: int,
+    kept: set[str],
+    renamed: dict[str, str] | None = None,
+) -> tuple[int | None, tuple[str, ...]]:
+    """The byte where a field begins; where that varies, those of `kept` that are in front of it."""
+    position = fields[index].position
+    names = [(renamed or {}).get(field.name, field.name) for field in fields[:index]]
+    found = sorted(name for name in names if name in kept)
+    return position, () if position is not None else tuple(found)
+
+
+def _moved(old: tuple[int | None, tuple[str, ...]], new: tuple[int | None, tuple[str, ...]]) -> str:
+    if old == new:
+        return ""
+    if old[0] is not None and new[0] is not None:
+        return named(f"byte {old[0]}", f"byte {new[0]}")
+    return named(_words(old), _words(new))
+
+
+def _words(place: tuple[int | None, tuple[str, ...]]) -> str:
+    position, names = place
+    return f"byte {position}" if position is not None else f"behind {', '.join(names) or 'nothing'}"
+
+
+def _described(field: Field) -> str:
+    size = field.size
+    bytes_ = "" if size is None else f", {size} byte{'' if size == 1 else 's'}"
+    at = "" if field.position is None else f" at byte {field.position}"
+    return f"{type_name(field.type)}{at}{bytes_}"
+
+
+def _joined(prefix: str, name: str) -> str:
+    return f"{prefix}.{name}" if prefix else name
+
+
+def _shown(value: object) -> str:
+    return "none" if value is None else repr(value)
+
+
+def _specials(values: dict[str, int]) -> str:
+    return ", ".join(f"{name} {value}" for name, value in values.items()) or "none"
+
+
+def _bounds(field: Field) -> str:
+    least = "-" if field.least is None else decimal(field.least)
+    greatest = "-" if field.greatest is None else decimal(field.greatest)
+    return f"{least}..{greatest}"

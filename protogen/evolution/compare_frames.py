@@ -1,0 +1,175 @@
+"""What changed between the frames of one sender."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from protogen.evolution.change import Change, named
+from protogen.model.frame import (
+    ChecksumPart,
+    CounterPart,
+    Frame,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    Transparency,
+    ValuePart,
+)
+from protogen.model.protocol import Sender
+from protogen.model.readings import type_name
+from protogen.model.types import Integer
+
+
+def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
+    """Yield what changed around the payloads of a sender."""
+    yield from _Frames(old.name).compare(old.frame, new.frame)
+    before, after = old.framing.greatest, new.framing.greatest
+    if before != after:
+        yield Change(
+            rule="frame-size-limit",
+            place=f"{old.name} frame",
+            text=named(f"{before} bytes", f"{after}"),
+            sender=old.name,
+        )
+
+
+class _Frames:
+    def __init__(self, sender: str) -> None:
+        self._sender = sender
+
+    def _change(self, rule: str, part: str, text: str) -> Change:
+        place = f"{self._sender} frame.{part}"
+        return Change(rule=rule, place=place, text=text, sender=self._sender)
+
+    def compare(self, old: Frame, new: Frame) -> Iterator[Change]:
+        renamed = _renamed(old, new)
+        before = [renamed.get(part.name, part.name) for part in old.parts]
+        after = [part.name for part in new.parts]
+        kept = [name for name in before if name in after]
+        order = [name for name in after if name in before]
+        by_name = {part.name: part for part in new.parts}
+        for part, name in zip(old.parts, before, strict=True):
+            if name not in by_name:
+                yield self._change("frame-part-deleted", part.name, _kind(part))
+                continue
+            if name != part.name:
+                change = self._change("frame-part-renamed", part.name, named(part.name, name))
+                yield replace(change, old_part=part.name, new_part=name)
+            if kept.index(name) != order.index(name):
+                words = named(f"place {kept.index(name) + 1}", f"{order.index(name) + 1}")
+                yield self._change("frame-part-moved", part.name, words)
+            yield from self._part(part, by_name[name], renamed)
+        for part in new.parts:
+            if part.name not in before:
+                yield self._change("frame-part-added", part.name, _kind(part))
+        yield from self._transparency(old.transparency, new.transparency, renamed)
+
+    def _part(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
+        if type(old) is not type(new):
+            yield self._change("frame-part-kind", old.name, named(_kind(old), _kind(new)))
+            return
+        if isinstance(old, LiteralPart) and isinstance(new, LiteralPart):
+            if old.bytes != new.bytes:
+                words = named(old.bytes.hex(" ").upper(), new.bytes.hex(" ").upper())
+                yield self._change("frame-literal", old.name, words)
+        elif isinstance(old, NumberPart) and isinstance(new, NumberPart):
+            yield from self._number(old, new, renamed)
+        elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
+            yield from self._checksum(old, new, renamed)
+
+    def _number(
+        self, old: NumberPart, new: NumberPart, renamed: dict[str, str]
+    ) -> Iterator[Change]:
+        if _layout(old.type) != _layout(new.type):
+            words = named(type_name(old.type), type_name(new.type))
+            yield self._change("frame-part-type", old.name, words)
+        elif (old.least, old.greatest) != (new.least, new.greatest):
+            is_length = isinstance(old, LengthPart)
+            words = named(f"{old.least}..{old.greatest}", f"{new.least}..{new.greatest}")
+            rule = "frame-length-range" if is_length else "frame-part-range"
+            yield self._change(rule, old.name, words)
+        if isinstance(old, LengthPart) and isinstance(new, LengthPart):
+            counts = [renamed.get(name, name) for name in old.counts]
+            if counts != list(new.counts):
+                words = named(_listed(old.counts), _listed(new.counts))
+                yield self._change("frame-length-rule", old.name, words)
+        before, after = _default(old), _default(new)
+        if before != after:
+            yield self._change("frame-part-default", old.name, named(str(before), str(after)))
+
+    def _checksum(
+        self, old: ChecksumPart, new: ChecksumPart, renamed: dict[str, str]
+    ) -> Iterator[Change]:
+        if (old.algorithm, _layout(old.type)) != (new.algorithm, _layout(new.type)):
+            before = f"{old.algorithm.name} in {type_name(old.type)}"
+            after = f"{new.algorithm.name} in {type_name(new.type)}"
+            yield self._change("frame-checksum-algorithm", old.name, named(before, after))
+        covers = [renamed.get(name, name) for name in old.covers]
+        if (covers, old.over_wire, old.when_payload) != (
+            list(new.covers),
+            new.over_wire,
+            new.when_payload,
+        ):
+            words = named(_coverage(old), _coverage(new))
+            yield self._change("frame-checksum-coverage", old.name, words)
+
+    def _transparency(
+        self, old: Transparency | None, new: Transparency | None, renamed: dict[str, str]
+    ) -> Iterator[Change]:
+        if _essence(old, renamed) != _essence(new, {}):
+            words = named(_stuffing(old), _stuffing(new))
+            yield self._change("frame-transparency", "transparency", words)
+        elif old is not None and new is not None and old.lenient != new.lenient:
+            words = "sloppy encodings are " + ("taken" if new.lenient else "refused")
+            yield self._change("frame-leniency", "transparency", words)
+
+
+def _renamed(old: Frame, new: Frame) -> dict[str, str]:
+    """Parts that are the same but for their names."""
+    before = {part.name for part in old.parts}
+    after = {part.name for part in new.parts}
+    found = {}
+    for one, other in zip(old.parts, new.parts, strict=False):
+        if one.name not in after and other.name not in before and type(one) is type(other):
+            found[one.name] = other.name
+    return found
+
+
+def _default(part: Part) -> int | None:
+    return part.default if isinstance(part, CounterPart | ValuePart) else None
+
+
+def _layout(type: Integer) -> tuple[object, ...]:
+    """What its bytes say; how the number is shown does not count."""
+    return type.bits, type.signed, type.byte_bits, type.byte_order
+
+
+def _kind(part: Part) -> str:
+    name = type(part).__name__.removesuffix("Part").lower()
+    if isinstance(part, NumberPart | ChecksumPart):
+        return f"{name}, {type_name(part.type)}"
+    return f"{name} {part.bytes.hex(' ').upper()}" if isinstance(part, LiteralPart) else name
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names)
+
+
+def _coverage(part: ChecksumPart) -> str:
+    wire = " on the wire" if part.over_wire else ""
+    empty = ", absent without a payload" if part.when_payload else ""
+    return f"{_listed(part.covers)}{wire}{empty}"
+
+
+def _essence(item: Transparency | None, renamed: dict[str, str]) -> object:
+    if item is None:
+        return None
+    return renamed.get(item.first, item.first), renamed.get(item.last, item.last), item.encoding
+
+
+def _stuffing(item: Transparency | None) -> str:
+    if item is None:
+        return "none"
+    return f"{type(item.encoding).__name__.lower()} over {item.first}..{item.last}"

@@ -1,0 +1,197 @@
+"""What changed in a field's type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from protogen.evolution.change import Change, named
+from protogen.model.readings import type_name
+from protogen.model.types import (
+    Array,
+    BitField,
+    Counted,
+    Enum,
+    Extent,
+    Fill,
+    Fixed,
+    Flags,
+    Float,
+    Integer,
+    NamedBit,
+    NamedValue,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+
+if TYPE_CHECKING:
+    from protogen.model.fields import Field
+
+Report = Callable[[str, str, str], Change]
+"""Makes a change of a rule, a place inside the field, and words."""
+CompareFields = Callable[["Sequence[Field]", "Sequence[Field]", str], Iterator[Change]]
+
+
+class TypeComparison:
+    """Compares the types of one field."""
+
+    def __init__(self, report: Report, fields: CompareFields) -> None:
+        self._report = report
+        self._fields = fields
+
+    def compare(self, old: Type, new: Type, path: str) -> Iterator[Change]:
+        """Yield what changed between two types."""
+        match old, new:
+            case Integer(), Integer():
+                yield from self._integers(old, new, path)
+            case Float(), Float():
+                yield from self._floats(old, new, path)
+            case Text(), Text():
+                yield from self._strings(old, new, path)
+            case Octets(), Octets():
+                yield from self._strings(old, new, path)
+            case Array(), Array():
+                yield from self._extents(old.extent, new.extent, path)
+                yield from self.compare(old.element, new.element, path)
+            case Struct(), Struct():
+                yield from self._fields(old.fields, new.fields, path)
+            case Switch(), Switch():
+                yield from self._switches(old, new, path)
+            case _:
+                yield self._report("field-encoding", path, named(type_name(old), type_name(new)))
+
+    def _integers(self, old: Integer, new: Integer, path: str) -> Iterator[Change]:
+        words = named(type_name(old), type_name(new))
+        tests = {
+            "field-width": old.bits != new.bits,
+            "field-sign": old.signed != new.signed,
+            "field-byte-order": old.byte_order != new.byte_order,
+            "field-encoding": old.byte_bits != new.byte_bits
+            or (old.role == "bool") != (new.role == "bool"),
+        }
+        found = [rule for rule, differs in tests.items() if differs]
+        if old.size != new.size or old.size == 1:
+            found = [rule for rule in found if rule != "field-byte-order"] or found
+        yield from (self._report(rule, path, words) for rule in found)
+        if not found and old.role != new.role:
+            yield self._report("field-kind", path, words)
+        yield from self._enums(old.enum, new.enum, path)
+        yield from self._flags(old.flags, new.flags, path)
+        yield from self._bits(old.bit_fields, new.bit_fields, path)
+
+    def _floats(self, old: Float, new: Float, path: str) -> Iterator[Change]:
+        words = named(type_name(old), type_name(new))
+        if old.bits != new.bits:
+            yield self._report("field-width", path, words)
+        elif old.byte_order != new.byte_order:
+            yield self._report("field-byte-order", path, words)
+        if old.byte_bits != new.byte_bits:
+            yield self._report("field-encoding", path, words)
+
+    def _strings(self, old: Text | Octets, new: Text | Octets, path: str) -> Iterator[Change]:
+        yield from self._extents(old.extent, new.extent, path)
+        if old.byte_bits != new.byte_bits:
+            yield self._report("field-encoding", path, named(type_name(old), type_name(new)))
+
+    def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
+        if old == new:
+            return
+        words = named(_amount(old), _amount(new))
+        yield self._report("field-count", path, words)
+
+    def _switches(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
+        if old.selector != new.selector:
+            words = named(f"the cases of {old.selector}", f"those of {new.selector}")
+            yield self._report("field-cases", path, words)
+        before = {case.value: case for case in old.cases}
+        after = {case.value: case for case in new.cases}
+        for value in sorted(before.keys() | after.keys()):
+            if value not in after:
+                yield self._report("field-cases", path, f"no case {value} any more")
+            elif value not in before:
+                yield self._report("field-cases", path, f"a case {value}")
+            else:
+                case = before[value]
+                yield from self.compare(case.type, after[value].type, path)
+        if (old.rest is None) != (new.rest is None):
+            words = "values without a case are " + ("taken" if old.rest is None else "refused")
+            yield self._report("field-cases", path, words)
+
+    # --- named values ---------------------------------------------------------------------------
+
+    def _enums(self, old: Enum | None, new: Enum | None, path: str) -> Iterator[Change]:
+        before = () if old is None else old.values
+        after = () if new is None else new.values
+        yield from named_values(self._report, before, after, path)
+        was, is_ = old is not None and old.closed, new is not None and new.closed
+        if was != is_:
+            words = "unnamed values are " + ("refused" if is_ else "taken")
+            yield self._report("enum-closed" if is_ else "enum-opened", path, words)
+
+    def _flags(self, old: Flags | None, new: Flags | None, path: str) -> Iterator[Change]:
+        before: dict[str, NamedBit] = {} if old is None else {bit.name: bit for bit in old.bits}
+        after: dict[str, NamedBit] = {} if new is None else {bit.name: bit for bit in new.bits}
+        numbers = {bit.bit: bit.name for bit in after.values()}
+        taken = {bit.bit for bit in before.values()}
+        for name, bit in before.items():
+            if name in after:
+                if after[name].bit != bit.bit:
+                    words = f"{name} {named(f'bit {bit.bit}', f'bit {after[name].bit}')}"
+                    yield self._report("flag-moved", path, words)
+            elif bit.bit in numbers and numbers[bit.bit] not in before:
+                words = f"bit {bit.bit} {named(name, numbers[bit.bit])}"
+                yield self._report("flag-renamed", path, words)
+            else:
+                yield self._report("flag-deleted", path, f"{name}, bit {bit.bit}")
+        for name, bit in after.items():
+            if name not in before and bit.bit not in taken:
+                yield self._report("flag-added", path, f"{name}, bit {bit.bit}")
+
+    def _bits(
+        self, old: Sequence[BitField], new: Sequence[BitField], path: str
+    ) -> Iterator[Change]:
+        before, after = _runs(old), _runs(new)
+        if before != after:
+            yield self._report("bits", path, named(before or "none", after or "none"))
+            return
+        for one, other in zip(old, new, strict=True):
+            yield from self._enums(one.enum, other.enum, f"{path}.{one.name}")
+
+
+def named_values(
+    report: Report, old: Sequence[NamedValue], new: Sequence[NamedValue], path: str
+) -> Iterator[Change]:
+    """What changed between the names of a number's values."""
+    before = {item.name: item.value for item in old}
+    after = {item.name: item.value for item in new}
+    names = {value: name for name, value in after.items()}
+    for name, value in before.items():
+        if name in after:
+            if after[name] != value:
+                words = f"{name} {named(str(value), str(after[name]))}"
+                yield report("enum-value", path, words)
+        elif value in names and names[value] not in before:
+            yield report("enum-value-renamed", path, f"{value} {named(name, names[value])}")
+        else:
+            yield report("enum-value-deleted", path, f"{name}, {value}")
+    taken = set(before.values())
+    for name, value in after.items():
+        if name not in before and value not in taken:
+            yield report("enum-value-added", path, f"{name}, {value}")
+
+
+def _runs(fields: Sequence[BitField]) -> str:
+    return ", ".join(f"{item.name} {item.low}..{item.high}" for item in fields)
+
+
+def _amount(extent: Extent) -> str:
+    match extent:
+        case Fixed():
+            return str(extent.count)
+        case Counted():
+            return f"{extent.least} to {extent.greatest}, as {extent.field} says"
+        case Fill():
+            return f"up to {extent.greatest}, to the end"

@@ -1,0 +1,100 @@
+"""Changes with what they mean: a rule, who is hurt, how, and a frame that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+
+from protogen.evolution.change import Change
+from protogen.evolution.compare import Comparison, compare
+from protogen.evolution.rules import BY_NAME, ORDER, RULES, Category, Rule
+from protogen.evolution.witness import Witness, Witnesses
+from protogen.model.protocol import Protocol
+
+SHOWN_BY_FRAMES = (Category.WIRE, Category.VALUE)
+"""The categories whose findings have a witness."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A change and its consequences."""
+
+    change: Change
+    rule: Rule
+    category: Category
+    """The rule's; SOURCE where no frame that an encoder makes shows a message's change."""
+    witnesses: tuple[Witness, ...] = ()
+
+    @property
+    def hurt(self) -> str:
+        """Who is hurt."""
+        old_sends = any(item.old_sends for item in self.witnesses)
+        new_sends = any(not item.old_sends for item in self.witnesses)
+        if old_sends and new_sends:
+            return "both"
+        if old_sends:
+            return "new receiver of old frames"
+        return "old receiver of new frames" if new_sends else "code"
+
+    @property
+    def harm(self) -> str:
+        """How, the worst first."""
+        order = ["misread", "rejected", "lost"]
+        found = sorted({item.harm.value for item in self.witnesses}, key=order.index)
+        return ", ".join(found) or "recompile"
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """Which rules count: names or categories to use, rules to except, places to ignore."""
+
+    use: tuple[str, ...] = ("WIRE", "VALUE")
+    except_: tuple[str, ...] = ()
+    ignore: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """Rules, or `*`, with patterns of places."""
+
+    def unknown(self) -> list[str]:
+        """Names that are neither a rule nor a category."""
+        known = {rule.name for rule in RULES} | {category.value for category in Category} | {"*"}
+        return [name for name in (*self.use, *self.except_, *self.ignore) if name not in known]
+
+    def stops(self, change: Change) -> bool:
+        """Whether a change may not pass."""
+        rule = BY_NAME[change.rule]
+        if rule.category is Category.NONE or rule.name in self.except_:
+            return False
+        if not ({rule.name, rule.category.value} & set(self.use)):
+            return False
+        patterns = [*self.ignore.get("*", ()), *self.ignore.get(rule.name, ())]
+        places = (change.place, *change.places)
+        return not all(any(fnmatchcase(p, pattern) for pattern in patterns) for p in places)
+
+
+def findings(
+    old: Protocol, new: Protocol, gate: Gate | None = None
+) -> tuple[Comparison, list[Finding]]:
+    """Compare two versions; the worst comes first.
+
+    With a gate, only what it stops. Findings of the categories WIRE and VALUE have a witness.
+    """
+    comparison = compare(old, new)
+    witnesses = Witnesses(comparison)
+    kept = [item for item in comparison.changes if gate is None or gate.stops(item)]
+    found = [_finding(change, witnesses) for change in kept]
+    found.sort(key=lambda item: ORDER[item.category])
+    return comparison, found
+
+
+def _finding(change: Change, witnesses: Witnesses) -> Finding:
+    rule = BY_NAME[change.rule]
+    if rule.category not in SHOWN_BY_FRAMES:
+        return Finding(change, rule, rule.category)
+    found = tuple(witnesses.of(change))
+    is_shown = bool(found) or change.message is None
+    return Finding(change, rule, rule.category if is_shown else Category.SOURCE, found)
+
+
+def worst(found: Iterable[Finding]) -> Category:
+    """The gravest category among findings."""
+    return min((item.category for item in found), key=ORDER.__getitem__, default=Category.NONE)

@@ -1,0 +1,94 @@
+"""Findings as text, Markdown and JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from protogen.evolution.compare import Comparison
+from protogen.evolution.findings import Finding
+
+_MOST_PLACES = 3
+"""Other places of the same change that are named."""
+
+
+def title(finding: Finding) -> str:
+    """The finding in one line."""
+    change = finding.change
+    more = change.places[:_MOST_PLACES]
+    others = f" (also {', '.join(more)}{' ...' if len(change.places) > len(more) else ''})"
+    return f"{change.place}: {finding.rule.about}: {change.text}{others if more else ''}"
+
+
+def place(comparison: Comparison, finding: Finding) -> str:
+    """The lines of the message in NEW and in OLD, as far as it is there."""
+    name = finding.change.message
+    if name is None:
+        return ""
+    new = {message.name: message for message in comparison.new.messages}
+    old = {message.name: message for message in comparison.old.messages}
+    sides = {"new": new.get(comparison.messages.get(name, name)), "old": old.get(name)}
+    found = {side: item.span for side, item in sides.items() if item is not None}
+    return ", ".join(f"{Path(s.file).name}:{s.line} ({side})" for side, s in found.items())
+
+
+def by_subject(found: Sequence[Finding]) -> Iterator[tuple[str, list[Finding]]]:
+    """The findings of each message; those of the whole come first."""
+    ordered = sorted(found, key=lambda item: item.change.message or "")
+    for subject, items in groupby(ordered, key=lambda item: item.change.message or ""):
+        yield subject, list(items)
+
+
+def markdown(comparison: Comparison, found: Sequence[Finding]) -> str:
+    """A changelog entry."""
+    lines = [f"### {comparison.new.name}", ""]
+    for subject, items in by_subject(found):
+        lines += [f"- **{subject or 'frame and protocol'}**"]
+        for item in items:
+            lines += [f"  - {title(item)} ({item.category}, {item.harm})"]
+            lines += [f"    - {witness.words}" for witness in item.witnesses]
+    if not found:
+        lines += ["No change."]
+    return "\n".join([*lines, ""])
+
+
+def as_json(comparison: Comparison, found: Sequence[Finding]) -> dict[str, Any]:
+    """The findings for programs."""
+    return {
+        "protocol": comparison.new.name,
+        "old": comparison.old.spec_hash,
+        "new": comparison.new.spec_hash,
+        "findings": [_finding(item) for item in found],
+    }
+
+
+def _finding(item: Finding) -> dict[str, Any]:
+    change = item.change
+    return {
+        "rule": item.rule.name,
+        "category": item.category.value,
+        "place": change.place,
+        "places": list(change.places),
+        "message": change.message,
+        "text": change.text,
+        "hurt": item.hurt,
+        "harm": item.harm,
+        "mend": item.rule.mend,
+        "witnesses": [
+            {
+                "sends": "old" if witness.old_sends else "new",
+                "sender": witness.sender,
+                "message": witness.message,
+                "frame": witness.frame.hex(),
+                "harm": witness.harm.value,
+                "sent": dict(witness.sent.values),
+                "received": dict(witness.received.values),
+                "received_message": witness.received.message,
+                "why": witness.received.why,
+                "words": witness.words,
+            }
+            for witness in item.witnesses
+        ],
+    }

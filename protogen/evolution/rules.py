@@ -1,0 +1,112 @@
+"""What each kind of change means. Names are stable: configurations and reviews refer to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Category(StrEnum):
+    """How much a change can hurt, the worst first."""
+
+    WIRE = "WIRE"
+    """Bytes are cut or read another way: frames are lost or misread."""
+    VALUE = "VALUE"
+    """Bytes are read the same way and mean something else."""
+    SOURCE = "SOURCE"
+    """Code or settings have to follow; the bytes are the same."""
+    NONE = "NONE"
+    """Nobody has to do anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A kind of change."""
+
+    name: str
+    category: Category
+    about: str
+    """What changed."""
+    mend: str
+    """What to do instead, or besides."""
+
+
+_W, _V, _S, _N = Category.WIRE, Category.VALUE, Category.SOURCE, Category.NONE
+_BOTH = "change both ends together, or give the new layout an identity of its own"
+_NEW_ID = "add a message with an identity of its own and reserve this one"
+_TOGETHER = "change both ends together"
+_RENAME = "keep the name, or change the code on both ends"
+
+RULES: tuple[Rule, ...] = (
+    # frames
+    Rule("frame-literal", _W, "fixed bytes of the frame are others", _TOGETHER),
+    Rule("frame-part-added", _W, "the frame has one part more", _TOGETHER),
+    Rule("frame-part-deleted", _W, "the frame has one part less", _TOGETHER),
+    Rule("frame-part-moved", _W, "a part of the frame stands elsewhere", _TOGETHER),
+    Rule("frame-part-kind", _W, "a part of the frame has another job", _TOGETHER),
+    Rule("frame-part-type", _W, "a number of the frame is encoded another way", _TOGETHER),
+    Rule("frame-part-renamed", _S, "a part of the frame has another name", _RENAME),
+    Rule("frame-part-range", _S, "senders may use other values of a part", "check both ends"),
+    Rule("frame-part-default", _S, "a part has another default", "check the senders"),
+    Rule("frame-length-rule", _W, "the length counts other parts", _TOGETHER),
+    Rule("frame-length-range", _S, "other lengths are allowed", "rebuild the receivers first"),
+    Rule("frame-checksum-algorithm", _W, "the checksum is worked out another way", _TOGETHER),
+    Rule("frame-checksum-coverage", _W, "the checksum covers other bytes", _TOGETHER),
+    Rule("frame-transparency", _W, "bytes are stuffed another way", _TOGETHER),
+    Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
+    Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
+    # messages
+    Rule("message-added", _N, "a message is new", "old receivers report it as unknown"),
+    Rule("message-deleted", _W, "a message is gone", "reserve its identity"),
+    Rule("message-reserved", _N, "a message is gone and its identity reserved", "nothing"),
+    Rule("message-renamed", _S, "a message has another name", _RENAME),
+    Rule("message-identity", _W, "a message has another identity", _NEW_ID),
+    Rule("identity-reused", _W, "an identity means another message now", _NEW_ID),
+    Rule("message-sender", _S, "others send the message", "check who listens"),
+    Rule("message-overload", _V, "messages that share an identity are told apart otherwise", _BOTH),
+    Rule("message-size", _W, "payloads of other sizes are allowed", _BOTH),
+    # fields
+    Rule("field-added", _W, "a message has one field more", _BOTH),
+    Rule("field-deleted", _W, "a message has one field less", _BOTH),
+    Rule("field-moved", _W, "a field stands elsewhere", _BOTH),
+    Rule("field-renamed", _S, "a field has another name", _RENAME),
+    Rule("field-width", _W, "a number has another width", _BOTH),
+    Rule("field-sign", _W, "a number has a sign now, or none any more", _BOTH),
+    Rule("field-byte-order", _W, "a number's bytes stand in another order", _BOTH),
+    Rule("field-encoding", _W, "a field is encoded another way", _BOTH),
+    Rule("field-kind", _S, "a number is shown another way", "check the code that uses it"),
+    Rule("field-count", _W, "a field has another number of elements or bytes", _BOTH),
+    Rule("field-cases", _W, "a switch has other cases", _BOTH),
+    Rule("field-constant", _W, "a constant has another value", _BOTH),
+    Rule("field-default", _S, "a field has another default", "check the senders"),
+    Rule("field-range-narrowed", _S, "senders may use fewer values", "check the senders"),
+    Rule("field-range-widened", _S, "senders may use more values", "check what receivers do"),
+    Rule("field-scale", _V, "the same number means another quantity", _BOTH),
+    Rule("field-offset", _V, "the same number means another quantity", _BOTH),
+    Rule("field-unit", _V, "the same number has another unit", _BOTH),
+    Rule("field-special", _V, "a special value is new, gone or another", _BOTH),
+    # named values
+    Rule("enum-value", _V, "a name stands for another number", "give the new meaning a new number"),
+    Rule("enum-value-added", _N, "an enum has one value more", "old receivers show its number"),
+    Rule("enum-value-deleted", _V, "an enum has one value less", "keep or reserve it"),
+    Rule("enum-value-renamed", _S, "a value has another name", _RENAME),
+    Rule("enum-closed", _W, "unnamed values are refused now", "leave it open"),
+    Rule("enum-opened", _W, "unnamed values are taken now", "check what old receivers do"),
+    Rule("flag-moved", _V, "a flag is another bit", "give the new meaning a new bit"),
+    Rule("flag-added", _N, "a bit has a name", "nothing"),
+    Rule("flag-deleted", _V, "a bit has no name any more", "keep it"),
+    Rule("flag-renamed", _S, "a bit has another name", _RENAME),
+    Rule("bits", _V, "runs of bits in a number are others", _BOTH),
+    # the whole
+    Rule("protocol-renamed", _S, "the protocol has another name", _RENAME),
+    Rule("endpoint-renamed", _S, "an endpoint has another name", _RENAME),
+    Rule("link", _S, "the line is set another way", "set both ends alike"),
+    Rule(
+        "version-not-bumped", _S, "the meaning changed and the version did not", "raise `version`"
+    ),
+)
+"""All rules, in the order in which they are listed."""
+
+BY_NAME = {rule.name: rule for rule in RULES}
+ORDER = {category: index for index, category in enumerate(Category)}
+"""The worst first."""

@@ -1,0 +1,104 @@
+"""Where versions of a schema come from: files, folders, and what git keeps of them."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import tarfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from protogen.compiler import Compilation, compile_file
+from protogen.schema.files import schema_files
+
+GIT = "git:"
+"""What a version of a file in git begins with: `git:main:schemas/rn1.yaml`."""
+_SUFFIXES = (".yaml", ".yml")
+
+
+class NoVersionError(Exception):
+    """A version that can't be had; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Version:
+    """The schemas of one side, by their paths below what was given."""
+
+    title: str
+    compilations: dict[str, Compilation]
+
+
+@contextmanager
+def opened(given: str, path: Path | None = None) -> Iterator[Version]:
+    """The schemas of a file, a folder, or `git:REV:path`.
+
+    `git:REV` alone is that version of `path`. Raises NoVersionError.
+    """
+    if not given.startswith(GIT):
+        yield _compiled(given, Path(given))
+        return
+    revision, _, named = given.removeprefix(GIT).partition(":")
+    if not named and path is None:
+        message = f"`{given}` names no file: write `{given}:PATH`"
+        raise NoVersionError(message)
+    wanted = Path(named) if named else path
+    assert wanted is not None
+    top = Path(_git("rev-parse", "--show-toplevel", folder=_folder(wanted)).decode().strip())
+    inside = wanted.resolve().relative_to(top) if path is wanted else _inside(wanted, top)
+    with TemporaryDirectory(prefix="protogen-") as folder:
+        _extract(revision, top, Path(folder))
+        (Path(folder) / ".git").touch()  # What marks a project, whose files extend each other.
+        yield _compiled(f"{revision}:{inside.as_posix()}", Path(folder) / inside)
+
+
+def _compiled(title: str, path: Path) -> Version:
+    if path.is_file():
+        return Version(title, {"": compile_file(path)})
+    if not path.is_dir():
+        message = f"there is no `{title}`"
+        raise NoVersionError(message)
+    files = schema_files([path])
+    return Version(title, {file.relative_to(path).as_posix(): compile_file(file) for file in files})
+
+
+def _folder(path: Path) -> Path:
+    """The nearest folder that is there, to ask git in."""
+    here = path.resolve()
+    return next(folder for folder in (here, *here.parents) if folder.is_dir())
+
+
+def _inside(path: Path, top: Path) -> Path:
+    """A path in git: below the working directory where it is there, else below the top."""
+    resolved = path.resolve()
+    return resolved.relative_to(top) if resolved.is_relative_to(top) else path
+
+
+def _extract(revision: str, top: Path, folder: Path) -> None:
+    """Write every YAML file of a revision: schemas extend each other."""
+    listed = _git("ls-tree", "-r", "-z", "--name-only", revision, folder=top).decode().split("\0")
+    names = [name for name in listed if name.endswith(_SUFFIXES)]
+    if not names:
+        return
+    data = _git("archive", "--format=tar", revision, "--", *names, folder=top)
+    with tarfile.open(fileobj=io.BytesIO(data)) as archive:
+        archive.extractall(folder, filter="data")
+
+
+def _git(*arguments: str, folder: Path) -> bytes:
+    try:
+        done = subprocess.run(
+            ["git", *arguments],
+            capture_output=True,
+            check=False,
+            cwd=folder,
+        )
+    except FileNotFoundError:
+        message = "git is not installed"
+        raise NoVersionError(message) from None
+    if done.returncode:
+        message = f"git: {done.stderr.decode(errors='replace').strip()}"
+        raise NoVersionError(message)
+    return done.stdout

@@ -1,0 +1,262 @@
+"""Frames that one version sends and the other reads differently."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import islice
+from random import Random
+
+from protogen.evolution.change import Change
+from protogen.evolution.compare import Comparison
+from protogen.evolution.observe import Reading, Side
+from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.model.messages import Message
+from protogen.model.protocol import Sender
+
+_ROUNDS = 64
+"""Samples with boundaries, at most."""
+_RANDOM = 60
+"""Random samples behind these."""
+_INDEX = re.compile(r"\[\d+\]")
+
+
+class Harm(StrEnum):
+    """What becomes of a frame at the other end."""
+
+    REJECTED = "rejected"
+    """The frame is lost."""
+    MISREAD = "misread"
+    """A wrong value, or another message, and no error."""
+    LOST = "lost"
+    """New information is ignored."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A value that is read as another one."""
+
+    path: str
+    sent: str | None
+    """None where only the receiver sees it."""
+    received: str | None
+    """None where the receiver does not see it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """A frame, and both readings of it."""
+
+    old_sends: bool
+    """Whether OLD sends and NEW reads, or the other way round."""
+    sender: str
+    message: str
+    frame: bytes
+    sent: Reading
+    received: Reading
+    harm: Harm
+    differences: tuple[Difference, ...]
+
+    @property
+    def words(self) -> str:
+        """The witness in one line."""
+        one, other = ("old", "new") if self.old_sends else ("new", "old")
+        bytes_ = self.frame[:24].hex(" ").upper() + (" ..." if len(self.frame) > 24 else "")
+        return f"{one} {self.sender} sends {self.message} {bytes_}; {other} {self._reads()}"
+
+    def _reads(self) -> str:
+        if self.harm is Harm.REJECTED:
+            return f"finds no message in it: {self.received.why}"
+        if not self.differences:
+            return f"reads {self.received.message}"
+        item = self.differences[0]
+        if item.received is None:
+            return f"ignores {item.path}, which was {item.sent}"
+        if item.sent is None:
+            return f"reads {item.path} {item.received}, which nobody sent"
+        return f"reads {item.path} {item.received} where {item.sent} was meant"
+
+
+class Witnesses:
+    """Looks for frames that show what a change does."""
+
+    def __init__(self, comparison: Comparison) -> None:
+        self._comparison = comparison
+        self._old, self._new = Side(comparison.old), Side(comparison.new)
+        self._found: dict[tuple[bool, str, str], list[Witness]] = {}
+
+    def of(self, change: Change) -> list[Witness]:
+        """The best witness of each direction that has one, OLD's frames first."""
+        found = []
+        for old_sends in (True, False):
+            seen = [
+                witness
+                for sender, message in self._sendings(change, old_sends)
+                for witness in self.differing(old_sends, sender, message)
+            ]
+            fitting = [witness for witness in seen if self._shows(witness, change)]
+            best = min(fitting or seen, key=_rank, default=None)
+            if best is not None:
+                found.append(_pointed(best, change))
+        return found
+
+    def _shows(self, witness: Witness, change: Change) -> bool:
+        if change.path is None or witness.harm is Harm.REJECTED:
+            return True
+        paths = {change.path, change.now or change.path}
+        return any(_is_inside(item.path, paths) for item in witness.differences)
+
+    # --- what is sent -----------------------------------------------------------------------------
+
+    def _sendings(self, change: Change, old_sends: bool) -> Iterator[tuple[Sender, Message]]:
+        """Senders and messages of one side that a change may touch."""
+        names = self._comparison
+        for sender in (names.old if old_sends else names.new).senders:
+            before = sender.name if old_sends else _key_of(names.endpoints, sender.name)
+            if change.sender not in (None, before):
+                continue
+            for message in sender.messages:
+                name = message.name if old_sends else _key_of(names.messages, message.name)
+                if change.message in (None, name):
+                    yield sender, message
+
+    def differing(self, old_sends: bool, sender: Sender, message: Message) -> list[Witness]:
+        """Frames of a message that the other side reads differently."""
+        key = old_sends, sender.name, message.name
+        if key not in self._found:
+            self._found[key] = list(self._look(old_sends, sender, message))
+        return self._found[key]
+
+    def _look(self, old_sends: bool, sender: Sender, message: Message) -> Iterator[Witness]:
+        names = self._comparison
+        one, other = (self._old, self._new) if old_sends else (self._new, self._old)
+        endpoints = names.endpoints if old_sends else _swapped(names.endpoints)
+        theirs = endpoints.get(sender.name, sender.name)
+        listens = any(item.name == theirs for item in other.protocol.senders)
+        for values, parts in self._samples(old_sends, sender, message):
+            frame = one.frame(sender.name, message.name, values, parts)
+            if frame is None:
+                continue
+            sent = one.reads(sender.name, frame)
+            received = other.reads(theirs, frame) if listens else Reading(None, "nobody listens")
+            if sent.message is None:
+                continue  # A frame that its own side can't tell proves nothing.
+            harm, differences = self._judged(sent, received, old_sends)
+            if harm is not None:
+                yield Witness(
+                    old_sends,
+                    sender.name,
+                    message.name,
+                    frame,
+                    sent,
+                    received,
+                    harm,
+                    tuple(differences),
+                )
+
+    def _samples(
+        self, old_sends: bool, sender: Sender, message: Message
+    ) -> Iterator[tuple[Values, Values]]:
+        """Values at the bounds of both versions, and random ones."""
+        yield from _drawn(message, sender)
+        messages = self._comparison.messages
+        name = (messages if old_sends else _swapped(messages)).get(message.name)
+        other = self._new if old_sends else self._old
+        for theirs in other.protocol.messages:
+            if theirs.name == name and _names(theirs) == _names(message):
+                yield from _drawn(theirs, sender)
+
+    # --- what is read -----------------------------------------------------------------------------
+
+    def _judged(
+        self, sent: Reading, received: Reading, old_sends: bool
+    ) -> tuple[Harm | None, list[Difference]]:
+        if received.message is None:
+            return Harm.REJECTED, []
+        messages = self._comparison.messages
+        expected = (messages if old_sends else _swapped(messages)).get(sent.message or "")
+        if received.message != expected:
+            return Harm.MISREAD, []
+        differences = list(self._differences(sent, received, old_sends))
+        if any(item.received is not None for item in differences):
+            return Harm.MISREAD, sorted(differences, key=lambda item: item.received is None)
+        return (Harm.LOST, differences) if differences else (None, [])
+
+    def _differences(
+        self, sent: Reading, received: Reading, old_sends: bool
+    ) -> Iterator[Difference]:
+        name = sent.message if old_sends else received.message
+        renamed = {
+            change.path: change.now
+            for change in self._comparison.changes
+            if change.now is not None and change.path is not None and change.message == name
+        }
+        parts = {
+            f"frame.{change.old_part}": f"frame.{change.new_part}"
+            for change in self._comparison.changes
+            if change.old_part is not None
+        }
+        names = {**renamed, **parts}
+        known = dict(sent.values)
+        theirs = dict(received.values)
+        mapping = names if old_sends else _swapped(names)
+        for path, value in known.items():
+            there = theirs.pop(_translated(path, mapping), None)
+            if there != value:
+                yield Difference(path, value, there)
+        for path, value in theirs.items():
+            yield Difference(path, None, value)
+
+
+def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
+    dice = Random(message.name)  # noqa: S311 - nothing secret
+    count = min(boundary_rounds(message, sender.frame), _ROUNDS) + _RANDOM
+    yield from islice(samples(message, sender.frame, dice), count)
+
+
+def _names(message: Message) -> list[str]:
+    return [field.name for field in message.fields]
+
+
+def _translated(path: str, names: dict[str, str]) -> str:
+    """The path with the names that the other side has."""
+    bare = _INDEX.sub("", path)
+    for before, after in names.items():
+        if bare == before or bare.startswith(f"{before}."):
+            head, last = before.rpartition(".")[0], before.rpartition(".")[2]
+            depth = head.count(".") + 1 if head else 0
+            words = path.split(".")
+            words[depth] = words[depth].replace(last, after.rpartition(".")[2], 1)
+            path = ".".join(words)
+            bare = _INDEX.sub("", path)
+    return path
+
+
+def _is_inside(path: str, places: set[str]) -> bool:
+    bare = _INDEX.sub("", path)
+    return any(bare == place or bare.startswith(f"{place}.") for place in places)
+
+
+def _pointed(witness: Witness, change: Change) -> Witness:
+    """The witness with what the change is about in front."""
+    if change.path is None:
+        return witness
+    paths = {change.path, change.now or change.path}
+    ordered = sorted(witness.differences, key=lambda item: not _is_inside(item.path, paths))
+    return replace(witness, differences=tuple(ordered))
+
+
+def _rank(witness: Witness) -> tuple[int, int]:
+    """The most telling first: a wrong value before a lost frame, and short frames."""
+    order = [Harm.MISREAD, Harm.REJECTED, Harm.LOST]
+    return order.index(witness.harm), len(witness.frame)
+
+
+def _swapped(names: dict[str, str]) -> dict[str, str]:
+    return {after: before for before, after in names.items()}
+
+
+def _key_of(names: dict[str, str], name: str) -> str:
+    return _swapped(names).get(name, name)
