@@ -21,6 +21,7 @@ from protogen.cli import (
     explain,
     fuzz,
     generate,
+    lock,
     rules,
     schema_json,
     size,
@@ -46,6 +47,7 @@ app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.expl
 app.command("fuzz", cls=Command, epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
 app.command("diff", cls=Command, epilog=diff.EXAMPLE)(guarded(diff.diff))
 app.command("breaking", cls=Command, epilog=breaking.EXAMPLE)(guarded(breaking.breaking))
+app.command("lock", cls=Command, epilog=lock.EXAMPLE)(guarded(lock.lock))
 app.command("rules", cls=Command, epilog=rules.EXAMPLE)(guarded(rules.rules))
 app.command("size", cls=Command, epilog=size.EXAMPLE)(guarded(size.size))
 app.command("schema-json", cls=Command, epilog=schema_json.EXAMPLE)(

@@ -34,6 +34,10 @@ def breaking(
         str | None,
         typer.Option(metavar="VERSION", help="What NEW is held against: git:REV, or a path."),
     ] = None,
+    against_lock: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="A lock that NEW is held against; see `protogen lock`."),
+    ] = None,
     use: Annotated[
         list[str] | None,
         typer.Option(metavar="RULE", help="Rules or categories that count. Default: WIRE, VALUE."),
@@ -62,10 +66,11 @@ def breaking(
     from protogen.evolution.report import as_json
 
     gate = _gate(use or [], except_ or [], ignore or [])
+    held = f"lock:{against_lock}" if against_lock is not None else against
     stopped = False
     reports = []
     out = console()
-    for old, new in _pairs(versions, against):
+    for old, new in _pairs(versions, held):
         with both(old, new) as pairs:
             for name, before, after in pairs:
                 if before is None or after is None:

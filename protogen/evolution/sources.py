@@ -1,4 +1,4 @@
-"""Where versions of a schema come from: files, folders, and what git keeps of them."""
+"""Where versions of a schema come from: files, folders, and what git or a lock keeps of them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from protogen.compiler import Compilation, compile_file
+from protogen.evolution.lock import LockError, read_lock
+from protogen.problems import SourceMap
 from protogen.schema.files import schema_files
 
 GIT = "git:"
 """What a version of a file in git begins with: `git:main:schemas/rn1.yaml`."""
+LOCK = "lock:"
+"""What a lock file begins with: `lock:protogen.lock`."""
 _SUFFIXES = (".yaml", ".yml")
 
 
@@ -33,10 +37,14 @@ class Version:
 
 @contextmanager
 def opened(given: str, path: Path | None = None) -> Iterator[Version]:
-    """The schemas of a file, a folder, or `git:REV:path`.
+    """The schemas of a file, a folder, `git:REV:path` or `lock:FILE`.
 
-    `git:REV` alone is that version of `path`. Raises NoVersionError.
+    `git:REV` alone is that version of `path`, and a lock what it holds of it. Raises
+    NoVersionError.
     """
+    if given.startswith(LOCK):
+        yield _locked(Path(given.removeprefix(LOCK)), path)
+        return
     if not given.startswith(GIT):
         yield _compiled(given, Path(given))
         return
@@ -52,6 +60,28 @@ def opened(given: str, path: Path | None = None) -> Iterator[Version]:
         _extract(revision, top, Path(folder))
         (Path(folder) / ".git").touch()  # What marks a project, whose files extend each other.
         yield _compiled(f"{revision}:{inside.as_posix()}", Path(folder) / inside)
+
+
+def _locked(lock: Path, path: Path | None) -> Version:
+    """What a lock keeps of a schema, or of those in a folder; of all without a path."""
+    try:
+        kept = read_lock(lock)
+    except LockError as error:
+        raise NoVersionError(str(error)) from None
+    found = {}
+    for name, protocol in kept.items():
+        place = (lock.parent / name).resolve()
+        compilation = Compilation(name, protocol, (), SourceMap())
+        if path is None:
+            found[name] = compilation
+        elif place == path.resolve():
+            found[""] = compilation
+        elif place.is_relative_to(path.resolve()):
+            found[place.relative_to(path.resolve()).as_posix()] = compilation
+    if not found:
+        message = f"`{lock}` does not hold `{path}`; `protogen lock` writes it"
+        raise NoVersionError(message)
+    return Version(str(lock), found)
 
 
 def _compiled(title: str, path: Path) -> Version:

@@ -1,0 +1,167 @@
+"""A lock file: resolved protocols with their hashes, to compare with where there is no git.
+
+It holds all that bytes and their meaning depend on, one line for each value, so that a review shows
+what changed. Texts for people, examples and decisions are left out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, fields, is_dataclass, replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from protogen.model import checksums, frame, framing, messages, origin, protocol, reserved, sizes
+from protogen.model import fields as model_fields
+from protogen.model import types as model_types
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.problems.span import Span
+from protogen.version import VERSION
+
+NAME = "protogen.lock"
+"""The file's usual name."""
+_FORM = 1
+_NOWHERE = Span("", 1, 1, 1, 1)
+_LEFT_OUT: Mapping[str, Any] = {
+    "about": origin.NOTHING,
+    "span": _NOWHERE,
+    "source": None,
+    "summary": "",
+    "doc": "",
+    "examples": (),
+    "exchanges": (),
+    "decisions": (),
+}
+"""What people read, with what stands for it when a lock is read."""
+_MODULES = (
+    checksums,
+    frame,
+    framing,
+    messages,
+    model_fields,
+    model_types,
+    origin,
+    protocol,
+    reserved,
+    sizes,
+)
+
+
+class LockError(Exception):
+    """A lock that can't be read; the message says why."""
+
+
+def lock_text(protocols: Mapping[str, Protocol]) -> str:
+    """The lock of protocols, by the paths of their schemas."""
+    schemas = {path: _entry(item) for path, item in sorted(protocols.items())}
+    whole = {"form": _FORM, "protogen": VERSION, "schemas": schemas}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def read_lock(path: Path) -> dict[str, Protocol]:
+    """The protocols of a lock, by the paths of their schemas. Raises LockError."""
+    try:
+        whole = json.loads(path.read_text(encoding="utf-8"))
+        form = whole["form"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        message = f"`{path}` is no lock of protogen: {error}"
+        raise LockError(message) from None
+    if form != _FORM:
+        message = f"`{path}` has the form {form}, this protogen reads {_FORM}; lock again"
+        raise LockError(message)
+    try:
+        return {name: _restored(entry["model"]) for name, entry in whole["schemas"].items()}
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        message = f"`{path}` was changed by hand, or is damaged: {error!r}"
+        raise LockError(message) from None
+
+
+def message_hash(message: Message) -> str:
+    """SHA-256 in hex of a message's identity, layout and meaning."""
+    text = json.dumps(_plain(message), separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _entry(item: Protocol) -> dict[str, Any]:
+    return {
+        "spec_hash": item.spec_hash,
+        "messages": {message.name: message_hash(message) for message in item.messages},
+        "model": _plain(item),
+    }
+
+
+# --- to JSON and back -----------------------------------------------------------------------------
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case None | bool() | int() | float() | str():
+            return value
+        case Fraction():
+            return {"fraction": str(value)}
+        case bytes():
+            return {"hex": value.hex()}
+        case tuple() | list():
+            return [_plain(item) for item in value]
+        case Mapping():
+            return {"map": {key: _plain(item) for key, item in value.items()}}
+    found: dict[str, Any] = {"class": type(value).__name__}
+    kind: Any = type(value)
+    for field in _kept(kind):
+        item = getattr(value, field.name)
+        if field.default is MISSING or item != field.default:
+            found[field.name] = _plain(item)
+    if isinstance(value, Sender):  # The protocol holds its messages.
+        found["messages"] = [message.name for message in value.messages]
+    return found
+
+
+@cache
+def _kept(kind: Any) -> tuple[Any, ...]:
+    found = (item for item in fields(kind) if item.init and item.name not in _LEFT_OUT)
+    return tuple(found)
+
+
+def _restored(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(_restored(item) for item in value)
+    if not isinstance(value, dict):
+        return value
+    if "fraction" in value:
+        return Fraction(value["fraction"])
+    if "hex" in value:
+        return bytes.fromhex(value["hex"])
+    if "map" in value:
+        return {key: _restored(item) for key, item in value["map"].items()}
+    kind = _kinds()[value["class"]]
+    given = {name: _restored(item) for name, item in value.items() if name != "class"}
+    names = {item.name for item in fields(kind) if item.init}
+    found = kind(**{name: item for name, item in _LEFT_OUT.items() if name in names}, **given)
+    return _with_messages(found) if isinstance(found, Protocol) else found
+
+
+def _with_messages(item: Protocol) -> Protocol:
+    """The protocol whose senders hold the messages that they name."""
+    known: dict[Any, Message] = {message.name: message for message in item.messages}
+    senders = tuple(
+        replace(sender, messages=tuple(known[name] for name in sender.messages))
+        for sender in item.senders
+    )
+    return replace(item, senders=senders)
+
+
+@cache
+def _kinds() -> dict[str, Any]:
+    return dict(_classes())
+
+
+def _classes() -> Iterator[tuple[str, Any]]:
+    for module in _MODULES:
+        for name, item in vars(module).items():
+            if isinstance(item, type) and is_dataclass(item):
+                yield name, item
