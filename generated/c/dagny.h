@@ -93,6 +93,7 @@ enum dagny_power_code {
 #define DAGNY_SONAR_ID 'S'
 #define DAGNY_SONAR_PAYLOAD_MIN 0u
 #define DAGNY_SONAR_PAYLOAD_MAX 128u
+#define DAGNY_SONAR_SPEC_HASH "1d8f0ecb52f07e8b25e762dded2334c0cdbcf2d2368edc5476d8a15c0b2491f8"
 
 /** Sonar data (line 31). */
 struct dagny_sonar {
@@ -113,6 +114,7 @@ void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_
 #define DAGNY_GPS_ID 'G'
 #define DAGNY_GPS_PAYLOAD_MIN 0u
 #define DAGNY_GPS_PAYLOAD_MAX 128u
+#define DAGNY_GPS_SPEC_HASH "a546def6a1843a89b10da5d9acf0a5dba091c6dfd3d56c61c9212807b261fd83"
 
 /**
  * GPS data (lines 18, 32).
@@ -136,6 +138,7 @@ void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t si
 #define DAGNY_BUMP_ID 'B'
 #define DAGNY_BUMP_PAYLOAD_MIN 0u
 #define DAGNY_BUMP_PAYLOAD_MAX 128u
+#define DAGNY_BUMP_SPEC_HASH "0bcb23ff115dc977a2c6ed7069dc23829b9471371a35a293ab967b0c7053529b"
 
 /** Bump sensor data (line 33). */
 struct dagny_bump {
@@ -156,6 +159,7 @@ void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t 
 #define DAGNY_ODOMETRY_ID 'O'
 #define DAGNY_ODOMETRY_PAYLOAD_MIN 0u
 #define DAGNY_ODOMETRY_PAYLOAD_MAX 128u
+#define DAGNY_ODOMETRY_SPEC_HASH "73fbf497be6c49973a2adcc98943bbee67b1d0623fee25ef6471ceffa0aaa298"
 
 /** Odometry counts (line 34). */
 struct dagny_odometry {
@@ -176,6 +180,7 @@ void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload,
 #define DAGNY_SPEED_ID 'O'
 #define DAGNY_SPEED_PAYLOAD_MIN 0u
 #define DAGNY_SPEED_PAYLOAD_MAX 128u
+#define DAGNY_SPEED_SPEC_HASH "42a81a41aa8aece16309c416ff488fe433d24e8f80bdb1ed100d58c7e736640d"
 
 /** Speed readings (line 35). */
 struct dagny_speed {
@@ -196,6 +201,7 @@ void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_
 #define DAGNY_WHEEL_SLIP_ID 'W'
 #define DAGNY_WHEEL_SLIP_PAYLOAD_MIN 0u
 #define DAGNY_WHEEL_SLIP_PAYLOAD_MAX 128u
+#define DAGNY_WHEEL_SLIP_SPEC_HASH "e5b7c0a5805d12a4b344010eccbdd6f7250c75e69f4d26ced5931c366aaebe54"
 
 /**
  * Notification that a wheel slips (line 36).
@@ -220,6 +226,7 @@ void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payl
 #define DAGNY_BATTERY_ID 'b'
 #define DAGNY_BATTERY_PAYLOAD_MIN 0u
 #define DAGNY_BATTERY_PAYLOAD_MAX 128u
+#define DAGNY_BATTERY_SPEC_HASH "6980cc1698fa4bfbcaf06b727d2bc5d26fd4dbb4dc8ad1f9542984313a50d80d"
 
 /**
  * Battery level readings (line 37).
@@ -244,6 +251,7 @@ void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, s
 #define DAGNY_REFLEX_SETTINGS_ID 'R'
 #define DAGNY_REFLEX_SETTINGS_PAYLOAD_MIN 0u
 #define DAGNY_REFLEX_SETTINGS_PAYLOAD_MAX 128u
+#define DAGNY_REFLEX_SETTINGS_SPEC_HASH "c00e8945f7a5381745cc2f7046ff1e8856ee4fb3a7dc9389ca4dad922859f0f0"
 
 /** Settings of the reflexes (line 38). */
 struct dagny_reflex_settings {
@@ -265,6 +273,7 @@ void dagny_reflex_settings_load(struct dagny_reflex_settings *message, const uin
 #define DAGNY_HARDWARE_STATUS_ID 'H'
 #define DAGNY_HARDWARE_STATUS_PAYLOAD_MIN 0u
 #define DAGNY_HARDWARE_STATUS_PAYLOAD_MAX 128u
+#define DAGNY_HARDWARE_STATUS_SPEC_HASH "c1bd4bfff65a044f16fa2f96318ee7a877a9166c09a20cfa9f1b595e9bcf0f1f"
 
 /** Whether the hardware sleeps or is awake (line 39). */
 struct dagny_hardware_status {
@@ -287,6 +296,7 @@ void dagny_hardware_status_load(struct dagny_hardware_status *message, const uin
 #define DAGNY_MOTOR_PAYLOAD_SIZE 1u
 #define DAGNY_MOTOR_PAYLOAD_MIN 1u
 #define DAGNY_MOTOR_PAYLOAD_MAX 1u
+#define DAGNY_MOTOR_SPEC_HASH "7e0d557d16b783f9ed86efcc75cabc819b3666002c41c0195e3a60ff0620d20e"
 
 /** Motor command (line 42). */
 struct dagny_motor {
@@ -306,6 +316,7 @@ void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
 #define DAGNY_STEERING_PAYLOAD_SIZE 1u
 #define DAGNY_STEERING_PAYLOAD_MIN 1u
 #define DAGNY_STEERING_PAYLOAD_MAX 1u
+#define DAGNY_STEERING_SPEC_HASH "9cafc9953be9e3a2cc62b845be69876aa2d6edcb7fa9f4d204926d18d0c1f073"
 
 /** Steering command (line 43). */
 struct dagny_steering {
@@ -325,6 +336,7 @@ void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload)
 #define DAGNY_REFLEX_PAYLOAD_SIZE 1u
 #define DAGNY_REFLEX_PAYLOAD_MIN 1u
 #define DAGNY_REFLEX_PAYLOAD_MAX 1u
+#define DAGNY_REFLEX_SPEC_HASH "6158249bb8c2d3fc8899e935ae500c53b4fa025ee894404c5c2dc3f075fe68cf"
 
 /**
  * Queries, enables or disables one reflex (lines 44, 58-74).
@@ -371,6 +383,7 @@ static inline uint8_t dagny_reflex_reflex_number_set(uint8_t raw, uint8_t value)
 #define DAGNY_POWER_DOWN_PAYLOAD_SIZE 1u
 #define DAGNY_POWER_DOWN_PAYLOAD_MIN 1u
 #define DAGNY_POWER_DOWN_PAYLOAD_MAX 1u
+#define DAGNY_POWER_DOWN_SPEC_HASH "13a4180e0f1232a178cee31890cbd72b734a9385f3d624b927788c1731bd3086"
 
 /** Powers the robot down after a time (line 45). */
 struct dagny_power_down {
@@ -390,6 +403,7 @@ void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payl
 #define DAGNY_POWER_PAYLOAD_SIZE 1u
 #define DAGNY_POWER_PAYLOAD_MIN 1u
 #define DAGNY_POWER_PAYLOAD_MAX 1u
+#define DAGNY_POWER_SPEC_HASH "bad46df4053037bf37c65a4f9d46abd26c95f7896e68ec524d32680b48c2b1ff"
 
 /** Puts the hardware to sleep, wakes it, or asks for its state (lines 46, 77-82). */
 struct dagny_power {
@@ -408,6 +422,7 @@ void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
 #define DAGNY_LASER_ID 'L'
 #define DAGNY_LASER_PAYLOAD_MIN 0u
 #define DAGNY_LASER_PAYLOAD_MAX 512u
+#define DAGNY_LASER_SPEC_HASH "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
 #define DAGNY_LASER_READINGS_SCALE_NUM 2
 #define DAGNY_LASER_READINGS_SCALE_DEN 1
 #define DAGNY_LASER_READINGS_UNIT "cm"
@@ -442,6 +457,7 @@ static inline uint8_t dagny_laser_readings_at(const uint8_t *payload, size_t ind
 #define DAGNY_COMMAND_ID 'C'
 #define DAGNY_COMMAND_PAYLOAD_MIN 0u
 #define DAGNY_COMMAND_PAYLOAD_MAX 128u
+#define DAGNY_COMMAND_SPEC_HASH "2eea58598c00d9405b8d62b654f8781b2cc7060fd8da4c14b5f7d57e778a6904"
 
 /** Commands, passed through (line 50). */
 struct dagny_command {

@@ -82,6 +82,7 @@ enum dagny_library_power_code {
 #define DAGNY_LIBRARY_SONAR_PAYLOAD_SIZE 5u
 #define DAGNY_LIBRARY_SONAR_PAYLOAD_MIN 5u
 #define DAGNY_LIBRARY_SONAR_PAYLOAD_MAX 5u
+#define DAGNY_LIBRARY_SONAR_SPEC_HASH "df2aaa59f1a0d50220fdce5fc00d868c1c11d2802391be17268a4c22eff468e2"
 #define DAGNY_LIBRARY_SONAR_DISTANCES_UNIT "inch"
 
 /**
@@ -114,6 +115,7 @@ static inline uint8_t dagny_library_sonar_distances_at(const uint8_t *payload, s
 #define DAGNY_LIBRARY_GPS_ID 'G'
 #define DAGNY_LIBRARY_GPS_PAYLOAD_MIN 0u
 #define DAGNY_LIBRARY_GPS_PAYLOAD_MAX 126u
+#define DAGNY_LIBRARY_GPS_SPEC_HASH "48d9c0ba9665c2cc49c1c936f4d1976d84a5e654c61d2b77a4ae33524993c417"
 
 /**
  * A sentence of the GPS receiver (trainman419/Senior-Project, trainman419/dagny_protocol (facts
@@ -143,6 +145,7 @@ void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *pa
 #define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_SIZE 13u
 #define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MIN 13u
 #define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MAX 13u
+#define DAGNY_LIBRARY_ODOMETRY_SPEC_HASH "1449487c01e8e321544936269bd11a45d2d0275f63621c5ef01e0d8bd0dc4ed0"
 
 /**
  * Encoder counts, speeds and steering in one message (trainman419/Senior-Project,
@@ -199,6 +202,7 @@ void dagny_library_odometry_load(struct dagny_library_odometry *message, const u
 #define DAGNY_LIBRARY_BATTERY_PAYLOAD_SIZE 6u
 #define DAGNY_LIBRARY_BATTERY_PAYLOAD_MIN 6u
 #define DAGNY_LIBRARY_BATTERY_PAYLOAD_MAX 6u
+#define DAGNY_LIBRARY_BATTERY_SPEC_HASH "f4fdec3e72d6c3ac1335349cfa8c38bc5f104a60b0a3efc4192c087d4c344488"
 
 /**
  * Battery level readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -237,6 +241,7 @@ void dagny_library_battery_load(struct dagny_library_battery *message, const uin
 #define DAGNY_LIBRARY_COMPASS_PAYLOAD_SIZE 4u
 #define DAGNY_LIBRARY_COMPASS_PAYLOAD_MIN 4u
 #define DAGNY_LIBRARY_COMPASS_PAYLOAD_MAX 4u
+#define DAGNY_LIBRARY_COMPASS_SPEC_HASH "4dceaf9755b84710721e72e341a9f0f8b180cc406970329787c51e07f634c19f"
 
 /**
  * Compass readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -268,6 +273,7 @@ void dagny_library_compass_load(struct dagny_library_compass *message, const uin
 #define DAGNY_LIBRARY_MOTOR_PAYLOAD_SIZE 1u
 #define DAGNY_LIBRARY_MOTOR_PAYLOAD_MIN 1u
 #define DAGNY_LIBRARY_MOTOR_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_MOTOR_SPEC_HASH "e47a92779a3a46f30e677001eb8eb3b8534082e91797ceea9258c29c13954eef"
 
 /**
  * Sets the speed (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -296,6 +302,7 @@ void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t
 #define DAGNY_LIBRARY_DRIVE_PAYLOAD_SIZE 2u
 #define DAGNY_LIBRARY_DRIVE_PAYLOAD_MIN 2u
 #define DAGNY_LIBRARY_DRIVE_PAYLOAD_MAX 2u
+#define DAGNY_LIBRARY_DRIVE_SPEC_HASH "740134c3168c20db3c527edd23e3f8a61c74e47eaf343b8bfa43356c1401a241"
 
 /**
  * Sets speed and steering (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -329,6 +336,7 @@ void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t
 #define DAGNY_LIBRARY_STEERING_PAYLOAD_SIZE 1u
 #define DAGNY_LIBRARY_STEERING_PAYLOAD_MIN 1u
 #define DAGNY_LIBRARY_STEERING_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_STEERING_SPEC_HASH "f82d76fc9bcdcc09e25661f90614ede9089f9be0c14d6bb10e27db536c2e72bc"
 
 /**
  * Steering command (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -355,6 +363,7 @@ void dagny_library_steering_load(struct dagny_library_steering *message, const u
 #define DAGNY_LIBRARY_POWER_PAYLOAD_SIZE 1u
 #define DAGNY_LIBRARY_POWER_PAYLOAD_MIN 1u
 #define DAGNY_LIBRARY_POWER_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_POWER_SPEC_HASH "ac433642534e2929f0055be648c1066c8e8b2feb2262ab2b75d08828dbae757d"
 
 /**
  * Switches the power, or puts it to sleep (trainman419/Senior-Project, trainman419/dagny_protocol
@@ -380,6 +389,7 @@ void dagny_library_power_load(struct dagny_library_power *message, const uint8_t
 #define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_SIZE 8u
 #define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MIN 8u
 #define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MAX 8u
+#define DAGNY_LIBRARY_GPS_POSITION_SPEC_HASH "aba8a6750100fac4f82eebe887292ab3e9b0068f9b3faf42687ccfdfcba4b886"
 #define DAGNY_LIBRARY_GPS_POSITION_LATITUDE_SCALE_NUM 1
 #define DAGNY_LIBRARY_GPS_POSITION_LATITUDE_SCALE_DEN 1000000L
 #define DAGNY_LIBRARY_GPS_POSITION_LATITUDE_UNIT "deg"
@@ -417,6 +427,7 @@ void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
 #define DAGNY_LIBRARY_LASER_ID 'L'
 #define DAGNY_LIBRARY_LASER_PAYLOAD_MIN 0u
 #define DAGNY_LIBRARY_LASER_PAYLOAD_MAX 512u
+#define DAGNY_LIBRARY_LASER_SPEC_HASH "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
 #define DAGNY_LIBRARY_LASER_READINGS_SCALE_NUM 2
 #define DAGNY_LIBRARY_LASER_READINGS_SCALE_DEN 1
 #define DAGNY_LIBRARY_LASER_READINGS_UNIT "cm"
@@ -457,6 +468,7 @@ static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, si
 #define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_SIZE 7u
 #define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MIN 7u
 #define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MAX 7u
+#define DAGNY_LIBRARY_SHUTDOWN_SPEC_HASH "4b1e37385caecd4f088329d91b89b77550fe1d33fd24023bc359946d517f72c9"
 
 /**
  * Shuts the robot down after a minute (trainman419/Senior-Project, trainman419/dagny_protocol

@@ -93,6 +93,7 @@ enum matty_gps_mode_mode {
 #define MATTY_STOP_PAYLOAD_SIZE 0u
 #define MATTY_STOP_PAYLOAD_MIN 0u
 #define MATTY_STOP_PAYLOAD_MAX 0u
+#define MATTY_STOP_SPEC_HASH "bec937966960744fcf3cdc2d7d17f3ee78eee1cbed705dd7410bda2eeb5d4bfd"
 
 /**
  * Stops the robot (line 16).
@@ -116,6 +117,7 @@ void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
 #define MATTY_RESET_PAYLOAD_SIZE 0u
 #define MATTY_RESET_PAYLOAD_MIN 0u
 #define MATTY_RESET_PAYLOAD_MAX 0u
+#define MATTY_RESET_SPEC_HASH "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
 
 /** Stops the robot and sets its encoders to zero (line 17). */
 struct matty_reset {
@@ -135,6 +137,7 @@ void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
 #define MATTY_MODE_PAYLOAD_SIZE 1u
 #define MATTY_MODE_PAYLOAD_MIN 1u
 #define MATTY_MODE_PAYLOAD_MAX 1u
+#define MATTY_MODE_SPEC_HASH "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
 
 /** Sets the robot's mode (line 18). */
 struct matty_mode {
@@ -154,6 +157,7 @@ void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
 #define MATTY_GO_PAYLOAD_SIZE 4u
 #define MATTY_GO_PAYLOAD_MIN 4u
 #define MATTY_GO_PAYLOAD_MAX 4u
+#define MATTY_GO_SPEC_HASH "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
 #define MATTY_GO_SPEED_UNIT "mm/s"
 #define MATTY_GO_STEER_SCALE_NUM 1
 #define MATTY_GO_STEER_SCALE_DEN 100
@@ -178,6 +182,7 @@ void matty_go_load(struct matty_go *message, const uint8_t *payload);
 #define MATTY_LIMITS_PAYLOAD_SIZE 4u
 #define MATTY_LIMITS_PAYLOAD_MIN 4u
 #define MATTY_LIMITS_PAYLOAD_MAX 4u
+#define MATTY_LIMITS_SPEC_HASH "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
 #define MATTY_LIMITS_MAX_SPEED_UNIT "mm/s"
 #define MATTY_LIMITS_MAX_STEER_SCALE_NUM 1
 #define MATTY_LIMITS_MAX_STEER_SCALE_DEN 100
@@ -203,6 +208,7 @@ void matty_limits_load(struct matty_limits *message, const uint8_t *payload);
 #define MATTY_TIMING_PAYLOAD_SIZE 4u
 #define MATTY_TIMING_PAYLOAD_MIN 4u
 #define MATTY_TIMING_PAYLOAD_MAX 4u
+#define MATTY_TIMING_SPEC_HASH "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
 #define MATTY_TIMING_PERIOD_UNIT "ms"
 #define MATTY_TIMING_TIMEOUT_UNIT "ms"
 
@@ -226,6 +232,7 @@ void matty_timing_load(struct matty_timing *message, const uint8_t *payload);
 #define MATTY_GPS_MODE_PAYLOAD_SIZE 1u
 #define MATTY_GPS_MODE_PAYLOAD_MIN 1u
 #define MATTY_GPS_MODE_PAYLOAD_MAX 1u
+#define MATTY_GPS_MODE_SPEC_HASH "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
 
 /** Sets what is sent of the GPS receiver (line 22). */
 struct matty_gps_mode {
@@ -245,6 +252,7 @@ void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload)
 #define MATTY_ACK_PAYLOAD_SIZE 0u
 #define MATTY_ACK_PAYLOAD_MIN 0u
 #define MATTY_ACK_PAYLOAD_MAX 0u
+#define MATTY_ACK_SPEC_HASH "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
 
 /**
  * Confirms a command (lines 26-29).
@@ -267,6 +275,7 @@ void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
 #define MATTY_NACK_PAYLOAD_SIZE 0u
 #define MATTY_NACK_PAYLOAD_MIN 0u
 #define MATTY_NACK_PAYLOAD_MAX 0u
+#define MATTY_NACK_SPEC_HASH "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
 
 /**
  * Says that a command was not understood (lines 26-29).
@@ -290,6 +299,7 @@ void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
 #define MATTY_STATUS_PAYLOAD_SIZE 18u
 #define MATTY_STATUS_PAYLOAD_MIN 18u
 #define MATTY_STATUS_PAYLOAD_MAX 18u
+#define MATTY_STATUS_SPEC_HASH "9a3bc9b67289b602d4b06a187f779b231b92974b1e6fdd1bab43015b28dba5b0"
 #define MATTY_STATUS_VOLTAGE_UNIT "mV"
 #define MATTY_STATUS_CURRENT_UNIT "mA"
 #define MATTY_STATUS_SPEED_UNIT "mm/s"
@@ -340,6 +350,7 @@ void matty_status_load(struct matty_status *message, const uint8_t *payload);
 #define MATTY_GPS_ID 'P'
 #define MATTY_GPS_PAYLOAD_MIN 0u
 #define MATTY_GPS_PAYLOAD_MAX 121u
+#define MATTY_GPS_SPEC_HASH "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
 
 /**
  * A sentence of the GPS receiver (lines 45-48).

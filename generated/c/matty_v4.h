@@ -105,6 +105,7 @@ enum matty_v4_gps_mode_mode {
 #define MATTY_V4_STOP_PAYLOAD_SIZE 1u
 #define MATTY_V4_STOP_PAYLOAD_MIN 1u
 #define MATTY_V4_STOP_PAYLOAD_MAX 1u
+#define MATTY_V4_STOP_SPEC_HASH "a7733e796a0841037ff45d4dc25b2397a230ce780e7c93e53c77b65f5f4b16bd"
 
 /**
  * Stops the robot (esp/matty-v4.txt, line 16).
@@ -128,6 +129,7 @@ void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
 #define MATTY_V4_RESET_PAYLOAD_SIZE 0u
 #define MATTY_V4_RESET_PAYLOAD_MIN 0u
 #define MATTY_V4_RESET_PAYLOAD_MAX 0u
+#define MATTY_V4_RESET_SPEC_HASH "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
 
 /** Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17). */
 struct matty_v4_reset {
@@ -147,6 +149,7 @@ void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload)
 #define MATTY_V4_MODE_PAYLOAD_SIZE 1u
 #define MATTY_V4_MODE_PAYLOAD_MIN 1u
 #define MATTY_V4_MODE_PAYLOAD_MAX 1u
+#define MATTY_V4_MODE_SPEC_HASH "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
 
 /** Sets the robot's mode (004_bc163d01a5f01dc1.txt, line 18). */
 struct matty_v4_mode {
@@ -166,6 +169,7 @@ void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
 #define MATTY_V4_GO_PAYLOAD_SIZE 4u
 #define MATTY_V4_GO_PAYLOAD_MIN 4u
 #define MATTY_V4_GO_PAYLOAD_MAX 4u
+#define MATTY_V4_GO_SPEC_HASH "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
 #define MATTY_V4_GO_SPEED_UNIT "mm/s"
 #define MATTY_V4_GO_STEER_SCALE_NUM 1
 #define MATTY_V4_GO_STEER_SCALE_DEN 100
@@ -191,6 +195,7 @@ void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload);
 #define MATTY_V4_LIMITS_PAYLOAD_SIZE 4u
 #define MATTY_V4_LIMITS_PAYLOAD_MIN 4u
 #define MATTY_V4_LIMITS_PAYLOAD_MAX 4u
+#define MATTY_V4_LIMITS_SPEC_HASH "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
 #define MATTY_V4_LIMITS_MAX_SPEED_UNIT "mm/s"
 #define MATTY_V4_LIMITS_MAX_STEER_SCALE_NUM 1
 #define MATTY_V4_LIMITS_MAX_STEER_SCALE_DEN 100
@@ -221,6 +226,7 @@ void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payloa
 #define MATTY_V4_TIMING_PAYLOAD_SIZE 4u
 #define MATTY_V4_TIMING_PAYLOAD_MIN 4u
 #define MATTY_V4_TIMING_PAYLOAD_MAX 4u
+#define MATTY_V4_TIMING_SPEC_HASH "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
 #define MATTY_V4_TIMING_PERIOD_UNIT "ms"
 #define MATTY_V4_TIMING_TIMEOUT_UNIT "ms"
 
@@ -247,6 +253,7 @@ void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payloa
 #define MATTY_V4_GPS_MODE_PAYLOAD_SIZE 1u
 #define MATTY_V4_GPS_MODE_PAYLOAD_MIN 1u
 #define MATTY_V4_GPS_MODE_PAYLOAD_MAX 1u
+#define MATTY_V4_GPS_MODE_SPEC_HASH "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
 
 /** Sets what is sent of the GPS receiver (004_bc163d01a5f01dc1.txt, line 22). */
 struct matty_v4_gps_mode {
@@ -266,6 +273,7 @@ void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *pa
 #define MATTY_V4_VERSION_QUERY_PAYLOAD_SIZE 0u
 #define MATTY_V4_VERSION_QUERY_PAYLOAD_MIN 0u
 #define MATTY_V4_VERSION_QUERY_PAYLOAD_MAX 0u
+#define MATTY_V4_VERSION_QUERY_SPEC_HASH "64b31edb481abe8981924042da95b29412a42fbd61ac0ae36c8ee3008942abcf"
 
 /** Asks for the version (esp/matty-v4.txt, line 23). */
 struct matty_v4_version_query {
@@ -285,6 +293,7 @@ void matty_v4_version_query_load(struct matty_v4_version_query *message, const u
 #define MATTY_V4_LED_PAYLOAD_SIZE 4u
 #define MATTY_V4_LED_PAYLOAD_MIN 4u
 #define MATTY_V4_LED_PAYLOAD_MAX 4u
+#define MATTY_V4_LED_SPEC_HASH "8ed61fd4ee563caf0ea7cdf63794d1d838b1a93d4f72e371a74f0ded4c9ca1eb"
 
 /** Sets the colour of an LED (esp/Robot/src/data.h). */
 struct matty_v4_led {
@@ -306,6 +315,7 @@ void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload);
 #define MATTY_V4_ACK_PAYLOAD_SIZE 0u
 #define MATTY_V4_ACK_PAYLOAD_MIN 0u
 #define MATTY_V4_ACK_PAYLOAD_MAX 0u
+#define MATTY_V4_ACK_SPEC_HASH "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
 
 /**
  * Confirms a command (004_bc163d01a5f01dc1.txt, lines 26-29).
@@ -329,6 +339,7 @@ void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
 #define MATTY_V4_NACK_PAYLOAD_SIZE 0u
 #define MATTY_V4_NACK_PAYLOAD_MIN 0u
 #define MATTY_V4_NACK_PAYLOAD_MAX 0u
+#define MATTY_V4_NACK_SPEC_HASH "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
 
 /**
  * Says that a command was not understood (004_bc163d01a5f01dc1.txt, lines 26-29).
@@ -352,6 +363,7 @@ void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
 #define MATTY_V4_STATUS_PAYLOAD_SIZE 24u
 #define MATTY_V4_STATUS_PAYLOAD_MIN 24u
 #define MATTY_V4_STATUS_PAYLOAD_MAX 24u
+#define MATTY_V4_STATUS_SPEC_HASH "8329063714abce4931fb86fb2239eec289939ba2e9f7fbdbb2006d07e08b1aff"
 #define MATTY_V4_STATUS_VOLTAGE_UNIT "mV"
 #define MATTY_V4_STATUS_CURRENT_UNIT "mA"
 /** The current could not be read. */
@@ -419,6 +431,7 @@ void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payloa
 #define MATTY_V4_GPS_ID 'P'
 #define MATTY_V4_GPS_PAYLOAD_MIN 0u
 #define MATTY_V4_GPS_PAYLOAD_MAX 121u
+#define MATTY_V4_GPS_SPEC_HASH "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
 
 /**
  * A sentence of the GPS receiver (004_bc163d01a5f01dc1.txt, lines 45-48).
@@ -444,6 +457,7 @@ void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, siz
 #define MATTY_V4_VERSION_PAYLOAD_SIZE 2u
 #define MATTY_V4_VERSION_PAYLOAD_MIN 2u
 #define MATTY_V4_VERSION_PAYLOAD_MAX 2u
+#define MATTY_V4_VERSION_SPEC_HASH "466c2d3440d455274ac756df7cf55852170d4ae855c062874dee69c38a3794e6"
 
 /** Which robot this is, and its firmware (esp/matty-v4.txt, lines 52-55). */
 struct matty_v4_version {

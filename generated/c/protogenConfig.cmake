@@ -69,7 +69,8 @@ endif()
 #
 # Adds the library TARGET, whose C is made from SCHEMA at build time and made again when the schema,
 # or one that it extends, changes. PROTOCOL is the schema's `protocol`, where the file is not called
-# like it. OPTIONS go to `protogen generate`, as in `OPTIONS --events messages --only gyro`.
+# like it. OPTIONS go to `protogen generate`, as in `OPTIONS --events messages --only gyro`; nothing
+# comes from a protogen.toml.
 function(protogen_generate target schema)
     cmake_parse_arguments(arg "" "PROTOCOL;OUTPUT" "OPTIONS" ${ARGN})
     find_program(PROTOGEN_EXECUTABLE protogen REQUIRED)
@@ -84,7 +85,7 @@ function(protogen_generate target schema)
     add_custom_command(
         OUTPUT "${base}.c" "${base}.h"
         COMMAND "${PROTOGEN_EXECUTABLE}" generate "${schema}" --target c --output "${arg_OUTPUT}"
-                --depfile "${base}.d" --quiet ${arg_OPTIONS}
+                --depfile "${base}.d" --no-project --quiet ${arg_OPTIONS}
         DEPENDS "${schema}"
         DEPFILE "${base}.d"
         COMMENT "protogen: ${arg_PROTOCOL}"

@@ -148,6 +148,7 @@ static inline uint16_t rflex_load_u16be(const uint8_t *at) {
 #define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0u
 #define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0u
 #define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0u
+#define RFLEX_REQUEST_SYSTEM_STATUS_SPEC_HASH "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
 
 /** Requests the system status (lines 52, 55). */
 struct rflex_request_system_status {
@@ -170,6 +171,7 @@ void rflex_request_system_status_load(struct rflex_request_system_status *messag
 #define RFLEX_SYSTEM_STATUS_PAYLOAD_SIZE 9u
 #define RFLEX_SYSTEM_STATUS_PAYLOAD_MIN 9u
 #define RFLEX_SYSTEM_STATUS_PAYLOAD_MAX 9u
+#define RFLEX_SYSTEM_STATUS_SPEC_HASH "2eb29f62c17fcd53efcd1f4cc19ac8c73a77792b0a71b39d6380754053aacc2f"
 
 /** Battery and brake status (lines 52, 58-61). */
 struct rflex_system_status {
@@ -194,6 +196,7 @@ void rflex_system_status_load(struct rflex_system_status *message, const uint8_t
 #define RFLEX_MOTOR_00_PAYLOAD_SIZE 1u
 #define RFLEX_MOTOR_00_PAYLOAD_MIN 1u
 #define RFLEX_MOTOR_00_PAYLOAD_MAX 1u
+#define RFLEX_MOTOR_00_SPEC_HASH "7293bb3a96efd46bdc637332eca5fd53fb5c62df5db70d07ab7cea45c01a7b98"
 
 /** Motor packet 00, whose purpose the document does not know (lines 67-75). */
 struct rflex_motor_00 {
@@ -214,6 +217,7 @@ void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload)
 #define RFLEX_MOTOR_COMMAND_PAYLOAD_SIZE 14u
 #define RFLEX_MOTOR_COMMAND_PAYLOAD_MIN 14u
 #define RFLEX_MOTOR_COMMAND_PAYLOAD_MAX 14u
+#define RFLEX_MOTOR_COMMAND_SPEC_HASH "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
 
 /** Sets the velocity of one axis (lines 79, 83-89). */
 struct rflex_motor_command {
@@ -242,6 +246,7 @@ void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t
 #define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9u
 #define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9u
 #define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9u
+#define RFLEX_CONFIRM_MOTOR_COMMAND_SPEC_HASH "05891bcc3fc050a3be3536fcd91278f223b335dff989ae004c704ef846da70fe"
 
 /** Confirms a motor command (lines 80, 92-95). */
 struct rflex_confirm_motor_command {
@@ -268,6 +273,7 @@ void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *messag
 #define RFLEX_MOTOR_0A_PAYLOAD_SIZE 0u
 #define RFLEX_MOTOR_0A_PAYLOAD_MIN 0u
 #define RFLEX_MOTOR_0A_PAYLOAD_MAX 0u
+#define RFLEX_MOTOR_0A_SPEC_HASH "eedc3fc169634e242a263c754415dd56363ce235e3048ec98cc8fb6b216defc8"
 
 /**
  * Motor packet 0A, whose purpose the document does not know; sent at startup (lines 101, 105, 295).
@@ -290,6 +296,7 @@ void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload)
 #define RFLEX_MOTOR_0C_PAYLOAD_SIZE 0u
 #define RFLEX_MOTOR_0C_PAYLOAD_MIN 0u
 #define RFLEX_MOTOR_0C_PAYLOAD_MAX 0u
+#define RFLEX_MOTOR_0C_SPEC_HASH "a651ee555828b7b5463b3cf907b01232f0190770a91bd51ca9e578c744e26154"
 
 /**
  * Motor packet 0C, whose purpose the document does not know; sent at startup (lines 108, 111, 114,
@@ -313,6 +320,7 @@ void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload)
 #define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_SIZE 8u
 #define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MIN 8u
 #define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MAX 8u
+#define RFLEX_MOTOR_0C_ANSWER_SPEC_HASH "1ea2815558d64dfc3c23e05d49b04b3fcb73e449884f76930539bb65373172f3"
 
 /** Answers motor packet 0C (lines 108, 117-119). */
 struct rflex_motor_0c_answer {
@@ -335,6 +343,7 @@ void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uin
 #define RFLEX_READ_MOTOR_PAYLOAD_SIZE 25u
 #define RFLEX_READ_MOTOR_PAYLOAD_MIN 25u
 #define RFLEX_READ_MOTOR_PAYLOAD_MAX 25u
+#define RFLEX_READ_MOTOR_SPEC_HASH "5547561cbee182e0162fc9a912603f337a9c37b8d74ccb01e718afe3e6375395"
 
 /** State of one axis, sent while motor packets are on (lines 125-133). */
 struct rflex_read_motor {
@@ -367,6 +376,7 @@ void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payl
 #define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_START_STOP_MOTOR_PACKETS_SPEC_HASH "1f5b75aac49aad0ebd7a98ebd33a98a6722a03b17653bdee57742261c147cd3e"
 
 /** Starts or stops the sending of motor packets (lines 136, 139-141). */
 struct rflex_start_stop_motor_packets {
@@ -391,6 +401,7 @@ void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_SPEC_HASH "db0c491b416374f716f05cb05318badb03ba97cf34d80fdafe9bf511d6e231a1"
 
 /** Confirms the start or the stop of motor packets (lines 137, 148-150). */
 struct rflex_confirm_start_stop_motor_packets {
@@ -416,6 +427,7 @@ void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop
 #define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0u
 #define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0u
 #define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0u
+#define RFLEX_REQUEST_JOYSTICK_DATA_SPEC_HASH "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
 
 /** Requests one packet with joystick data (lines 157, 160). */
 struct rflex_request_joystick_data {
@@ -438,6 +450,7 @@ void rflex_request_joystick_data_load(struct rflex_request_joystick_data *messag
 #define RFLEX_JOYSTICK_DATA_PAYLOAD_SIZE 13u
 #define RFLEX_JOYSTICK_DATA_PAYLOAD_MIN 13u
 #define RFLEX_JOYSTICK_DATA_PAYLOAD_MAX 13u
+#define RFLEX_JOYSTICK_DATA_SPEC_HASH "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
 
 /** Position and buttons of the joystick (lines 157, 167-171). */
 struct rflex_joystick_data {
@@ -464,6 +477,7 @@ void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t
 #define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13u
 #define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13u
 #define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13u
+#define RFLEX_START_STOP_SONAR_PACKETS_SPEC_HASH "72a9c3d09304a4bb171a89dd2634b3eb779d7886baa95121a2ed3599d1b61e3d"
 
 /** Starts or stops the sending of sonar packets (lines 195, 199-203). */
 struct rflex_start_stop_sonar_packets {
@@ -492,6 +506,7 @@ void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_SPEC_HASH "4d773f7fcf88e3d1efc5013108ddbeb71d3b36e3da52e2e8cacda2156c80fdd0"
 
 /** Confirms the start or the stop of sonar packets (lines 196, 213-215). */
 struct rflex_confirm_start_stop_sonar_packets {
@@ -516,6 +531,7 @@ void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop
 #define RFLEX_SONAR_DATA_ID_SUBCLASS 0x02u
 #define RFLEX_SONAR_DATA_PAYLOAD_MIN 8u
 #define RFLEX_SONAR_DATA_PAYLOAD_MAX 254u
+#define RFLEX_SONAR_DATA_SPEC_HASH "e56f6b5d3cf1d904dd0574bb97f415eb01b6f11b2867a18cb64f5fba0373b5c7"
 #define RFLEX_SONAR_DATA_UNKNOWN_DEFAULT 2u
 
 /**
@@ -559,6 +575,7 @@ static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t i
 #define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4u
 #define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4u
 #define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4u
+#define RFLEX_INITIALIZE_DIGITAL_IO_SPEC_HASH "6b0596a0ac36417ac36b04d5d46291da91c9f559b0e70c5c72d3ed91d6e4d4c5"
 
 /**
  * Initialises the digital I/O; starts or stops the sending of its packets (lines 246, 250, 298,
@@ -587,6 +604,7 @@ void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *messag
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8u
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8u
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_SPEC_HASH "f9d86989441d3da2751ccb1718a1fef5f893e5fcdf81e2179b2ea43b6f8e4f9c"
 
 /**
  * Confirms that sending of digital I/O packets has started or stopped (lines 301, 309).
@@ -615,6 +633,7 @@ void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_di
 #define RFLEX_CHANGED_BUMPERS_PAYLOAD_SIZE 7u
 #define RFLEX_CHANGED_BUMPERS_PAYLOAD_MIN 7u
 #define RFLEX_CHANGED_BUMPERS_PAYLOAD_MAX 7u
+#define RFLEX_CHANGED_BUMPERS_SPEC_HASH "55a0c3985cfa7a8fbb46b94d633cd20d22ab1d223685f9f6300e045b0211b7f3"
 
 /**
  * Bumpers that have changed (lines 253, 257-258).
@@ -646,6 +665,7 @@ void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uin
 #define RFLEX_CHECK_IO_CHANGED_PAYLOAD_SIZE 4u
 #define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MIN 4u
 #define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MAX 4u
+#define RFLEX_CHECK_IO_CHANGED_SPEC_HASH "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
 
 /** Asks whether digital inputs have changed (lines 261, 264-265). */
 struct rflex_check_io_changed {
@@ -666,6 +686,7 @@ void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const u
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12u
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12u
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12u
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_SPEC_HASH "a71a68a30724d9f778664786ff45cd4fc0206e422bad59fa9c9a9d7247012670"
 
 /** Says how many packets answer the check (lines 261, 269-273). */
 struct rflex_check_io_changed_answer {
@@ -692,6 +713,7 @@ void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *me
 #define RFLEX_CHANGED_BYTE_PAYLOAD_SIZE 7u
 #define RFLEX_CHANGED_BYTE_PAYLOAD_MIN 7u
 #define RFLEX_CHANGED_BYTE_PAYLOAD_MAX 7u
+#define RFLEX_CHANGED_BYTE_SPEC_HASH "2af4749f04df870d61315fd92d2bb5cc88b987e81b523f2ba94344f08049b5fb"
 
 /** New value of a byte of the digital I/O (lines 275, 278-281). */
 struct rflex_changed_byte {

@@ -153,6 +153,7 @@ static inline uint16_t rflex_drivers_load_u16be(const uint8_t *at) {
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0u
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0u
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_SPEC_HASH "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
 
 /** Requests the system status (003_037af2f07b705118.txt, lines 52, 55). */
 struct rflex_drivers_request_system_status {
@@ -176,6 +177,7 @@ void rflex_drivers_request_system_status_load(struct rflex_drivers_request_syste
 #define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_SIZE 9u
 #define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MIN 9u
 #define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MAX 9u
+#define RFLEX_DRIVERS_SYSTEM_STATUS_SPEC_HASH "6f69938e34a86b398a451512f6cf826326f247453e5f4a23df80266f6ff75a6c"
 #define RFLEX_DRIVERS_SYSTEM_STATUS_BATTERY_VOLTAGE_SCALE_NUM 1
 #define RFLEX_DRIVERS_SYSTEM_STATUS_BATTERY_VOLTAGE_SCALE_DEN 100
 #define RFLEX_DRIVERS_SYSTEM_STATUS_BATTERY_VOLTAGE_UNIT "V"
@@ -207,6 +209,7 @@ void rflex_drivers_system_status_load(struct rflex_drivers_system_status *messag
 #define RFLEX_DRIVERS_LCD_DUMP_ID_SUBCLASS 0x00u
 #define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MIN 6u
 #define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MAX 255u
+#define RFLEX_DRIVERS_LCD_DUMP_SPEC_HASH "49388eda07bb143bdc9960596783fb6a1b91d905ee7c099b665a19f4521bea7d"
 
 /** One row of the display (rflex-protocol.txt, SYS_LCD_DUMP). */
 struct rflex_drivers_lcd_dump {
@@ -238,6 +241,7 @@ void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message, const u
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_SIZE 1u
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MIN 1u
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MAX 1u
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_SPEC_HASH "a0f780b381c972046d4069a5e2b48043d858aa1757ec175c8f5d7b0256db9572"
 
 /** Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75). */
 struct rflex_drivers_axis_get_system {
@@ -260,6 +264,7 @@ void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *me
 #define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_SIZE 14u
 #define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MIN 14u
 #define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MAX 14u
+#define RFLEX_DRIVERS_MOTOR_COMMAND_SPEC_HASH "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
 
 /** Sets the velocity of one axis (003_037af2f07b705118.txt, lines 79, 83-89). */
 struct rflex_drivers_motor_command {
@@ -296,6 +301,7 @@ void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *messag
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9u
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9u
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9u
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_SPEC_HASH "3ca66b4ae9df90e0b5a7f73c0a440322a4029558d515dd75e12184b4051481af"
 
 /** Confirms a motor command (003_037af2f07b705118.txt, lines 80, 92-95). */
 struct rflex_drivers_confirm_motor_command {
@@ -326,6 +332,7 @@ void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor
 #define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_SIZE 0u
 #define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MIN 0u
 #define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_SET_DEFAULTS_SPEC_HASH "331dc1874e44c21540bd0a7bd437fa833e644a317fca702ac2490b670399df50"
 
 /** Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295). */
 struct rflex_drivers_set_defaults {
@@ -348,6 +355,7 @@ void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
 #define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_SIZE 0u
 #define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MIN 0u
 #define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_BRAKE_SET_SPEC_HASH "4401cd64cb9a2ca5864d7f599ad76220a0b04b04b4d52eb3104ddff4d4bb7c57"
 
 /** Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET). */
 struct rflex_drivers_brake_set {
@@ -369,6 +377,7 @@ void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const
 #define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_SIZE 0u
 #define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MIN 0u
 #define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_BRAKE_RELEASE_SPEC_HASH "1f9ec56928e572d49d393a26172348d3f39304387a211b910a9ffc8e0eede26b"
 
 /** Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296). */
 struct rflex_drivers_brake_release {
@@ -391,6 +400,7 @@ void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *messag
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_SIZE 8u
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_SPEC_HASH "430540901eca06317db6faf09d6721d0ae4315c8d695e0335d108911f974cd66"
 
 /** Answers the release of the brake (003_037af2f07b705118.txt, lines 108, 117-119). */
 struct rflex_drivers_brake_release_answer {
@@ -419,6 +429,7 @@ void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_
 #define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_SIZE 25u
 #define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MIN 25u
 #define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MAX 25u
+#define RFLEX_DRIVERS_READ_MOTOR_SPEC_HASH "3a1e49b2023b6279334c376ce2a3d5e5ed90528bbf4875804d9956812d5e5af0"
 
 /** State of one axis, sent while motor packets are on (003_037af2f07b705118.txt, lines 125-133). */
 struct rflex_drivers_read_motor {
@@ -456,6 +467,7 @@ void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_SPEC_HASH "2b2edc8680e95a55bb034f9a3143a06e84a4ddf752478220b9a340a4df61b2df"
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PERIOD_UNIT "us"
 
 /** Starts or stops the sending of motor packets (003_037af2f07b705118.txt, lines 136, 139-141). */
@@ -486,6 +498,7 @@ void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_SPEC_HASH "568c8e3d73ceb23eabe0dab08301a84fe6f1d3fbea34b120fda0bac5df29f526"
 
 /**
  * Confirms the start or the stop of motor packets (003_037af2f07b705118.txt, lines 137, 148-150).
@@ -517,6 +530,7 @@ void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_co
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0u
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0u
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_SPEC_HASH "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
 
 /** Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160). */
 struct rflex_drivers_request_joystick_data {
@@ -540,6 +554,7 @@ void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joyst
 #define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_SIZE 13u
 #define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MIN 13u
 #define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MAX 13u
+#define RFLEX_DRIVERS_JOYSTICK_DATA_SPEC_HASH "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
 
 /** Position and buttons of the joystick (003_037af2f07b705118.txt, lines 157, 167-171). */
 struct rflex_drivers_joystick_data {
@@ -568,6 +583,7 @@ void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *messag
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13u
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13u
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13u
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_SPEC_HASH "69f77567e6d8999ed17a22d8552fa6f0eba786392f52adfdf6de9af2afa2f3b1"
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ECHO_DELAY_UNIT "us"
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PING_DELAY_UNIT "us"
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_SET_DELAY_UNIT "us"
@@ -604,6 +620,7 @@ void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8u
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_SPEC_HASH "d2b89644b540c7d1f7b4a429e63f299b82e18807782ff83ba34836ea1beb87fb"
 
 /**
  * Confirms the start or the stop of sonar packets (003_037af2f07b705118.txt, lines 196, 213-215).
@@ -634,6 +651,7 @@ void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_co
 #define RFLEX_DRIVERS_SONAR_DATA_ID_SUBCLASS 0x02u
 #define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MAX 254u
+#define RFLEX_DRIVERS_SONAR_DATA_SPEC_HASH "3f7b333d313afc422fadcd934ad297d22287b6f29eedc44922349b2160905f5a"
 #define RFLEX_DRIVERS_SONAR_DATA_RETVAL_DEFAULT 2u
 
 /**
@@ -679,6 +697,7 @@ static inline void rflex_drivers_sonar_data_readings_at(const uint8_t *payload, 
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4u
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4u
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4u
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_SPEC_HASH "45cf8ac8343154455cd86dc5ef08a85d78043f7528feeff6127146f458ce065b"
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PERIOD_UNIT "us"
 
 /**
@@ -709,6 +728,7 @@ void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_di
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8u
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8u
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_SPEC_HASH "12a591d4d8702a5e8f3cfbf573669df908429fe0570a918f219d28df1f47ee28"
 
 /**
  * Confirms that sending of digital I/O packets has started or stopped (003_037af2f07b705118.txt,
@@ -741,6 +761,7 @@ void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confi
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_SIZE 7u
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MIN 7u
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MAX 7u
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_SPEC_HASH "883540f43f52e215cfc6eee6882bfafa05cd15f1ddb5feb45f55a318485edbc5"
 
 /** Bumpers that have changed (003_037af2f07b705118.txt, lines 253, 257-258). */
 struct rflex_drivers_changed_bumpers {
@@ -770,6 +791,7 @@ void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *me
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_SIZE 4u
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MIN 4u
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MAX 4u
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_SPEC_HASH "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
 
 /** Asks whether digital inputs have changed (003_037af2f07b705118.txt, lines 261, 264-265). */
 struct rflex_drivers_check_io_changed {
@@ -793,6 +815,7 @@ void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12u
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12u
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12u
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_SPEC_HASH "377257310f5b094378ab6bc1eed42b46911c166afb17089d81880f7adc85f3be"
 
 /** Says how many packets answer the check (003_037af2f07b705118.txt, lines 261, 269-273). */
 struct rflex_drivers_check_io_changed_answer {
@@ -827,6 +850,7 @@ void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_ch
 #define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_SIZE 7u
 #define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MIN 7u
 #define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MAX 7u
+#define RFLEX_DRIVERS_CHANGED_BYTE_SPEC_HASH "ab39fa4d9dbea5c9c3997b64d55bf98027b8cd28086e5a95a6b3b65f488417fb"
 
 /** New value of a byte of the digital I/O (003_037af2f07b705118.txt, lines 275, 278-281). */
 struct rflex_drivers_changed_byte {
@@ -856,6 +880,7 @@ void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
 #define RFLEX_DRIVERS_IR_RUN_PAYLOAD_SIZE 21u
 #define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MIN 21u
 #define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MAX 21u
+#define RFLEX_DRIVERS_IR_RUN_SPEC_HASH "d3a807bbb2b43e6530e296c5d751268dc6ee59e7e0a08ab8db62a8fc82dcb514"
 
 /** Starts or stops the infrared sensors (rflex_commands.cc, rflex_ir_on, rflex_ir_off). */
 struct rflex_drivers_ir_run {
@@ -889,6 +914,7 @@ void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8
 #define RFLEX_DRIVERS_IR_REPORT_ID_SUBCLASS 0x01u
 #define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MIN 1u
 #define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MAX 255u
+#define RFLEX_DRIVERS_IR_REPORT_SPEC_HASH "4a7de9333078fa9e487b9043f2fd8178eed4689c0a1bf5d46059cb743ac8fa7c"
 
 /**
  * Readings of the infrared sensors (rflex_commands.cc, parseIrReport).

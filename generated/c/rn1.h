@@ -131,6 +131,7 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
 #define RN1_MOVE_MANUAL_PAYLOAD_SIZE 2u
 #define RN1_MOVE_MANUAL_PAYLOAD_MIN 2u
 #define RN1_MOVE_MANUAL_PAYLOAD_MAX 2u
+#define RN1_MOVE_MANUAL_SPEC_HASH "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
 
 /** Drive by hand, with a speed and an arc (lines 27-29). */
 struct rn1_move_manual {
@@ -152,6 +153,7 @@ void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payloa
 #define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4u
 #define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4u
 #define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4u
+#define RN1_MOVE_RELATIVE_TWOSTEP_SPEC_HASH "8899d8d9e8f1b2e393754f2e8d16ba3097990ea5eae139ee75cab21b6da512e0"
 #define RN1_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_NUM 1
 #define RN1_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_DEN 16
 #define RN1_MOVE_RELATIVE_TWOSTEP_ANGLE_UNIT "deg"
@@ -178,6 +180,7 @@ void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
 #define RN1_MOVE_RELATIVE_ARC_PAYLOAD_SIZE 4u
 #define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MIN 4u
 #define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MAX 4u
+#define RN1_MOVE_RELATIVE_ARC_SPEC_HASH "980f315812fd5f9713cf02b09ac9d205ebfa87721c6d03abe676a8d20f3425aa"
 #define RN1_MOVE_RELATIVE_ARC_ANGLE_SCALE_NUM 1
 #define RN1_MOVE_RELATIVE_ARC_ANGLE_SCALE_DEN 16
 #define RN1_MOVE_RELATIVE_ARC_ANGLE_UNIT "deg"
@@ -202,6 +205,7 @@ void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message, const uin
 #define RN1_MAINTENANCE_ID 0xFEu
 #define RN1_MAINTENANCE_PAYLOAD_MIN 4u
 #define RN1_MAINTENANCE_PAYLOAD_MAX 7u
+#define RN1_MAINTENANCE_SPEC_HASH "8497d314dbcc95ad3ef4b0e82f9704e0e6b88aaf1317d59ea6a4f31cbe958650"
 
 /**
  * Reconfigure the UART, cut the power or start a flasher (lines 42-56).
@@ -236,6 +240,7 @@ void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payloa
 #define RN1_GYRO_PAYLOAD_SIZE 7u
 #define RN1_GYRO_PAYLOAD_MIN 7u
 #define RN1_GYRO_PAYLOAD_MAX 7u
+#define RN1_GYRO_SPEC_HASH "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
 
 /** Readings of the three-axis gyroscope (lines 61-65). */
 struct rn1_gyro {
@@ -260,6 +265,7 @@ void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
 #define RN1_XCEL_PAYLOAD_SIZE 7u
 #define RN1_XCEL_PAYLOAD_MIN 7u
 #define RN1_XCEL_PAYLOAD_MAX 7u
+#define RN1_XCEL_SPEC_HASH "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
 
 /** Readings of the three-axis accelerometer (lines 67-71). */
 struct rn1_xcel {
@@ -284,6 +290,7 @@ void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
 #define RN1_COMPASS_PAYLOAD_SIZE 7u
 #define RN1_COMPASS_PAYLOAD_MIN 7u
 #define RN1_COMPASS_PAYLOAD_MAX 7u
+#define RN1_COMPASS_SPEC_HASH "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
 
 /** Readings of the three-axis compass (lines 73-77). */
 struct rn1_compass {
@@ -309,6 +316,7 @@ void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload);
 #define RN1_OPTFLOW_PAYLOAD_SIZE 6u
 #define RN1_OPTFLOW_PAYLOAD_MIN 6u
 #define RN1_OPTFLOW_PAYLOAD_MAX 6u
+#define RN1_OPTFLOW_SPEC_HASH "4ebf89451caf104fff63d2a46ce408af0b778e36a4cec12e95571b633104dcb6"
 
 /** Readings of the optical flow sensor that looks at the ground (lines 79-83). */
 struct rn1_optflow {
@@ -334,6 +342,7 @@ void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload);
 #define RN1_LIDAR_PAYLOAD_SIZE 721u
 #define RN1_LIDAR_PAYLOAD_MIN 721u
 #define RN1_LIDAR_PAYLOAD_MAX 721u
+#define RN1_LIDAR_SPEC_HASH "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
 #define RN1_LIDAR_DISTANCES_UNIT "mm"
 /** Nothing measured, for one because too little came back. */
 #define RN1_LIDAR_DISTANCES_NO_DATAPOINT 0u
@@ -371,6 +380,7 @@ static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t ind
 #define RN1_SONAR_PAYLOAD_SIZE 15u
 #define RN1_SONAR_PAYLOAD_MIN 15u
 #define RN1_SONAR_PAYLOAD_MAX 15u
+#define RN1_SONAR_SPEC_HASH "b29ce61f6f2f4fec2fc7c20f7af74e4a9b76f8c7334ebda8a480d9a43837a6a1"
 #define RN1_SONAR_DISTANCES_UNIT "mm"
 /** No echo came back. */
 #define RN1_SONAR_DISTANCES_NO_DATAPOINT 0u
@@ -400,6 +410,7 @@ static inline uint16_t rn1_sonar_distances_at(const uint8_t *payload, size_t ind
 #define RN1_FACING_PAYLOAD_SIZE 5u
 #define RN1_FACING_PAYLOAD_MIN 5u
 #define RN1_FACING_PAYLOAD_MAX 5u
+#define RN1_FACING_SPEC_HASH "8333c607be579b90036b72f07f4bdd75d9b8a0a7e6af8113457d0b12e550a3ea"
 #define RN1_FACING_HEADING_UNIT "deg"
 #define RN1_FACING_SPEED_UNIT "mm/s"
 

@@ -116,6 +116,7 @@ struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
 #define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_SIZE 2u
 #define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MIN 2u
 #define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MAX 2u
+#define RN1_FIRMWARE_MOVE_MANUAL_SPEC_HASH "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
 
 /** Drive by hand, with a speed and an arc (000_c7d74cf9c866b63b.txt, lines 27-29). */
 struct rn1_firmware_move_manual {
@@ -141,6 +142,7 @@ void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4u
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4u
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4u
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_SPEC_HASH "702fb29cae3303314a0dd997cabeb45e5a6f2ed79e83c660b8d451f56375f134"
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_NUM 1
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_DEN 16
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ANGLE_UNIT "deg"
@@ -175,6 +177,7 @@ void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_t
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_SIZE 1u
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MIN 1u
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MAX 1u
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_SPEC_HASH "d49cb1bdcf652a8c5cba73b01cf598f97b4e36724557fa67cab1fc02118cce65"
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_IGNORED_DEFAULT 0u
 
 /**
@@ -205,6 +208,7 @@ void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_a
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_SIZE 1u
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MIN 1u
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MAX 1u
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_SPEC_HASH "8380de3f13329e2106ad271d850d22fcf13fcb9486f83580d6f94bdee3f5a65f"
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_IGNORED_DEFAULT 0u
 
 /**
@@ -234,6 +238,7 @@ void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_a
 #define RN1_FIRMWARE_MAINTENANCE_ID 0xFEu
 #define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MIN 4u
 #define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_MAINTENANCE_SPEC_HASH "7e30d91462f052dac697e813fb841b108a49cbfb75d3509337e52e7d936b6c08"
 
 /**
  * Reconfigure the UART, cut the power or start a flasher (000_c7d74cf9c866b63b.txt, lines 42-56).
@@ -270,6 +275,7 @@ void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, con
 #define RN1_FIRMWARE_GYRO_PAYLOAD_SIZE 7u
 #define RN1_FIRMWARE_GYRO_PAYLOAD_MIN 7u
 #define RN1_FIRMWARE_GYRO_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_GYRO_SPEC_HASH "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
 
 /**
  * Readings of the three-axis gyroscope (main.c, lines 800-807).
@@ -308,6 +314,7 @@ void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *pa
 #define RN1_FIRMWARE_XCEL_PAYLOAD_SIZE 7u
 #define RN1_FIRMWARE_XCEL_PAYLOAD_MIN 7u
 #define RN1_FIRMWARE_XCEL_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_XCEL_SPEC_HASH "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
 
 /**
  * Readings of the three-axis accelerometer (main.c, lines 809-816).
@@ -346,6 +353,7 @@ void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *pa
 #define RN1_FIRMWARE_COMPASS_PAYLOAD_SIZE 7u
 #define RN1_FIRMWARE_COMPASS_PAYLOAD_MIN 7u
 #define RN1_FIRMWARE_COMPASS_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_COMPASS_SPEC_HASH "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
 
 /**
  * Readings of the three-axis compass (main.c, lines 818-825).
@@ -385,6 +393,7 @@ void rn1_firmware_compass_load(struct rn1_firmware_compass *message, const uint8
 #define RN1_FIRMWARE_LIDAR_PAYLOAD_SIZE 721u
 #define RN1_FIRMWARE_LIDAR_PAYLOAD_MIN 721u
 #define RN1_FIRMWARE_LIDAR_PAYLOAD_MAX 721u
+#define RN1_FIRMWARE_LIDAR_SPEC_HASH "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
 #define RN1_FIRMWARE_LIDAR_DISTANCES_UNIT "mm"
 /** Nothing measured, for one because too little came back. */
 #define RN1_FIRMWARE_LIDAR_DISTANCES_NO_DATAPOINT 0u
@@ -423,6 +432,7 @@ static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, s
 #define RN1_FIRMWARE_SONAR_PAYLOAD_SIZE 7u
 #define RN1_FIRMWARE_SONAR_PAYLOAD_MIN 7u
 #define RN1_FIRMWARE_SONAR_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_SONAR_SPEC_HASH "051b1abe7133e1c1c272aa62dc7b3fc49701be2f7777c277749004b93234c1c8"
 #define RN1_FIRMWARE_SONAR_DISTANCES_UNIT "mm"
 /** No echo came back. */
 #define RN1_FIRMWARE_SONAR_DISTANCES_NO_DATAPOINT 0u
@@ -456,6 +466,7 @@ static inline uint16_t rn1_firmware_sonar_distances_at(const uint8_t *payload, s
 #define RN1_FIRMWARE_FACING_PAYLOAD_SIZE 5u
 #define RN1_FIRMWARE_FACING_PAYLOAD_MIN 5u
 #define RN1_FIRMWARE_FACING_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_FACING_SPEC_HASH "513861d244a5ab98863c17f048e0f6602aef8ea0e7675fd10d02f2bfa3651635"
 #define RN1_FIRMWARE_FACING_STATUS_DEFAULT 1u
 #define RN1_FIRMWARE_FACING_HEADING_UNIT "deg"
 #define RN1_FIRMWARE_FACING_SPEED_UNIT "mm/s"
@@ -487,6 +498,7 @@ void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_SIZE 5u
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MIN 5u
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_SPEC_HASH "71cab2feab28664b24ea8504d159f28a802637fa2d25aa04dfe434cc56d5d7ab"
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_STATUS_DEFAULT 1u
 
 /**
@@ -518,6 +530,7 @@ void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *me
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_SIZE 2u
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MIN 2u
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MAX 2u
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_SPEC_HASH "46e9a37012c6e9f6855661ff0082f4321d5b386daf375a3d01063d2f66e8edb6"
 
 /** Debugging, the latest word from motor controller 3 (main.c, lines 940-944). */
 struct rn1_firmware_motor_controller_message {
@@ -541,6 +554,7 @@ void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_contro
 #define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_SIZE 20u
 #define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MIN 20u
 #define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MAX 20u
+#define RN1_FIRMWARE_DEBUG_NUMBERS_SPEC_HASH "1d6e41100766c52026d8740efd2f6e1fa9a3f30b5fe22c5c5b6c2db02319e604"
 
 /**
  * Debugging, four numbers that a developer picks (main.c, lines 946-971).

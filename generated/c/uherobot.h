@@ -72,6 +72,7 @@ enum uherobot_message {
 #define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_SIZE 21u
 #define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MIN 21u
 #define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MAX 21u
+#define UHEROBOT_MOTORS_SERVOS_LEDS_SPEC_HASH "114844611bfb6eab6afe2b827cf6d6dd382bb627aa4e19aa390dd8ce8a274df0"
 
 /** Set both motors, eight servos and the LEDs (lines 40-43). */
 struct uherobot_motors_servos_leds {
@@ -105,6 +106,7 @@ static inline uint16_t uherobot_motors_servos_leds_servos_at(const uint8_t *payl
 #define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_SIZE 8u
 #define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MIN 8u
 #define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MAX 8u
+#define UHEROBOT_MOTORS_TWO_SERVOS_SPEC_HASH "7f72b962170fbbe1ff33066de865b97691547ef0a09909ce174c3b736e8fdfe0"
 
 /** Set both motors and two servos (lines 45-48). */
 struct uherobot_motors_two_servos {
@@ -136,6 +138,7 @@ static inline uint16_t uherobot_motors_two_servos_servos_at(const uint8_t *paylo
 #define UHEROBOT_MOTOR_TEST_PAYLOAD_SIZE 4u
 #define UHEROBOT_MOTOR_TEST_PAYLOAD_MIN 4u
 #define UHEROBOT_MOTOR_TEST_PAYLOAD_MAX 4u
+#define UHEROBOT_MOTOR_TEST_SPEC_HASH "35bc13a5973b5982e3cea3711f84c09a3e950e9c0375897fd15aa628de4f7995"
 
 /** Set both motors and nothing else (lines 55-58). */
 struct uherobot_motor_test {
@@ -157,6 +160,7 @@ void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t
 #define UHEROBOT_STATUS_PAYLOAD_SIZE 6u
 #define UHEROBOT_STATUS_PAYLOAD_MIN 6u
 #define UHEROBOT_STATUS_PAYLOAD_MAX 6u
+#define UHEROBOT_STATUS_SPEC_HASH "a3d1d6f5970530b2c8dce6a21618fa9c1ccb21f299c69d3d9b05b7131ecbe994"
 #define UHEROBOT_STATUS_VOLTAGE_SCALE_NUM 1
 #define UHEROBOT_STATUS_VOLTAGE_SCALE_DEN 100
 #define UHEROBOT_STATUS_VOLTAGE_UNIT "V"

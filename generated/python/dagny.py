@@ -53,6 +53,7 @@ class Motor(_rt.Message):
     """What the document writes as <s>, 0..255 (line 42)."""
 
     NAME = "motor"
+    SPEC_HASH = "7e0d557d16b783f9ed86efcc75cabc819b3666002c41c0195e3a60ff0620d20e"
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(1, 1)
@@ -70,6 +71,7 @@ class Steering(_rt.Message):
     """What the document writes as <s>, 0..255 (line 43)."""
 
     NAME = "steering"
+    SPEC_HASH = "9cafc9953be9e3a2cc62b845be69876aa2d6edcb7fa9f4d204926d18d0c1f073"
     SENDERS = ("host",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(1, 1)
@@ -91,6 +93,7 @@ class Reflex(_rt.Message):
     """The reflex byte (lines 67-74)."""
 
     NAME = "reflex"
+    SPEC_HASH = "6158249bb8c2d3fc8899e935ae500c53b4fa025ee894404c5c2dc3f075fe68cf"
     SENDERS = ("host",)
     IDENTITY = (0x52,)  # id "R"
     SIZES = _rt.Sizes(1, 1)
@@ -114,6 +117,7 @@ class PowerDown(_rt.Message):
     """Power control code, constant (lines 45, 82)."""
 
     NAME = "power_down"
+    SPEC_HASH = "13a4180e0f1232a178cee31890cbd72b734a9385f3d624b927788c1731bd3086"
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
@@ -131,6 +135,7 @@ class Power(_rt.Message):
     """Power control code (lines 77-82)."""
 
     NAME = "power"
+    SPEC_HASH = "bad46df4053037bf37c65a4f9d46abd26c95f7896e68ec524d32680b48c2b1ff"
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
@@ -152,6 +157,7 @@ class Laser(_rt.Message):
     """Distance; the metres times 50, 2 cm, 0..255, 0..512 elements (lines 14-15)."""
 
     NAME = "laser"
+    SPEC_HASH = "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
     SENDERS = ("host", "robot")
     IDENTITY = (0x4C,)  # id "L"
     SIZES = _rt.Sizes(0, 512)
@@ -177,6 +183,7 @@ class Command(_rt.Message):
     """Not said by the document."""
 
     NAME = "command"
+    SPEC_HASH = "2eea58598c00d9405b8d62b654f8781b2cc7060fd8da4c14b5f7d57e778a6904"
     SENDERS = ("host", "robot")
     IDENTITY = (0x43,)  # id "C"
     SIZES = _rt.Sizes(0, 128)
@@ -197,6 +204,7 @@ class Sonar(_rt.Message):
     """Not said by the document."""
 
     NAME = "sonar"
+    SPEC_HASH = "1d8f0ecb52f07e8b25e762dded2334c0cdbcf2d2368edc5476d8a15c0b2491f8"
     SENDERS = ("robot",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(0, 128)
@@ -217,6 +225,7 @@ class Gps(_rt.Message):
     """Not said by the document."""
 
     NAME = "gps"
+    SPEC_HASH = "a546def6a1843a89b10da5d9acf0a5dba091c6dfd3d56c61c9212807b261fd83"
     SENDERS = ("robot",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(0, 128)
@@ -234,6 +243,7 @@ class Bump(_rt.Message):
     """Not said by the document."""
 
     NAME = "bump"
+    SPEC_HASH = "0bcb23ff115dc977a2c6ed7069dc23829b9471371a35a293ab967b0c7053529b"
     SENDERS = ("robot",)
     IDENTITY = (0x42,)  # id "B"
     SIZES = _rt.Sizes(0, 128)
@@ -251,6 +261,7 @@ class Odometry(_rt.Message):
     """Not said by the document."""
 
     NAME = "odometry"
+    SPEC_HASH = "73fbf497be6c49973a2adcc98943bbee67b1d0623fee25ef6471ceffa0aaa298"
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(0, 128)
@@ -268,6 +279,7 @@ class Speed(_rt.Message):
     """Not said by the document."""
 
     NAME = "speed"
+    SPEC_HASH = "42a81a41aa8aece16309c416ff488fe433d24e8f80bdb1ed100d58c7e736640d"
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(0, 128)
@@ -288,6 +300,7 @@ class WheelSlip(_rt.Message):
     """Not said by the document."""
 
     NAME = "wheel_slip"
+    SPEC_HASH = "e5b7c0a5805d12a4b344010eccbdd6f7250c75e69f4d26ced5931c366aaebe54"
     SENDERS = ("robot",)
     IDENTITY = (0x57,)  # id "W"
     SIZES = _rt.Sizes(0, 128)
@@ -308,6 +321,7 @@ class Battery(_rt.Message):
     """Not said by the document."""
 
     NAME = "battery"
+    SPEC_HASH = "6980cc1698fa4bfbcaf06b727d2bc5d26fd4dbb4dc8ad1f9542984313a50d80d"
     SENDERS = ("robot",)
     IDENTITY = (0x62,)  # id "b"
     SIZES = _rt.Sizes(0, 128)
@@ -325,6 +339,7 @@ class ReflexSettings(_rt.Message):
     """Not said by the document."""
 
     NAME = "reflex_settings"
+    SPEC_HASH = "c00e8945f7a5381745cc2f7046ff1e8856ee4fb3a7dc9389ca4dad922859f0f0"
     SENDERS = ("robot",)
     IDENTITY = (0x52,)  # id "R"
     SIZES = _rt.Sizes(0, 128)
@@ -342,6 +357,7 @@ class HardwareStatus(_rt.Message):
     """Not said by the document."""
 
     NAME = "hardware_status"
+    SPEC_HASH = "c1bd4bfff65a044f16fa2f96318ee7a877a9166c09a20cfa9f1b595e9bcf0f1f"
     SENDERS = ("robot",)
     IDENTITY = (0x48,)  # id "H"
     SIZES = _rt.Sizes(0, 128)

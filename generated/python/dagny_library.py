@@ -56,6 +56,7 @@ class Motor(_rt.Message):
     trainman419/dagny_protocol (facts only), arduino/main.c)."""
 
     NAME = "motor"
+    SPEC_HASH = "e47a92779a3a46f30e677001eb8eb3b8534082e91797ceea9258c29c13954eef"
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(1, 1)
@@ -83,6 +84,7 @@ class Drive(_rt.Message):
     arduino/main.cpp)."""
 
     NAME = "drive"
+    SPEC_HASH = "740134c3168c20db3c527edd23e3f8a61c74e47eaf343b8bfa43356c1401a241"
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(2, 2)
@@ -109,6 +111,7 @@ class Steering(_rt.Message):
     trainman419/dagny_protocol (facts only), arduino/main.c)."""
 
     NAME = "steering"
+    SPEC_HASH = "f82d76fc9bcdcc09e25661f90614ede9089f9be0c14d6bb10e27db536c2e72bc"
     SENDERS = ("host",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(1, 1)
@@ -132,6 +135,7 @@ class Power(_rt.Message):
     """Power control code, an ASCII digit (002_5af75f454b134d02.txt, lines 77-82)."""
 
     NAME = "power"
+    SPEC_HASH = "ac433642534e2929f0055be648c1066c8e8b2feb2262ab2b75d08828dbae757d"
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
@@ -157,6 +161,7 @@ class GpsPosition(_rt.Message):
     trainman419/dagny_protocol (facts only), arduino/gps.cpp)."""
 
     NAME = "gps_position"
+    SPEC_HASH = "aba8a6750100fac4f82eebe887292ab3e9b0068f9b3faf42687ccfdfcba4b886"
     SENDERS = ("host",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(8, 8)
@@ -191,6 +196,7 @@ class Laser(_rt.Message):
     14-15)."""
 
     NAME = "laser"
+    SPEC_HASH = "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
     SENDERS = ("host", "robot")
     IDENTITY = (0x4C,)  # id "L"
     SIZES = _rt.Sizes(0, 512)
@@ -223,6 +229,7 @@ class Shutdown(_rt.Message):
     arduino/main.c)."""
 
     NAME = "shutdown"
+    SPEC_HASH = "4b1e37385caecd4f088329d91b89b77550fe1d33fd24023bc359946d517f72c9"
     SENDERS = ("host", "robot")
     IDENTITY = (0x5A,)  # id "Z"
     SIZES = _rt.Sizes(7, 7)
@@ -248,6 +255,7 @@ class Sonar(_rt.Message):
     (facts only), ros/hardware_interface)."""
 
     NAME = "sonar"
+    SPEC_HASH = "df2aaa59f1a0d50220fdce5fc00d868c1c11d2802391be17268a4c22eff468e2"
     SENDERS = ("robot",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(5, 5)
@@ -272,6 +280,7 @@ class Gps(_rt.Message):
     only), arduino/gps.cpp)."""
 
     NAME = "gps"
+    SPEC_HASH = "48d9c0ba9665c2cc49c1c936f4d1976d84a5e654c61d2b77a4ae33524993c417"
     SENDERS = ("robot",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(0, 126)
@@ -312,6 +321,7 @@ class Odometry(_rt.Message):
     arduino/main.cpp)."""
 
     NAME = "odometry"
+    SPEC_HASH = "1449487c01e8e321544936269bd11a45d2d0275f63621c5ef01e0d8bd0dc4ed0"
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(13, 13)
@@ -356,6 +366,7 @@ class Battery(_rt.Message):
     trainman419/dagny_protocol (facts only), arduino/main.cpp)."""
 
     NAME = "battery"
+    SPEC_HASH = "f4fdec3e72d6c3ac1335349cfa8c38bc5f104a60b0a3efc4192c087d4c344488"
     SENDERS = ("robot",)
     IDENTITY = (0x62,)  # id "b"
     SIZES = _rt.Sizes(6, 6)
@@ -387,6 +398,7 @@ class Compass(_rt.Message):
     arduino/main.cpp)."""
 
     NAME = "compass"
+    SPEC_HASH = "4dceaf9755b84710721e72e341a9f0f8b180cc406970329787c51e07f634c19f"
     SENDERS = ("robot",)
     IDENTITY = (0x43,)  # id "C"
     SIZES = _rt.Sizes(4, 4)

@@ -63,6 +63,7 @@ class Stop(_rt.Message):
     """
 
     NAME = "stop"
+    SPEC_HASH = "bec937966960744fcf3cdc2d7d17f3ee78eee1cbed705dd7410bda2eeb5d4bfd"
     SENDERS = ("pc",)
     IDENTITY = (0x53,)  # command "S"
     SIZES = _rt.Sizes(0, 0)
@@ -75,6 +76,7 @@ class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (line 17)."""
 
     NAME = "reset"
+    SPEC_HASH = "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
     SENDERS = ("pc",)
     IDENTITY = (0x52,)  # command "R"
     SIZES = _rt.Sizes(0, 0)
@@ -90,6 +92,7 @@ class Mode(_rt.Message):
     """The mode to take (line 18)."""
 
     NAME = "mode"
+    SPEC_HASH = "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
     SENDERS = ("pc",)
     IDENTITY = (0x4D,)  # command "M"
     SIZES = _rt.Sizes(1, 1)
@@ -109,6 +112,7 @@ class Go(_rt.Message):
     """Wanted angle of the joint, 1/100 deg, -32768..32767 (line 19)."""
 
     NAME = "go"
+    SPEC_HASH = "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
     SENDERS = ("pc",)
     IDENTITY = (0x47,)  # command "G"
     SIZES = _rt.Sizes(4, 4)
@@ -135,6 +139,7 @@ class Limits(_rt.Message):
     """Fastest change of the angle, 1/100 deg/s, -32768..32767 (line 20)."""
 
     NAME = "limits"
+    SPEC_HASH = "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
     SENDERS = ("pc",)
     IDENTITY = (0x4C,)  # command "L"
     SIZES = _rt.Sizes(4, 4)
@@ -161,6 +166,7 @@ class Timing(_rt.Message):
     """Longest time without a command, ms, 0..65535 (line 21)."""
 
     NAME = "timing"
+    SPEC_HASH = "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
     SENDERS = ("pc",)
     IDENTITY = (0x54,)  # command "T"
     SIZES = _rt.Sizes(4, 4)
@@ -182,6 +188,7 @@ class GpsMode(_rt.Message):
     """What is sent (line 22)."""
 
     NAME = "gps_mode"
+    SPEC_HASH = "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
     SENDERS = ("pc",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(1, 1)
@@ -202,6 +209,7 @@ class Ack(_rt.Message):
     """
 
     NAME = "ack"
+    SPEC_HASH = "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
     SENDERS = ("esp",)
     IDENTITY = (0x41,)  # command "A"
     SIZES = _rt.Sizes(0, 0)
@@ -217,6 +225,7 @@ class Nack(_rt.Message):
     """
 
     NAME = "nack"
+    SPEC_HASH = "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
     SENDERS = ("esp",)
     IDENTITY = (0x4E,)  # command "N"
     SIZES = _rt.Sizes(0, 0)
@@ -253,6 +262,7 @@ class Status(_rt.Message):
     """Way of the fourth encoder, mm, 0..65535 (lines 33-34)."""
 
     NAME = "status"
+    SPEC_HASH = "9a3bc9b67289b602d4b06a187f779b231b92974b1e6fdd1bab43015b28dba5b0"
     SENDERS = ("esp",)
     IDENTITY = (0x49,)  # command "I"
     SIZES = _rt.Sizes(18, 18)
@@ -296,6 +306,7 @@ class Gps(_rt.Message):
     """The whole sentence, from $ to CR LF (lines 47-48)."""
 
     NAME = "gps"
+    SPEC_HASH = "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
     SENDERS = ("esp",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(0, 121)

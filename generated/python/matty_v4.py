@@ -73,6 +73,7 @@ class Stop(_rt.Message):
     """How to stop (esp/matty-v4.txt, line 16)."""
 
     NAME = "stop"
+    SPEC_HASH = "a7733e796a0841037ff45d4dc25b2397a230ce780e7c93e53c77b65f5f4b16bd"
     SENDERS = ("pc",)
     IDENTITY = (0x53,)  # command "S"
     SIZES = _rt.Sizes(1, 1)
@@ -87,6 +88,7 @@ class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17)."""
 
     NAME = "reset"
+    SPEC_HASH = "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
     SENDERS = ("pc",)
     IDENTITY = (0x52,)  # command "R"
     SIZES = _rt.Sizes(0, 0)
@@ -102,6 +104,7 @@ class Mode(_rt.Message):
     """The mode to take (004_bc163d01a5f01dc1.txt, line 18)."""
 
     NAME = "mode"
+    SPEC_HASH = "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
     SENDERS = ("pc",)
     IDENTITY = (0x4D,)  # command "M"
     SIZES = _rt.Sizes(1, 1)
@@ -124,6 +127,7 @@ class Go(_rt.Message):
     """Wanted angle of the joint, 1/100 deg, -32768..32767 (004_bc163d01a5f01dc1.txt, line 19)."""
 
     NAME = "go"
+    SPEC_HASH = "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
     SENDERS = ("pc",)
     IDENTITY = (0x47,)  # command "G"
     SIZES = _rt.Sizes(4, 4)
@@ -155,6 +159,7 @@ class Limits(_rt.Message):
     """
 
     NAME = "limits"
+    SPEC_HASH = "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
     SENDERS = ("pc",)
     IDENTITY = (0x4C,)  # command "L"
     SIZES = _rt.Sizes(4, 4)
@@ -185,6 +190,7 @@ class Timing(_rt.Message):
     """Longest time without a command, ms, 0..65535 (004_bc163d01a5f01dc1.txt, line 21)."""
 
     NAME = "timing"
+    SPEC_HASH = "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
     SENDERS = ("pc",)
     IDENTITY = (0x54,)  # command "T"
     SIZES = _rt.Sizes(4, 4)
@@ -206,6 +212,7 @@ class GpsMode(_rt.Message):
     """What is sent (004_bc163d01a5f01dc1.txt, line 22)."""
 
     NAME = "gps_mode"
+    SPEC_HASH = "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
     SENDERS = ("pc",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(1, 1)
@@ -220,6 +227,7 @@ class VersionQuery(_rt.Message):
     """Asks for the version (esp/matty-v4.txt, line 23)."""
 
     NAME = "version_query"
+    SPEC_HASH = "64b31edb481abe8981924042da95b29412a42fbd61ac0ae36c8ee3008942abcf"
     SENDERS = ("pc",)
     IDENTITY = (0x56,)  # command "V"
     SIZES = _rt.Sizes(0, 0)
@@ -237,6 +245,7 @@ class Led(_rt.Message):
     """Colour, 0..16777215 (esp/Robot/src/data.h)."""
 
     NAME = "led"
+    SPEC_HASH = "8ed61fd4ee563caf0ea7cdf63794d1d838b1a93d4f72e371a74f0ded4c9ca1eb"
     SENDERS = ("pc",)
     IDENTITY = (0x44,)  # command "D"
     SIZES = _rt.Sizes(4, 4)
@@ -261,6 +270,7 @@ class Ack(_rt.Message):
     """
 
     NAME = "ack"
+    SPEC_HASH = "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
     SENDERS = ("esp",)
     IDENTITY = (0x41,)  # command "A"
     SIZES = _rt.Sizes(0, 0)
@@ -276,6 +286,7 @@ class Nack(_rt.Message):
     """
 
     NAME = "nack"
+    SPEC_HASH = "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
     SENDERS = ("esp",)
     IDENTITY = (0x4E,)  # command "N"
     SIZES = _rt.Sizes(0, 0)
@@ -318,6 +329,7 @@ class Status(_rt.Message):
     """Yaw, 1/100 deg, -32768..32767 (esp/Robot/src/communication.cpp)."""
 
     NAME = "status"
+    SPEC_HASH = "8329063714abce4931fb86fb2239eec289939ba2e9f7fbdbb2006d07e08b1aff"
     SENDERS = ("esp",)
     IDENTITY = (0x49,)  # command "I"
     SIZES = _rt.Sizes(24, 24)
@@ -376,6 +388,7 @@ class Gps(_rt.Message):
     """The whole sentence, from $ to CR LF (004_bc163d01a5f01dc1.txt, lines 47-48)."""
 
     NAME = "gps"
+    SPEC_HASH = "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
     SENDERS = ("esp",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(0, 121)
@@ -395,6 +408,7 @@ class Version(_rt.Message):
     """Version of the firmware, 0..255 (esp/matty-v4.txt, lines 52-55)."""
 
     NAME = "version"
+    SPEC_HASH = "466c2d3440d455274ac756df7cf55852170d4ae855c062874dee69c38a3794e6"
     SENDERS = ("esp",)
     IDENTITY = (0x56,)  # command "V"
     SIZES = _rt.Sizes(2, 2)

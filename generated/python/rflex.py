@@ -109,6 +109,7 @@ class RequestSystemStatus(_rt.Message):
     """Requests the system status (lines 52, 55)."""
 
     NAME = "request_system_status"
+    SPEC_HASH = "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
     SENDERS = ("linux",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(0, 0)
@@ -124,6 +125,7 @@ class Motor00(_rt.Message):
     """Not said by the document, 0..255 (line 71)."""
 
     NAME = "motor_00"
+    SPEC_HASH = "7293bb3a96efd46bdc637332eca5fd53fb5c62df5db70d07ab7cea45c01a7b98"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x00)
     SIZES = _rt.Sizes(1, 1)
@@ -149,6 +151,7 @@ class MotorCommand(_rt.Message):
     """Direction (lines 88-89)."""
 
     NAME = "motor_command"
+    SPEC_HASH = "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(14, 14)
@@ -177,6 +180,7 @@ class Motor0a(_rt.Message):
     """
 
     NAME = "motor_0a"
+    SPEC_HASH = "eedc3fc169634e242a263c754415dd56363ce235e3048ec98cc8fb6b216defc8"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0A)
     SIZES = _rt.Sizes(0, 0)
@@ -193,6 +197,7 @@ class Motor0c(_rt.Message):
     """
 
     NAME = "motor_0c"
+    SPEC_HASH = "a651ee555828b7b5463b3cf907b01232f0190770a91bd51ca9e578c744e26154"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(0, 0)
@@ -210,6 +215,7 @@ class StartStopMotorPackets(_rt.Message):
     """Start stop (line 141)."""
 
     NAME = "start_stop_motor_packets"
+    SPEC_HASH = "1f5b75aac49aad0ebd7a98ebd33a98a6722a03b17653bdee57742261c147cd3e"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
@@ -228,6 +234,7 @@ class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (lines 157, 160)."""
 
     NAME = "request_joystick_data"
+    SPEC_HASH = "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
     SENDERS = ("linux",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(0, 0)
@@ -249,6 +256,7 @@ class StartStopSonarPackets(_rt.Message):
     """Start stop (line 203)."""
 
     NAME = "start_stop_sonar_packets"
+    SPEC_HASH = "72a9c3d09304a4bb171a89dd2634b3eb779d7886baa95121a2ed3599d1b61e3d"
     SENDERS = ("linux",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(13, 13)
@@ -279,6 +287,7 @@ class InitializeDigitalIo(_rt.Message):
     0..4294967295 (lines 250, 298, 307)."""
 
     NAME = "initialize_digital_io"
+    SPEC_HASH = "6b0596a0ac36417ac36b04d5d46291da91c9f559b0e70c5c72d3ed91d6e4d4c5"
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(4, 4)
@@ -296,6 +305,7 @@ class CheckIoChanged(_rt.Message):
     """See the decision check_timestamp, 0..4294967295 (line 265)."""
 
     NAME = "check_io_changed"
+    SPEC_HASH = "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(4, 4)
@@ -320,6 +330,7 @@ class SystemStatus(_rt.Message):
     """Brake (line 61)."""
 
     NAME = "system_status"
+    SPEC_HASH = "2eb29f62c17fcd53efcd1f4cc19ac8c73a77792b0a71b39d6380754053aacc2f"
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(9, 9)
@@ -347,6 +358,7 @@ class ConfirmMotorCommand(_rt.Message):
     """Axis (line 95)."""
 
     NAME = "confirm_motor_command"
+    SPEC_HASH = "05891bcc3fc050a3be3536fcd91278f223b335dff989ae004c704ef846da70fe"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(9, 9)
@@ -372,6 +384,7 @@ class Motor0cAnswer(_rt.Message):
     """Timestamp, 0..4294967295 (line 119)."""
 
     NAME = "motor_0c_answer"
+    SPEC_HASH = "1ea2815558d64dfc3c23e05d49b04b3fcb73e449884f76930539bb65373172f3"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(8, 8)
@@ -405,6 +418,7 @@ class ReadMotor(_rt.Message):
     """Torque, -2147483648..2147483647 (line 133)."""
 
     NAME = "read_motor"
+    SPEC_HASH = "5547561cbee182e0162fc9a912603f337a9c37b8d74ccb01e718afe3e6375395"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x21)
     SIZES = _rt.Sizes(25, 25)
@@ -438,6 +452,7 @@ class ConfirmStartStopMotorPackets(_rt.Message):
     """Timestamp, 0..4294967295 (line 150)."""
 
     NAME = "confirm_start_stop_motor_packets"
+    SPEC_HASH = "db0c491b416374f716f05cb05318badb03ba97cf34d80fdafe9bf511d6e231a1"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
@@ -465,6 +480,7 @@ class JoystickData(_rt.Message):
     """Buttons (line 171)."""
 
     NAME = "joystick_data"
+    SPEC_HASH = "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
     SENDERS = ("flex",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(13, 13)
@@ -492,6 +508,7 @@ class ConfirmStartStopSonarPackets(_rt.Message):
     """Timestamp, 0..4294967295 (line 215)."""
 
     NAME = "confirm_start_stop_sonar_packets"
+    SPEC_HASH = "4d773f7fcf88e3d1efc5013108ddbeb71d3b36e3da52e2e8cacda2156c80fdd0"
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(8, 8)
@@ -522,6 +539,7 @@ class SonarData(_rt.Message):
     """Readings, 0..82 elements (lines 226-229)."""
 
     NAME = "sonar_data"
+    SPEC_HASH = "e56f6b5d3cf1d904dd0574bb97f415eb01b6f11b2867a18cb64f5fba0373b5c7"
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x02)
     SIZES = _rt.Sizes(8, 254, step=3)
@@ -550,6 +568,7 @@ class ConfirmInitializeDigitalIo(_rt.Message):
     """Timestamp, 0..4294967295 (lines 301, 309)."""
 
     NAME = "confirm_initialize_digital_io"
+    SPEC_HASH = "f9d86989441d3da2751ccb1718a1fef5f893e5fcdf81e2179b2ea43b6f8e4f9c"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(8, 8)
@@ -579,6 +598,7 @@ class ChangedBumpers(_rt.Message):
     257-258)."""
 
     NAME = "changed_bumpers"
+    SPEC_HASH = "55a0c3985cfa7a8fbb46b94d633cd20d22ab1d223685f9f6300e045b0211b7f3"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x01)
     SIZES = _rt.Sizes(7, 7)
@@ -606,6 +626,7 @@ class CheckIoChangedAnswer(_rt.Message):
     """Packets including this one; 1 if nothing changed, 0..4294967295 (lines 269-270, 273)."""
 
     NAME = "check_io_changed_answer"
+    SPEC_HASH = "a71a68a30724d9f778664786ff45cd4fc0206e422bad59fa9c9a9d7247012670"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(12, 12)
@@ -634,6 +655,7 @@ class ChangedByte(_rt.Message):
     """
 
     NAME = "changed_byte"
+    SPEC_HASH = "2af4749f04df870d61315fd92d2bb5cc88b987e81b523f2ba94344f08049b5fb"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x03)
     SIZES = _rt.Sizes(7, 7)

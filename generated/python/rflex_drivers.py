@@ -111,6 +111,7 @@ class RequestSystemStatus(_rt.Message):
     """Requests the system status (003_037af2f07b705118.txt, lines 52, 55)."""
 
     NAME = "request_system_status"
+    SPEC_HASH = "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
     SENDERS = ("linux",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(0, 0)
@@ -126,6 +127,7 @@ class AxisGetSystem(_rt.Message):
     """Axis (rflex-protocol.txt, MOT_AXIS_GET_SYSTEM)."""
 
     NAME = "axis_get_system"
+    SPEC_HASH = "a0f780b381c972046d4069a5e2b48043d858aa1757ec175c8f5d7b0256db9572"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x00)
     SIZES = _rt.Sizes(1, 1)
@@ -154,6 +156,7 @@ class MotorCommand(_rt.Message):
     """Direction (003_037af2f07b705118.txt, lines 88-89)."""
 
     NAME = "motor_command"
+    SPEC_HASH = "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(14, 14)
@@ -178,6 +181,7 @@ class SetDefaults(_rt.Message):
     """Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295)."""
 
     NAME = "set_defaults"
+    SPEC_HASH = "331dc1874e44c21540bd0a7bd437fa833e644a317fca702ac2490b670399df50"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0A)
     SIZES = _rt.Sizes(0, 0)
@@ -190,6 +194,7 @@ class BrakeSet(_rt.Message):
     """Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET)."""
 
     NAME = "brake_set"
+    SPEC_HASH = "4401cd64cb9a2ca5864d7f599ad76220a0b04b04b4d52eb3104ddff4d4bb7c57"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0B)
     SIZES = _rt.Sizes(0, 0)
@@ -202,6 +207,7 @@ class BrakeRelease(_rt.Message):
     """Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296)."""
 
     NAME = "brake_release"
+    SPEC_HASH = "1f9ec56928e572d49d393a26172348d3f39304387a211b910a9ffc8e0eede26b"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(0, 0)
@@ -223,6 +229,7 @@ class StartStopMotorPackets(_rt.Message):
     """Axes that report; none stops the reports (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ)."""
 
     NAME = "start_stop_motor_packets"
+    SPEC_HASH = "2b2edc8680e95a55bb034f9a3143a06e84a4ddf752478220b9a340a4df61b2df"
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
@@ -241,6 +248,7 @@ class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160)."""
 
     NAME = "request_joystick_data"
+    SPEC_HASH = "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
     SENDERS = ("linux",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(0, 0)
@@ -266,6 +274,7 @@ class StartStopSonarPackets(_rt.Message):
     """Mode (rflex-protocol.txt, SONAR_RUN)."""
 
     NAME = "start_stop_sonar_packets"
+    SPEC_HASH = "69f77567e6d8999ed17a22d8552fa6f0eba786392f52adfdf6de9af2afa2f3b1"
     SENDERS = ("linux",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(13, 13)
@@ -296,6 +305,7 @@ class InitializeDigitalIo(_rt.Message):
     protocol.txt, DIO_REPORTS_REQ)."""
 
     NAME = "initialize_digital_io"
+    SPEC_HASH = "45cf8ac8343154455cd86dc5ef08a85d78043f7528feeff6127146f458ce065b"
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(4, 4)
@@ -313,6 +323,7 @@ class CheckIoChanged(_rt.Message):
     """See the decision check_timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 265)."""
 
     NAME = "check_io_changed"
+    SPEC_HASH = "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(4, 4)
@@ -341,6 +352,7 @@ class IrRun(_rt.Message):
     rflex_ir_off)."""
 
     NAME = "ir_run"
+    SPEC_HASH = "d3a807bbb2b43e6530e296c5d751268dc6ee59e7e0a08ab8db62a8fc82dcb514"
     SENDERS = ("linux",)
     IDENTITY = (0x06, 0x00)
     SIZES = _rt.Sizes(21, 21)
@@ -378,6 +390,7 @@ class SystemStatus(_rt.Message):
     """Brake (003_037af2f07b705118.txt, line 61)."""
 
     NAME = "system_status"
+    SPEC_HASH = "6f69938e34a86b398a451512f6cf826326f247453e5f4a23df80266f6ff75a6c"
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(9, 9)
@@ -412,6 +425,7 @@ class LcdDump(_rt.Message):
     parseSysReport)."""
 
     NAME = "lcd_dump"
+    SPEC_HASH = "49388eda07bb143bdc9960596783fb6a1b91d905ee7c099b665a19f4521bea7d"
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x00)
     SIZES = _rt.Sizes(6, 255)
@@ -442,6 +456,7 @@ class ConfirmMotorCommand(_rt.Message):
     """Axis (003_037af2f07b705118.txt, line 95)."""
 
     NAME = "confirm_motor_command"
+    SPEC_HASH = "3ca66b4ae9df90e0b5a7f73c0a440322a4029558d515dd75e12184b4051481af"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(9, 9)
@@ -468,6 +483,7 @@ class BrakeReleaseAnswer(_rt.Message):
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 119)."""
 
     NAME = "brake_release_answer"
+    SPEC_HASH = "430540901eca06317db6faf09d6721d0ae4315c8d695e0335d108911f974cd66"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(8, 8)
@@ -505,6 +521,7 @@ class ReadMotor(_rt.Message):
     """Torque, -2147483648..2147483647 (003_037af2f07b705118.txt, line 133)."""
 
     NAME = "read_motor"
+    SPEC_HASH = "3a1e49b2023b6279334c376ce2a3d5e5ed90528bbf4875804d9956812d5e5af0"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x21)
     SIZES = _rt.Sizes(25, 25)
@@ -542,6 +559,7 @@ class ConfirmStartStopMotorPackets(_rt.Message):
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 150)."""
 
     NAME = "confirm_start_stop_motor_packets"
+    SPEC_HASH = "568c8e3d73ceb23eabe0dab08301a84fe6f1d3fbea34b120fda0bac5df29f526"
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
@@ -569,6 +587,7 @@ class JoystickData(_rt.Message):
     """Buttons (003_037af2f07b705118.txt, line 171)."""
 
     NAME = "joystick_data"
+    SPEC_HASH = "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
     SENDERS = ("flex",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(13, 13)
@@ -600,6 +619,7 @@ class ConfirmStartStopSonarPackets(_rt.Message):
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 215)."""
 
     NAME = "confirm_start_stop_sonar_packets"
+    SPEC_HASH = "d2b89644b540c7d1f7b4a429e63f299b82e18807782ff83ba34836ea1beb87fb"
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(8, 8)
@@ -632,6 +652,7 @@ class SonarData(_rt.Message):
     """Readings, 0..82 elements (003_037af2f07b705118.txt, lines 226-229)."""
 
     NAME = "sonar_data"
+    SPEC_HASH = "3f7b333d313afc422fadcd934ad297d22287b6f29eedc44922349b2160905f5a"
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x02)
     SIZES = _rt.Sizes(8, 254, step=3)
@@ -662,6 +683,7 @@ class ConfirmInitializeDigitalIo(_rt.Message):
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, lines 301, 309)."""
 
     NAME = "confirm_initialize_digital_io"
+    SPEC_HASH = "12a591d4d8702a5e8f3cfbf573669df908429fe0570a918f219d28df1f47ee28"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(8, 8)
@@ -688,6 +710,7 @@ class ChangedBumpers(_rt.Message):
     (003_037af2f07b705118.txt, lines 257-258)."""
 
     NAME = "changed_bumpers"
+    SPEC_HASH = "883540f43f52e215cfc6eee6882bfafa05cd15f1ddb5feb45f55a318485edbc5"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x01)
     SIZES = _rt.Sizes(7, 7)
@@ -717,6 +740,7 @@ class CheckIoChangedAnswer(_rt.Message):
     lines 269-270, 273)."""
 
     NAME = "check_io_changed_answer"
+    SPEC_HASH = "377257310f5b094378ab6bc1eed42b46911c166afb17089d81880f7adc85f3be"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(12, 12)
@@ -745,6 +769,7 @@ class ChangedByte(_rt.Message):
     (003_037af2f07b705118.txt, line 281)."""
 
     NAME = "changed_byte"
+    SPEC_HASH = "ab39fa4d9dbea5c9c3997b64d55bf98027b8cd28086e5a95a6b3b65f488417fb"
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x03)
     SIZES = _rt.Sizes(7, 7)
@@ -771,6 +796,7 @@ class IrReport(_rt.Message):
     """Not said by the document."""
 
     NAME = "ir_report"
+    SPEC_HASH = "4a7de9333078fa9e487b9043f2fd8178eed4689c0a1bf5d46059cb743ac8fa7c"
     SENDERS = ("flex",)
     IDENTITY = (0x06, 0x01)
     SIZES = _rt.Sizes(1, 255)

@@ -114,6 +114,7 @@ class MoveManual(_rt.Message):
     """0 goes straight on, negative values turn left, -64..63 (line 29)."""
 
     NAME = "move_manual"
+    SPEC_HASH = "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
     SENDERS = ("host",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(2, 2)
@@ -137,6 +138,7 @@ class MoveRelativeTwostep(_rt.Message):
     """How far to drive, negative is backwards, mm, -8192..8191 (line 34)."""
 
     NAME = "move_relative_twostep"
+    SPEC_HASH = "8899d8d9e8f1b2e393754f2e8d16ba3097990ea5eae139ee75cab21b6da512e0"
     SENDERS = ("host",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(4, 4)
@@ -163,6 +165,7 @@ class MoveRelativeArc(_rt.Message):
     """How far to drive, negative is backwards, mm, -8192..8191 (line 39)."""
 
     NAME = "move_relative_arc"
+    SPEC_HASH = "980f315812fd5f9713cf02b09ac9d205ebfa87721c6d03abe676a8d20f3425aa"
     SENDERS = ("host",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(4, 4)
@@ -200,6 +203,7 @@ class Maintenance(_rt.Message):
     """What the operation needs to know (lines 44-56)."""
 
     NAME = "maintenance"
+    SPEC_HASH = "8497d314dbcc95ad3ef4b0e82f9704e0e6b88aaf1317d59ea6a4f31cbe958650"
     SENDERS = ("host",)
     IDENTITY = (0xFE,)
     SIZES = _rt.Sizes(4, 7)
@@ -254,6 +258,7 @@ class Gyro(_rt.Message):
     """Integral of gyro Z since the message before, -8192..8191 (line 65)."""
 
     NAME = "gyro"
+    SPEC_HASH = "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
     SENDERS = ("brain",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(7, 7)
@@ -285,6 +290,7 @@ class Xcel(_rt.Message):
     """Integral of acceleration Z since the message before, -8192..8191 (line 71)."""
 
     NAME = "xcel"
+    SPEC_HASH = "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
     SENDERS = ("brain",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(7, 7)
@@ -316,6 +322,7 @@ class Compass(_rt.Message):
     """Mean of compass Z since the message before, -8192..8191 (line 77)."""
 
     NAME = "compass"
+    SPEC_HASH = "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
     SENDERS = ("brain",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(7, 7)
@@ -347,6 +354,7 @@ class Optflow(_rt.Message):
     """Quality of the surface, 0..127 (line 83)."""
 
     NAME = "optflow"
+    SPEC_HASH = "4ebf89451caf104fff63d2a46ce408af0b778e36a4cec12e95571b633104dcb6"
     SENDERS = ("brain",)
     IDENTITY = (0x83,)
     SIZES = _rt.Sizes(6, 6)
@@ -379,6 +387,7 @@ class Lidar(_rt.Message):
     90)."""
 
     NAME = "lidar"
+    SPEC_HASH = "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
     SENDERS = ("brain",)
     IDENTITY = (0x84,)
     SIZES = _rt.Sizes(721, 721)
@@ -405,6 +414,7 @@ class Sonar(_rt.Message):
     """Distances of sonar 0 to sonar 6, mm, 0..16383, 7 elements, 0 = no_datapoint (line 94)."""
 
     NAME = "sonar"
+    SPEC_HASH = "b29ce61f6f2f4fec2fc7c20f7af74e4a9b76f8c7334ebda8a480d9a43837a6a1"
     SENDERS = ("brain",)
     IDENTITY = (0x85,)
     SIZES = _rt.Sizes(15, 15)
@@ -433,6 +443,7 @@ class Facing(_rt.Message):
     """Present speed, mm/s, -8192..8191 (line 100)."""
 
     NAME = "facing"
+    SPEC_HASH = "8333c607be579b90036b72f07f4bdd75d9b8a0a7e6af8113457d0b12e550a3ea"
     SENDERS = ("brain",)
     IDENTITY = (0xA0,)
     SIZES = _rt.Sizes(5, 5)

@@ -96,6 +96,7 @@ class MoveManual(_rt.Message):
     """
 
     NAME = "move_manual"
+    SPEC_HASH = "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
     SENDERS = ("host",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(2, 2)
@@ -123,6 +124,7 @@ class MoveRelativeTwostep(_rt.Message):
     """
 
     NAME = "move_relative_twostep"
+    SPEC_HASH = "702fb29cae3303314a0dd997cabeb45e5a6f2ed79e83c660b8d451f56375f134"
     SENDERS = ("host",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(4, 4)
@@ -151,6 +153,7 @@ class DecreasePhaseAngle(_rt.Message):
     437-441)."""
 
     NAME = "decrease_phase_angle"
+    SPEC_HASH = "d49cb1bdcf652a8c5cba73b01cf598f97b4e36724557fa67cab1fc02118cce65"
     SENDERS = ("host",)
     IDENTITY = (0xD1,)
     SIZES = _rt.Sizes(1, 1)
@@ -172,6 +175,7 @@ class IncreasePhaseAngle(_rt.Message):
     443-446)."""
 
     NAME = "increase_phase_angle"
+    SPEC_HASH = "8380de3f13329e2106ad271d850d22fcf13fcb9486f83580d6f94bdee3f5a65f"
     SENDERS = ("host",)
     IDENTITY = (0xD2,)
     SIZES = _rt.Sizes(1, 1)
@@ -200,6 +204,7 @@ class Maintenance(_rt.Message):
     """What the operation needs to know (000_c7d74cf9c866b63b.txt, lines 44-56)."""
 
     NAME = "maintenance"
+    SPEC_HASH = "7e30d91462f052dac697e813fb841b108a49cbfb75d3509337e52e7d936b6c08"
     SENDERS = ("host",)
     IDENTITY = (0xFE,)
     SIZES = _rt.Sizes(4, 5)
@@ -250,6 +255,7 @@ class Gyro(_rt.Message):
     804)."""
 
     NAME = "gyro"
+    SPEC_HASH = "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
     SENDERS = ("brain",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(7, 7)
@@ -287,6 +293,7 @@ class Xcel(_rt.Message):
     line 813)."""
 
     NAME = "xcel"
+    SPEC_HASH = "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
     SENDERS = ("brain",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(7, 7)
@@ -324,6 +331,7 @@ class Compass(_rt.Message):
     822)."""
 
     NAME = "compass"
+    SPEC_HASH = "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
     SENDERS = ("brain",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(7, 7)
@@ -356,6 +364,7 @@ class Lidar(_rt.Message):
     (000_c7d74cf9c866b63b.txt, line 90)."""
 
     NAME = "lidar"
+    SPEC_HASH = "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
     SENDERS = ("brain",)
     IDENTITY = (0x84,)
     SIZES = _rt.Sizes(721, 721)
@@ -383,6 +392,7 @@ class Sonar(_rt.Message):
     no_datapoint (main.c, lines 928-936)."""
 
     NAME = "sonar"
+    SPEC_HASH = "051b1abe7133e1c1c272aa62dc7b3fc49701be2f7777c277749004b93234c1c8"
     SENDERS = ("brain",)
     IDENTITY = (0x85,)
     SIZES = _rt.Sizes(7, 7)
@@ -412,6 +422,7 @@ class Facing(_rt.Message):
     """Always 0, mm/s, -8192..8191 (main.c, lines 913-914)."""
 
     NAME = "facing"
+    SPEC_HASH = "513861d244a5ab98863c17f048e0f6602aef8ea0e7675fd10d02f2bfa3651635"
     SENDERS = ("brain",)
     IDENTITY = (0xA0,)
     SIZES = _rt.Sizes(5, 5)
@@ -443,6 +454,7 @@ class OptflowIntegral(_rt.Message):
     """Way in Y divided by 4 and rounded down, -8192..8191 (main.c, lines 922-923)."""
 
     NAME = "optflow_integral"
+    SPEC_HASH = "71cab2feab28664b24ea8504d159f28a802637fa2d25aa04dfe434cc56d5d7ab"
     SENDERS = ("brain",)
     IDENTITY = (0xA1,)
     SIZES = _rt.Sizes(5, 5)
@@ -466,6 +478,7 @@ class MotorControllerMessage(_rt.Message):
     """The 14 high bits of a 16-bit word, 0..16383 (main.c, lines 942-943)."""
 
     NAME = "motor_controller_message"
+    SPEC_HASH = "46e9a37012c6e9f6855661ff0082f4321d5b386daf375a3d01063d2f66e8edb6"
     SENDERS = ("brain",)
     IDENTITY = (0xD1,)
     SIZES = _rt.Sizes(2, 2)
@@ -492,6 +505,7 @@ class DebugNumbers(_rt.Message):
     """Not said by the document, -2147483648..2147483647 (main.c, lines 966-970)."""
 
     NAME = "debug_numbers"
+    SPEC_HASH = "1d6e41100766c52026d8740efd2f6e1fa9a3f30b5fe22c5c5b6c2db02319e604"
     SENDERS = ("brain",)
     IDENTITY = (0xD2,)
     SIZES = _rt.Sizes(20, 20)

@@ -54,6 +54,7 @@ class MotorsServosLeds(_rt.Message):
     """One bit for each LED (line 43)."""
 
     NAME = "motors_servos_leds"
+    SPEC_HASH = "114844611bfb6eab6afe2b827cf6d6dd382bb627aa4e19aa390dd8ce8a274df0"
     SENDERS = ("daemon",)
     IDENTITY = (0x00,)
     SIZES = _rt.Sizes(21, 21)
@@ -83,6 +84,7 @@ class MotorsTwoServos(_rt.Message):
     """Positions of servo 1 and servo 2, 0..65535, 2 elements (line 48)."""
 
     NAME = "motors_two_servos"
+    SPEC_HASH = "7f72b962170fbbe1ff33066de865b97691547ef0a09909ce174c3b736e8fdfe0"
     SENDERS = ("daemon",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(8, 8)
@@ -108,6 +110,7 @@ class MotorTest(_rt.Message):
     """Drive of motor 2, -32768..32767 (lines 57-58)."""
 
     NAME = "motor_test"
+    SPEC_HASH = "35bc13a5973b5982e3cea3711f84c09a3e950e9c0375897fd15aa628de4f7995"
     SENDERS = ("daemon",)
     IDENTITY = (0x03,)
     SIZES = _rt.Sizes(4, 4)
@@ -139,6 +142,7 @@ class Status(_rt.Message):
     """Temperature, 1/100 degC, -32768..32767 (line 53)."""
 
     NAME = "status"
+    SPEC_HASH = "a3d1d6f5970530b2c8dce6a21618fa9c1ccb21f299c69d3d9b05b7131ecbe994"
     SENDERS = ("board",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(6, 6)

@@ -63,6 +63,7 @@ class MotorsServosLeds(_rt.Message):
     (robotboard2interpreter.cpp)."""
 
     NAME = "motors_servos_leds"
+    SPEC_HASH = "7ff4fa59f978b9a3059290eeb5f72ceb40cc086b31a097668c02858a8df86f23"
     SENDERS = ("daemon",)
     IDENTITY = (0x00,)
     SIZES = _rt.Sizes(21, 21)
@@ -131,6 +132,7 @@ class Status(_rt.Message):
     """Voltage of the motors, mV, 0..65535 (main.c, lines 152-158)."""
 
     NAME = "status"
+    SPEC_HASH = "ef9cd57adf86e074b522672e09b3d942454fc628808be839a1a3af1e88f2912c"
     SENDERS = ("board",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(12, 12)

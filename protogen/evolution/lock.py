@@ -6,7 +6,6 @@ what changed. Texts for people, examples and decisions are left out.
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, fields, is_dataclass, replace
@@ -81,16 +80,10 @@ def read_lock(path: Path) -> dict[str, Protocol]:
         raise LockError(message) from None
 
 
-def message_hash(message: Message) -> str:
-    """SHA-256 in hex of a message's identity, layout and meaning."""
-    text = json.dumps(_plain(message), separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 def _entry(item: Protocol) -> dict[str, Any]:
     return {
         "spec_hash": item.spec_hash,
-        "messages": {message.name: message_hash(message) for message in item.messages},
+        "messages": {message.name: message.spec_hash for message in item.messages},
         "model": _plain(item),
     }
 

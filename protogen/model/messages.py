@@ -51,6 +51,8 @@ class Message:
     unspecified: bool = False
     """The document does not say what the payload holds: one field `data` of bytes."""
     examples: tuple[Example, ...] = ()
+    spec_hash: str = ""
+    """SHA-256, in hex, of identity, layout and meaning of values."""
     about: About = NOTHING
     span: Span
 

@@ -19,7 +19,7 @@ from protogen.passes.identities import check_identities
 from protogen.passes.messages import resolve_messages
 from protogen.passes.names import check_names
 from protogen.passes.reserved import resolve_reserved
-from protogen.passes.spec_hash import spec_hash
+from protogen.passes.spec_hash import message_hash, spec_hash
 from protogen.passes.unused import check_unused
 
 Pass = Callable[[Context, Draft], None]
@@ -74,7 +74,21 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
         reserved=draft.reserved,
         spec_hash="",
     )
-    return replace(protocol, spec_hash=spec_hash(protocol))
+    return _with_hashes(protocol)
+
+
+def _with_hashes(protocol: Protocol) -> Protocol:
+    hashed = {m.name: replace(m, spec_hash=message_hash(m)) for m in protocol.messages}
+    senders = tuple(
+        replace(sender, messages=tuple(hashed[message.name] for message in sender.messages))
+        for sender in protocol.senders
+    )
+    return replace(
+        protocol,
+        spec_hash=spec_hash(protocol),
+        messages=tuple(hashed.values()),
+        senders=senders,
+    )
 
 
 def _link(context: Context) -> Link:

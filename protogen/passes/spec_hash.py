@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
+from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Enum, Flags, Struct
 
@@ -41,10 +42,17 @@ def spec_hash(protocol: Protocol) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _whole(value: Any) -> dict[str, Any]:
+def message_hash(message: Message) -> str:
+    """SHA-256 in hex of a message: its identity, its layout and what its values mean."""
+    text = json.dumps(_whole(message, deep=True), separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _whole(value: Any, *, deep: bool = False) -> dict[str, Any]:
     """A data class as a mapping tagged with its kind, without what is left out."""
     kind: Any = type(value)
-    return {"kind": kind.__name__} | {name: _plain(getattr(value, name)) for name in _kept(kind)}
+    found = {name: _plain(getattr(value, name), deep=deep) for name in _kept(kind)}
+    return {"kind": kind.__name__} | found
 
 
 @cache
@@ -53,14 +61,15 @@ def _kept(kind: Any) -> tuple[str, ...]:
     return tuple(sorted({field.name for field in fields(kind)} - left_out))
 
 
-def _plain(value: Any) -> Any:
-    """A value as JSON has it; a named type as its name."""
+def _plain(value: Any, *, deep: bool) -> Any:
+    """A value as JSON has it; a named type as its name, or with `deep` as what it is."""
     if value is None or isinstance(value, int | str | float):
         return value
     if isinstance(value, tuple):
-        return [_plain(item) for item in value]
+        return [_plain(item, deep=deep) for item in value]
     if isinstance(value, Fraction):
         return str(value)
     if isinstance(value, bytes):
         return value.hex()
-    return value.name if isinstance(value, _NAMED) else _whole(value)
+    is_listed = isinstance(value, _NAMED) and not deep
+    return value.name if is_listed else _whole(value, deep=deep)

@@ -44,6 +44,8 @@ class Message(Record):
     """The endpoints that send it."""
     IDENTITY: ClassVar[tuple[int, ...]]
     """The values of the frame's identity parts, in wire order."""
+    SPEC_HASH: ClassVar[str]
+    """SHA-256, in hex, of its identity, its layout and what its values mean."""
     SIZES: ClassVar[Sizes]
     """The sizes that its payload can have."""
 

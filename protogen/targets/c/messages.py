@@ -131,7 +131,12 @@ class MessagePrinter:
             validates=codec.validates,
             heading=item.name,
             definition=self._records.definition(tag, comments.of_message(item), item.fields),
-            constants=(*self._identity(item), *_sizes(item, names), *self._meaning(item)),
+            constants=(
+                *self._identity(item),
+                *_sizes(item, names),
+                Macro(names.claim_macro(item.name, "spec_hash"), f'"{item.spec_hash}"'),
+                *self._meaning(item),
+            ),
             bits=tuple(b for f in item.fields for b in bits_views(item.name, f, names)),
             prototypes=codec.prototypes(),
             accessors=tuple(

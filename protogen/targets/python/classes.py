@@ -109,6 +109,7 @@ def message_class(item: Message, identity: str) -> RecordClass:
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     constants = (
         f"NAME = {text(item.name)}",
+        f"SPEC_HASH = {text(item.spec_hash)}",
         f"SENDERS = {tuple_of(map(text, item.senders))}",
         f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
         f"SIZES = {_sizes(item.sizes)}",
