@@ -27,15 +27,17 @@ class Compilation:
         return tuple(item for item in self.problems if item.severity is Severity.ERROR)
 
 
-def compile_file(path: str | os.PathLike[str], *, examples: bool = False) -> Compilation:
-    """Compile a schema.
+def compile_file(
+    path: str | os.PathLike[str], *, examples: bool = False, text: str | None = None
+) -> Compilation:
+    """Compile a schema; with `text`, as if that were what the file holds.
 
     With `examples`, each example is also decoded and encoded by the Python that would be
     generated; one that does not hold is an error like any other.
     """
     problems = Problems()
     sources = SourceMap()
-    protocol = _protocol(path, problems, sources)
+    protocol = _protocol(path, text, problems, sources)
     if protocol is not None and examples:
         from protogen.examples import verify_examples  # construct is needed only here
 
@@ -45,9 +47,9 @@ def compile_file(path: str | os.PathLike[str], *, examples: bool = False) -> Com
 
 
 def _protocol(
-    path: str | os.PathLike[str], problems: Problems, sources: SourceMap
+    path: str | os.PathLike[str], text: str | None, problems: Problems, sources: SourceMap
 ) -> Protocol | None:
-    loaded = load_syntax(path, problems, sources)
+    loaded = load_syntax(path, problems, sources, text=text)
     if loaded is None:
         return None
     merged = loaded.merged

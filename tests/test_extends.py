@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from protogen.problems import Problems, SourceMap, Span
 from protogen.schema.document import parse_document, read_document
-from protogen.schema.extends import Merged, merge_bases, project_folder
+from protogen.schema.extends import Merged, merge_bases
 from protogen.schema.merge import merge
 from protogen.schema.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
+from protogen.schema.project_folder import project_folder
 from protogen.schema.renames import apply_renames
 
 

@@ -10,6 +10,8 @@
     cpp       `// NAME.ino` in the first line: an Arduino sketch
     console   `$ command` lines, each with what it prints
     sh        `make` commands
+    toml      `# NAME.toml` in the first line: a file, written when the console comes to it
+    markdown  `<!-- NAME.md -->` in the first line: the same
 
 In what is expected, `...` stands for any text, and alone on a line for any lines. Each section runs
 in a folder of its own with the schemas of the repository, those of all documents, and the Python
@@ -47,6 +49,7 @@ _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _EXCERPT = re.compile(r"<!-- from (\S+) -->\n(.*?)<!-- end -->", re.DOTALL)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _FILE_NAME = re.compile(r"# (\w+\.yaml)\n")
+_WRITTEN = re.compile(r"(?:# |<!-- )(\w+\.(?:toml|md))(?: -->)?\n")
 _FRAGMENT = re.compile(r"# frame: (.+)\n")
 _MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 
@@ -162,6 +165,8 @@ def _line_pattern(line: str) -> str:
 
 # --- schemas --------------------------------------------------------------------------------------
 
+FILES = ("toml", "markdown")
+"""Languages of blocks that are files of their own."""
 FAULTY = {"wrong.yaml", "rover_seen.yaml"}
 """Schemas that show what a problem looks like."""
 
@@ -363,6 +368,9 @@ class TestConsole:
     def test_prints_what_it_shows(self, section: Section, workspace: Path) -> None:
         shutil.rmtree(workspace / "generated")
         for block in section.blocks:
+            if block.language in FILES:
+                name = _WRITTEN.match(block.text)[1]  # type: ignore[index]
+                (workspace / name).write_text(block.text, encoding="utf-8")
             if block.language == "console":
                 for command, expected in _commands(block.text):
                     done = run(["sh", "-c", command], workspace)
@@ -391,7 +399,7 @@ class TestMake:
 class TestDocuments:
     def test_no_block_escapes_these_tests(self) -> None:
         languages = {block.language for section in sections() for block in section.blocks}
-        assert languages <= {"yaml", "python", "text", "console", "sh", "c", "cpp"}
+        assert languages <= {"yaml", "python", "text", "console", "sh", "c", "cpp", *FILES}
         for document in DOCUMENTS:
             fences = re.findall(r"^\s*```", text_of(document), re.MULTILINE)
             assert len(fences) == 2 * len(_FENCE.findall(text_of(document)))

@@ -19,8 +19,10 @@ from protogen.cli import (
     diff,
     encode,
     explain,
+    fmt,
     fuzz,
     generate,
+    init,
     lock,
     rules,
     schema_json,
@@ -39,8 +41,10 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+app.command("init", cls=Command, epilog=init.EXAMPLE)(guarded(init.init))
 app.command("check", cls=Command, epilog=check.EXAMPLE)(guarded(check.check))
 app.command("generate", cls=Command, epilog=generate.EXAMPLE)(guarded(generate.generate))
+app.command("fmt", cls=Command, epilog=fmt.EXAMPLE)(guarded(fmt.fmt))
 app.command("decode", cls=Command, epilog=decode.EXAMPLE)(guarded(decode.decode))
 app.command("encode", cls=Command, epilog=encode.EXAMPLE)(guarded(encode.encode))
 app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.explain))

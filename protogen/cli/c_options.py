@@ -43,8 +43,12 @@ Senders = Annotated[
     typer.Option("--sender", metavar="NAME", help="C for what this endpoint sends; repeatable."),
 ]
 Stubs = Annotated[
-    bool,
-    typer.Option("--c-stubs", help="NAME_stubs.c with empty handlers, where there is none yet."),
+    bool | None,
+    typer.Option(
+        "--c-stubs/--no-c-stubs",
+        help="NAME_stubs.c with empty handlers, where there is none yet.",
+        show_default=False,
+    ),
 ]
 
 
@@ -56,7 +60,7 @@ class Choice:
     events: str | None
     only: Sequence[str] | None
     senders: Sequence[str] | None
-    stubs: bool
+    stubs: bool | None
 
     @property
     def is_default(self) -> bool:
@@ -88,7 +92,7 @@ class ChosenC:
             events=_one_of("--events", choice.events, EVENTS),
             only=tuple(choice.only) if choice.only else None,
             senders=tuple(choice.senders) if choice.senders else None,
-            stubs=choice.stubs,
+            stubs=bool(choice.stubs),
         )
         return emit(protocols, options)
 

@@ -46,21 +46,28 @@ def guarded(command: Callable[Arguments, int]) -> Callable[Arguments, None]:
         try:
             code = command(*args, **kwargs)
             sys.stdout.flush()
-        except UsageError as error:
-            code = _complain(str(error), error.hint)
-        except BrokenPipeError:
-            code = _lose_output()
-        except OSError as error:
-            code = _complain(_file_trouble(error))
         except KeyboardInterrupt:
             code = INTERRUPTED
         except typer.Exit:
             raise
         except Exception as error:
-            code = report_bug(error)
+            code = explain(error)
         raise typer.Exit(code)
 
     return run
+
+
+def explain(error: Exception) -> int:
+    """Say what an error means that ends a command; return the exit code."""
+    match error:
+        case UsageError():
+            return _complain(str(error), error.hint)
+        case BrokenPipeError():
+            return _lose_output()
+        case OSError():
+            return _complain(_file_trouble(error))
+        case _:
+            return report_bug(error)
 
 
 def report_bug(error: Exception) -> int:

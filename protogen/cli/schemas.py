@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from protogen.compiler import Compilation
     from protogen.model.messages import Message
     from protogen.model.protocol import Protocol, Sender
-    from protogen.problems import Problem
+    from protogen.problems import Problem, Problems, SourceMap
 
 
 def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
@@ -58,6 +58,18 @@ def print_problems(compilations: Iterable[Compilation]) -> None:
             if problem not in shown:
                 console.print(render_rich(problem, compilation.sources))
             shown.add(problem)
+
+
+def print_found(problems: Problems, sources: SourceMap) -> None:
+    """Print problems of other files than schemas to standard error."""
+    if not len(problems):
+        return
+    from protogen.cli.console import error_console
+    from protogen.problems import render_rich
+
+    console = error_console()
+    for problem in problems:
+        console.print(render_rich(problem, sources))
 
 
 def distinct(compilations: Iterable[Compilation]) -> tuple[Problem, ...]:

@@ -15,11 +15,10 @@ from protogen.schema.by_sender import spread_shared
 from protogen.schema.document import Document, decode_document, read_bytes, reason
 from protogen.schema.merge import merge
 from protogen.schema.nodes import Loc, MappingNode, Node, ScalarNode, find
+from protogen.schema.project_folder import project_folder
 from protogen.schema.provenance import name_documents
 from protogen.schema.renames import apply_renames
 from protogen.schema.short_forms import expand_short_forms
-
-_PROJECT_MARKS = (".git", "pyproject.toml", "protogen.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,20 +55,6 @@ def merge_bases(document: Document, problems: Problems, sources: SourceMap) -> M
 def _stated(document: Document, *, over_base: bool) -> Node:
     """Return what one of several files states, each source with its document's name."""
     return name_documents(_without_extends(document.root), over_base=over_base)
-
-
-def project_folder(file: str) -> Path:
-    """Return the folder that ``file`` may not reach out of by `extends`.
-
-    It is the nearest one above that holds ``.git``, ``pyproject.toml`` or ``protogen.toml``; else
-    the current folder, if the file is inside; else the file's own. Symbolic links are followed.
-    """
-    own = Path(os.path.realpath(file)).parent
-    for folder in (own, *own.parents):
-        if any((folder / mark).exists() for mark in _PROJECT_MARKS):
-            return folder
-    current = Path.cwd().resolve()
-    return current if own.is_relative_to(current) else own
 
 
 def _chain(document: Document, problems: Problems, sources: SourceMap) -> list[Document] | None:

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 
 from protogen.problems import Problems, SourceMap
-from protogen.schema.document import read_document
+from protogen.schema.document import decode_document, read_document
 from protogen.schema.extends import Merged, merge_bases
 from protogen.schema.nodes import MappingNode, to_data
 from protogen.schema.salvage import Loc
@@ -29,10 +29,20 @@ class Loaded:
 
 
 def load_syntax(
-    path: str | os.PathLike[str], problems: Problems, sources: SourceMap
+    path: str | os.PathLike[str],
+    problems: Problems,
+    sources: SourceMap,
+    *,
+    text: str | None = None,
 ) -> Loaded | None:
-    """Read a schema. Whatever is wrong is reported; None where that leaves nothing to work on."""
-    document = read_document(path, problems, sources)
+    """Read a schema, or `text` as if that stood in the file.
+
+    Whatever is wrong is reported; None where that leaves nothing to work on.
+    """
+    if text is None:
+        document = read_document(path, problems, sources)
+    else:
+        document = decode_document(text.encode("utf-8"), os.fspath(path), problems, sources)
     if document is None:
         return None
     merged = merge_bases(document, problems, sources)

@@ -6,10 +6,13 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
+from typing import TYPE_CHECKING
 
-from protogen.model.protocol import Protocol
 from protogen.targets.escape import c_comment, html_comment, python_comment
 from protogen.version import VERSION
+
+if TYPE_CHECKING:
+    from protogen.model.protocol import Protocol
 
 _DIGITS = 12
 """Hex digits of the spec hash that are shown; enough to tell specs apart, and it fits a line."""

@@ -129,10 +129,36 @@ def diff_files(files: Sequence[File], folder: Path, *, prune: bool = True) -> st
     contents = {file.path: file.content for file in _wanted(files, folder, prune)}
     found = check_files(files, folder, prune=prune)
     return "".join(
-        _diff(folder / item.path, _read_text(folder / item.path), contents.get(item.path))
+        diff_text(folder / item.path, _read_text(folder / item.path), contents.get(item.path))
         for item in found
         if item.state is not State.REFUSED
     )
+
+
+def expected_files(
+    files: Sequence[File], folder: Path, *, prune: bool = True
+) -> dict[PurePosixPath, str | None]:
+    """Return the sha256 of each file that the folder should hold; None: any content will do."""
+    wanted = _wanted(files, folder, prune)
+    any_content: dict[PurePosixPath, str | None] = {file.path: None for file in files}
+    return any_content | {file.path: sha256(file.bytes).hexdigest() for file in wanted}
+
+
+def is_current(
+    expected: Mapping[PurePosixPath, str | None], folder: Path, *, prune: bool = True
+) -> bool:
+    """Whether the folder holds what `expected_files` said, and with `prune` no more of ours."""
+    if not all(_holds(folder / path, digest) for path, digest in expected.items()):
+        return False
+    return not prune or not any(_extras(set(expected), folder, _read_manifest(folder)))
+
+
+def _holds(path: Path, digest: str | None) -> bool:
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return False
+    return digest is None or sha256(content).hexdigest() == digest
 
 
 # --- what is there ------------------------------------------------------------------------------
@@ -332,8 +358,8 @@ def _read_text(path: Path) -> str | None:
         return None
 
 
-def _diff(path: Path, old: str | None, new: str | None) -> str:
-    """A patch for the folder that the output folder is named from."""
+def diff_text(path: Path, old: str | None, new: str | None) -> str:
+    """A patch for one file, for the folder that its path starts from. None: there is no file."""
     name = path.as_posix().lstrip("/")
     lines = unified_diff(
         _lines(old),

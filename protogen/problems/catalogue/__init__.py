@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from protogen.problems.catalogue.code import Code, files_of
 from protogen.problems.catalogue.document import DOCUMENT_CODES
 from protogen.problems.catalogue.extends import EXTENDS_CODES
+from protogen.problems.catalogue.project import PROJECT_CODES
 from protogen.problems.catalogue.schema import SCHEMA_CODES
 
 __all__ = ["CODES", "Code", "files_of", "register"]
@@ -30,5 +31,7 @@ def register(codes: Iterable[Code]) -> Mapping[str, Code]:
     return by_code
 
 
-CODES: Mapping[str, Code] = register((*DOCUMENT_CODES, *EXTENDS_CODES, *SCHEMA_CODES))
+CODES: Mapping[str, Code] = register(
+    (*DOCUMENT_CODES, *EXTENDS_CODES, *PROJECT_CODES, *SCHEMA_CODES)
+)
 """Every problem code that exists, in ascending order."""

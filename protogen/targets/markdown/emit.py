@@ -31,8 +31,13 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 
 
 def _page(protocol: Protocol) -> File:
-    text = _linked(_render("protocol", view=page_view(protocol)), protocol)
+    text = page_text(protocol)
     return File(PurePosixPath(f"{protocol.name}.md"), text, banner(MARKDOWN, [protocol]))
+
+
+def page_text(protocol: Protocol) -> str:
+    """Return a protocol's page without its banner."""
+    return _linked(_render("protocol", view=page_view(protocol)), protocol)
 
 
 def _linked(text: str, protocol: Protocol) -> str:

@@ -1,0 +1,71 @@
+"""`protogen fmt`: the canonical layout of schemas."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import Quiet
+from protogen.cli.schemas import print_problems, schema_files
+
+EXAMPLE = "Example: protogen fmt schemas --check"
+
+
+class ChangedMeaningError(Exception):
+    """A layout that says something else than the text did: never the user's fault."""
+
+
+def fmt(
+    schemas: Annotated[
+        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
+    ],
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Write nothing; exit with 1 if a file is laid out otherwise."),
+    ] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Lay schemas out in the canonical form.
+
+    Indentation, spaces, quotes, the order of keys and the length of lines change; comments stay
+    where they belong, and lined up columns stay lined up. The protocol stays the same, which is
+    proved for each file before it is written. A file with errors is reported and left alone.
+    """
+    found = CLEAN
+    for file in schema_files(schemas):
+        change = _change(file)
+        if change is None:
+            found = FINDINGS
+        elif change[0] != change[1]:
+            found = FINDINGS if check else found
+            _finish(file, change[1], check=check, quiet=quiet)
+    return found
+
+
+def _change(file: Path) -> tuple[str, str] | None:
+    """Return the text of a schema and how it is laid out; None where it has errors."""
+    from protogen.compiler import compile_file
+    from protogen.layout.formatting import format_text
+    from protogen.layout.meaning import same_meaning
+
+    compilation = compile_file(file)
+    if compilation.protocol is None:
+        print_problems([compilation])
+        return None
+    before = file.read_bytes().decode("utf-8")
+    after = format_text(before)
+    if before != after and not same_meaning(file, before, after):
+        raise ChangedMeaningError(f"{file} would mean something else; it was left alone")
+    return before, after
+
+
+def _finish(file: Path, text: str, *, check: bool, quiet: bool) -> None:
+    if check:
+        typer.echo(f"{file}: would be laid out anew; mend it with: protogen fmt {file}")
+        return
+    file.write_bytes(text.encode("utf-8"))
+    if not quiet:
+        typer.echo(f"laid out {file}")

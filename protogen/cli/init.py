@@ -1,0 +1,106 @@
+"""`protogen init`: a first schema, to be changed."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, UsageError
+from protogen.starter.framings import Framing
+
+EXAMPLE = "Example: protogen init motor --framing cobs"
+NAME = "my_protocol"
+_SUFFIX = ".yaml"
+_GREATEST_NAME = 64
+
+
+def init(
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="NAME", help=f"The protocol's name, in snake case. Default: {NAME}"),
+    ] = None,
+    framing: Annotated[
+        Framing | None,
+        typer.Option(help=f"How a receiver finds a frame. Default: {Framing.COBS.value}"),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="The new file. Default: NAME.yaml"),
+    ] = None,
+) -> int:
+    """Write a small schema to begin with.
+
+    It compiles as it is, and its comments say what is what. Beside it goes the JSON Schema with
+    which editors complete and explain. On a terminal, asks for what was not given. A file that is
+    there already is never overwritten.
+    """
+    asks = sys.stdin.isatty() and sys.stdout.isatty()
+    chosen_name = _checked(name or (_ask_name() if asks else NAME))
+    chosen_framing = framing or (_ask_framing() if asks else Framing.COBS)
+    file = output or Path(chosen_name + _SUFFIX)
+    _write_schema(file, chosen_name, chosen_framing)
+    _write_json_schema(file.parent)
+    typer.echo(f"next: protogen check {file}")
+    return CLEAN
+
+
+def _ask_name() -> str:
+    from rich.prompt import Prompt
+
+    from protogen.cli.console import console
+
+    return Prompt.ask("Name of the protocol", default=NAME, console=console())
+
+
+def _ask_framing() -> Framing:
+    from rich.prompt import Prompt
+
+    from protogen.cli.console import console, print_table
+
+    out = console()
+    print_table(out, ("framing", ""), [(item.value, item.summary) for item in Framing])
+    names = [item.value for item in Framing]
+    default = Framing.COBS.value
+    chosen = Prompt.ask("Framing", choices=names, show_choices=False, default=default, console=out)
+    return Framing(chosen)
+
+
+def _checked(name: str) -> str:
+    """Return a name that a protocol may have. Raises UsageError with one that is close."""
+    from protogen.passes.reserved_words import languages_reserving
+    from protogen.schema.syntax.base import NAME_PATTERN
+
+    if not re.fullmatch(NAME_PATTERN, name) or len(name) > _GREATEST_NAME:
+        close = "_".join(re.findall(r"[a-z0-9]+", name.lower())).lstrip("0123456789_")
+        hint = f"did you mean `{close[:_GREATEST_NAME]}`?" if close else None
+        raise UsageError(f"`{name}` is no lower snake case name", hint)
+    languages = languages_reserving(name)
+    if languages:
+        raise UsageError(f"`{name}` is a reserved word of {', '.join(languages)}")
+    return name
+
+
+def _write_schema(file: Path, name: str, framing: Framing) -> None:
+    from protogen.starter.writing import starter_schema
+
+    text = starter_schema(name, framing, str(file))
+    try:
+        with file.open("x", encoding="utf-8", newline="") as stream:
+            stream.write(text)
+    except FileExistsError:
+        hint = "give another NAME, or another file with --output"
+        raise UsageError(f"there is a file `{file}` already; it was left alone", hint) from None
+    typer.echo(f"wrote {file}")
+
+
+def _write_json_schema(folder: Path) -> None:
+    from protogen.schema.json_schema import FILE_NAME, json_schema_text
+
+    file = folder / FILE_NAME
+    if not file.exists():
+        file.write_text(json_schema_text(), encoding="utf-8", newline="")
+        typer.echo(f"wrote {file}")

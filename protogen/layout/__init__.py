@@ -1,0 +1,1 @@
+"""The canonical layout of a schema's text: what `protogen fmt` writes."""

@@ -1,0 +1,39 @@
+"""The proof that a new layout says the same: data and models of both texts are compared."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from protogen.compiler import compile_file
+from protogen.problems import Problems, Span
+from protogen.schema.document import parse_document
+from protogen.schema.nodes import to_data
+
+
+def same_meaning(path: str | os.PathLike[str], before: str, after: str) -> bool:
+    """Tell whether both texts, each as the schema at `path`, hold the same and mean the same."""
+    if _data(before) != _data(after):
+        return False
+    old, new = (compile_file(path, text=text).protocol for text in (before, after))
+    return _agree(old, new)
+
+
+def _data(text: str) -> Any:
+    document = parse_document(text, "", Problems())
+    return None if document is None else to_data(document.root)
+
+
+def _agree(one: Any, other: Any) -> bool:
+    """Tell whether two pieces of models are equal but for the places where they are written."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, Span):
+        return True
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(_agree, one, other))
+    if is_dataclass(one):
+        names = (field.name for field in fields(one))
+        return all(_agree(getattr(one, name), getattr(other, name)) for name in names)
+    return bool(one == other or (one != one and other != other))

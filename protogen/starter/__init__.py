@@ -1,0 +1,1 @@
+"""The schema that `protogen init` writes: small, commented, and complete."""

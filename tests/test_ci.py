@@ -1,0 +1,174 @@
+"""The hooks for pre-commit and the workflow in `docs/ci.md` do what is said of them."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from cli_support import ROOT, run, start
+from tooling import require_module, require_tool
+
+HOOKS = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+IDS = [hook["id"] for hook in HOOKS]
+PAGE = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+BLOCKS = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)]
+
+
+def steps() -> list[str]:
+    """The commands of the workflow that are ours."""
+    (workflow,) = [block for block in BLOCKS if "jobs" in block]
+    (job,) = workflow["jobs"].values()
+    lines = [step["run"] for step in job["steps"] if "run" in step]
+    return [line for line in lines if line.startswith("protogen ")]
+
+
+def told() -> list[str]:
+    """The commands in the tables and texts of the page."""
+    return [line for line in re.findall(r"`(protogen [^`]+)`", PAGE) if "-" in line]
+
+
+def hooked() -> list[str]:
+    return [" ".join([hook["entry"], *hook.get("args", [])]) for hook in HOOKS]
+
+
+class TestCommands:
+    @pytest.mark.parametrize("line", sorted({*steps(), *told(), *hooked()}))
+    def test_exist_with_their_options(self, line: str) -> None:
+        line = re.sub(r"\$\{\{.*?\}\}", "main", line)
+        program, command, *arguments = shlex.split(line)
+        assert program == "protogen"
+        shown = run(command, "--help")
+        assert shown.exit_code == 0, shown.output
+        for option in (word for word in arguments if word.startswith("--")):
+            assert re.search(rf"{option}\b", shown.output), option
+
+    def test_of_the_workflow_annotate_pull_requests(self) -> None:
+        assert any("check" in step and "--format github" in step for step in steps())
+
+    def test_hooks_are_those_that_the_page_names(self) -> None:
+        named = {
+            hook["id"]
+            for block in BLOCKS
+            for repo in block.get("repos", [])
+            for hook in repo["hooks"]
+        }
+        assert named == set(IDS)
+
+
+# --- the real pre-commit --------------------------------------------------------------------------
+
+
+class Scratch:
+    """A repository with schemas that takes our hooks from a clone, as a user's does."""
+
+    def __init__(self, folder: Path) -> None:
+        self.hooks, self.user, self._bin = (folder / name for name in ("hooks", "user", "bin"))
+        self._environment = {
+            **os.environ,
+            "PATH": f"{self._bin}{os.pathsep}{os.environ['PATH']}",
+            "PYTHONPATH": str(ROOT),
+            "PRE_COMMIT_HOME": str(folder / "home"),
+            "GIT_CONFIG_GLOBAL": os.devnull,
+        }
+        for path in (self.hooks, self.user, self._bin):
+            path.mkdir()
+        program = self._bin / "protogen"
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m protogen "$@"\n')
+        program.chmod(0o755)
+
+    @property
+    def schema(self) -> Path:
+        return self.user / "schemas" / "motor.yaml"
+
+    def git(self, folder: Path, *arguments: str) -> str:
+        identity = ["-c", "user.name=A", "-c", "user.email=a@b.c"]
+        command = [require_tool("git"), "-C", str(folder), *identity, *arguments]
+        return self._run(command, folder, check=True).stdout.strip()
+
+    def commit(self, folder: Path) -> str:
+        self.git(folder, "add", "--all")
+        self.git(folder, "commit", "--quiet", "--no-verify", "--message", "a commit")
+        return self.git(folder, "rev-parse", "HEAD")
+
+    def pre_commit(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        self.git(self.user, "add", "--all")
+        command = [sys.executable, "-m", "pre_commit", *arguments]
+        return self._run(command, self.user, check=False)
+
+    def _run(
+        self, command: list[str], folder: Path, *, check: bool
+    ) -> subprocess.CompletedProcess[str]:
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=self._environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        assert not check or done.returncode == 0, done.stderr
+        return done
+
+
+@pytest.fixture
+def scratch(tmp_path: Path) -> Scratch:
+    require_module("pre_commit")
+    made = Scratch(tmp_path)
+    made.git(made.hooks, "init", "--quiet")
+    text = (ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8")
+    (made.hooks / ".pre-commit-hooks.yaml").write_text(text)
+    revision = made.commit(made.hooks)
+    made.git(made.user, "init", "--quiet")
+    made.schema.parent.mkdir()
+    assert start("init", "motor", "-o", str(made.schema), cwd=made.user).returncode == 0
+    assert start("generate", "-q", cwd=made.user).returncode == 0
+    # What is installed is tested by the wheel; here the command is the one of this checkout.
+    hooks: list[dict[str, Any]] = [{"id": name, "language": "system"} for name in IDS]
+    repos = {"repos": [{"repo": str(made.hooks), "rev": revision, "hooks": hooks}]}
+    (made.user / ".pre-commit-config.yaml").write_text(yaml.safe_dump(repos))
+    made.commit(made.user)
+    return made
+
+
+class TestPreCommit:
+    def test_hooks_pass_where_nothing_is_wrong(self, scratch: Scratch) -> None:
+        done = scratch.pre_commit("run", "--all-files")
+        assert done.returncode == 0, done.stdout
+        assert done.stdout.count("Passed") == len(IDS)
+
+    @pytest.mark.parametrize(
+        ("hook", "old", "new", "said"),
+        [
+            ("protogen-check", "type: sint16", "type: snit16", "did you mean `sint16`?"),
+            ("protogen-fmt", "type: sint16", "type:   sint16", "files were modified by this hook"),
+            ("protogen-generate-check", "scale: 1/100", "scale: 1/10", "motor.py"),
+            ("protogen-breaking", "type: sint16", "type: sint32", "temperature"),
+        ],
+    )
+    def test_each_hook_stops_what_it_is_for(
+        self, scratch: Scratch, hook: str, old: str, new: str, said: str
+    ) -> None:
+        text = scratch.schema.read_text()
+        examples = re.compile(r"    examples:\n(?: {6}.*\n)+")
+        changed = examples.sub("", text).replace(old, new)
+        scratch.schema.write_text(examples.sub("", text))
+        scratch.commit(scratch.user)
+        scratch.schema.write_text(changed)
+        done = scratch.pre_commit("run", hook)
+        assert done.returncode == 1, done.stdout
+        assert said in done.stdout
+
+    def test_a_hook_that_lays_out_passes_the_second_time(self, scratch: Scratch) -> None:
+        text = scratch.schema.read_text()
+        scratch.schema.write_text(text.replace("title: ", "title:    "))
+        assert scratch.pre_commit("run", "protogen-fmt").returncode == 1
+        assert scratch.schema.read_text() == text
+        assert scratch.pre_commit("run", "protogen-fmt").returncode == 0

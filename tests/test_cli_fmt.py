@@ -1,0 +1,81 @@
+"""`protogen fmt`: what is written, what is reported, and what is left alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from cli_support import SINK, run
+
+from protogen.layout import formatting
+
+WIDE = "protocol:   wide\n" + SINK.partition("\n")[2].replace("byte_order: big\n", "").replace(
+    "endpoints:", "byte_order: big   # most significant byte first\nendpoints:"
+)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_writes_the_canonical_layout_once(folder: Path) -> None:
+    file = folder / "wide.yaml"
+    file.write_text(WIDE)
+    first = run("fmt", "wide.yaml")
+    assert (first.exit_code, first.output) == (0, "laid out wide.yaml\n")
+    text = file.read_text()
+    assert text.startswith(
+        "protocol: wide\ntitle: One of everything\nlink: {baud: 9600}\nendpoints"
+    )
+    assert "byte_order: big   # most significant byte first\n" in text
+    again = run("fmt", "wide.yaml")
+    assert (again.exit_code, again.output) == (0, "")
+    assert file.read_text() == text
+
+
+def test_check_lists_files_and_writes_nothing(folder: Path) -> None:
+    (folder / "wide.yaml").write_text(WIDE)
+    (folder / "good.yaml").write_text(formatting.format_text(SINK))
+    done = run("fmt", ".", "--check")
+    assert done.exit_code == 1
+    assert (
+        done.output == "wide.yaml: would be laid out anew; mend it with: protogen fmt wide.yaml\n"
+    )
+    assert (folder / "wide.yaml").read_text() == WIDE
+    assert run("fmt", "good.yaml", "--check").exit_code == 0
+
+
+def test_quiet_says_nothing(folder: Path) -> None:
+    (folder / "wide.yaml").write_text(WIDE)
+    assert run("fmt", "wide.yaml", "--quiet").output == ""
+
+
+def test_a_file_with_errors_is_reported_and_left_alone(folder: Path) -> None:
+    text = WIDE.replace("type: char", "type: chr")
+    (folder / "bad.yaml").write_text(text)
+    (folder / "wide.yaml").write_text(WIDE)
+    done = run("fmt", "bad.yaml", "wide.yaml")
+    assert done.exit_code == 1
+    assert "bad.yaml:8:16: error[" in done.output
+    assert "laid out wide.yaml" in done.output
+    assert (folder / "bad.yaml").read_text() == text
+
+
+def test_a_layout_that_says_something_else_is_a_bug_and_not_written(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "wide.yaml").write_text(WIDE)
+    monkeypatch.setattr(formatting, "format_text", lambda text: text.replace("9600", "960"))
+    done = run("fmt", "wide.yaml")
+    assert done.exit_code == 70
+    assert "this is a bug in protogen" in done.output
+    assert "wide.yaml would mean something else" in done.output
+    assert (folder / "wide.yaml").read_text() == WIDE
+
+
+def test_no_such_file() -> None:
+    done = run("fmt", "none.yaml")
+    assert done.exit_code == 2
+    assert "there is no file or folder `none.yaml`" in done.output
