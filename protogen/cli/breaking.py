@@ -9,10 +9,12 @@ import typer
 
 from protogen.cli.diff import print_findings
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.schemas import open_project
 
 if TYPE_CHECKING:
     from protogen.evolution.compare import Comparison
     from protogen.evolution.findings import Finding, Gate
+    from protogen.project.read import Project
 
 EXAMPLE = "Example: protogen breaking schemas --against git:main"
 
@@ -27,9 +29,12 @@ class BreakingFormat(StrEnum):
 
 def breaking(
     versions: Annotated[
-        list[str],
-        typer.Argument(metavar="[OLD] NEW", help="Schemas, folders of them, or git:REV:PATH."),
-    ],
+        list[str] | None,
+        typer.Argument(
+            metavar="[OLD] NEW",
+            help="Schemas, folders of them, or git:REV:PATH. Default: the project's schemas.",
+        ),
+    ] = None,
     against: Annotated[
         str | None,
         typer.Option(metavar="VERSION", help="What NEW is held against: git:REV, or a path."),
@@ -65,12 +70,13 @@ def breaking(
     from protogen.evolution.findings import findings
     from protogen.evolution.report import as_json
 
-    gate = _gate(use or [], except_ or [], ignore or [])
+    project = open_project()
+    gate = _gate(project, use or [], except_ or [], ignore or [])
     held = f"lock:{against_lock}" if against_lock is not None else against
     stopped = False
     reports = []
     out = console()
-    for old, new in _pairs(versions, held):
+    for old, new in _pairs(versions or _own(project), held):
         with both(old, new) as pairs:
             for name, before, after in pairs:
                 if before is None or after is None:
@@ -90,6 +96,13 @@ def breaking(
     return FINDINGS if stopped else CLEAN
 
 
+def _own(project: Project | None) -> list[str]:
+    """The schemas that the project names."""
+    if project is None:
+        return []
+    return [str(project.folder / name) for name in project.settings.schemas]
+
+
 def _pairs(versions: list[str], against: str | None) -> list[tuple[str, str]]:
     if against is not None:
         return [(against, new) for new in versions]
@@ -99,7 +112,8 @@ def _pairs(versions: list[str], against: str | None) -> list[tuple[str, str]]:
     return [(versions[0], versions[1])]
 
 
-def _gate(use: list[str], except_: list[str], ignore: list[str]) -> Gate:
+def _gate(project: Project | None, use: list[str], except_: list[str], ignore: list[str]) -> Gate:
+    """What counts: the command line over the project's file."""
     from protogen.evolution.findings import Gate
     from protogen.evolution.rules import BY_NAME, Category
     from protogen.problems import hint_for
@@ -108,6 +122,12 @@ def _gate(use: list[str], except_: list[str], ignore: list[str]) -> Gate:
     for item in ignore:
         rule, equals, place = item.rpartition("=")
         places.setdefault(rule if equals else "*", []).append(place)
+    if project is not None:
+        settings = project.settings.breaking
+        use = use or list(settings.use)
+        except_ = except_ or list(settings.except_)
+        for name, patterns in settings.ignore.items():
+            places.setdefault(name, []).extend(patterns)
     gate = Gate(tuple(use) or Gate().use, tuple(except_), places)
     for name in gate.unknown():
         known = [*BY_NAME, *(category.value for category in Category)]

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from protogen.cli.exits import FINDINGS, UsageError
+from protogen.cli.exits import FINDINGS, USAGE, UsageError
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
     from protogen.model.messages import Message
     from protogen.model.protocol import Protocol, Sender
     from protogen.problems import Problem, Problems, SourceMap
+    from protogen.project.read import Project
 
 
 def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
@@ -44,6 +45,29 @@ def open_protocol(path: Path) -> Protocol:
         print_problems([compilation])
         raise typer.Exit(FINDINGS)
     return compilation.protocol
+
+
+def open_project() -> Project | None:
+    """Return the project around the working directory, if there is one.
+
+    With a mistake in its file, prints the problems and ends the command.
+    """
+    from protogen.cli.console import error_console
+    from protogen.problems import Problems, SourceMap, render_rich
+    from protogen.project.find import find_project
+    from protogen.project.read import read_project
+
+    file = find_project()
+    if file is None:
+        return None
+    problems, sources = Problems(), SourceMap()
+    project = read_project(file, problems, sources)
+    if problems.errors:
+        console = error_console()
+        for problem in problems:
+            console.print(render_rich(problem, sources))
+        raise typer.Exit(USAGE)
+    return project
 
 
 def print_problems(compilations: Iterable[Compilation]) -> None:
