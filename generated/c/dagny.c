@@ -1504,6 +1504,8 @@ static uint8_t dagny_host_accept(struct dagny_host_decoder *decoder, uint8_t byt
         reason = dagny_host_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_KNOWN) == 0U || index < 1U + decoder->payload) {
         crosses = (decoder->flags & DAGNY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == DAGNY_NO_REASON && crosses) {
         reason = dagny_host_cross(decoder);
@@ -1947,6 +1949,8 @@ static uint8_t dagny_robot_accept(struct dagny_robot_decoder *decoder, uint8_t b
         reason = dagny_robot_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_KNOWN) == 0U || index < 1U + decoder->payload) {
         crosses = (decoder->flags & DAGNY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == DAGNY_NO_REASON && crosses) {
         reason = dagny_robot_cross(decoder);

@@ -1281,6 +1281,8 @@ static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *deco
         reason = dagny_library_host_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
         crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == DAGNY_LIBRARY_NO_REASON && crosses) {
         reason = dagny_library_host_cross(decoder);
@@ -1305,10 +1307,10 @@ static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *dec
     default:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         case 0x16:
-            value = 0x0D;
+            value = 0x0DU;
             break;
         default:
             return DAGNY_LIBRARY_STUFFING;
@@ -1657,6 +1659,8 @@ static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *de
         reason = dagny_library_robot_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
         crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == DAGNY_LIBRARY_NO_REASON && crosses) {
         reason = dagny_library_robot_cross(decoder);
@@ -1681,10 +1685,10 @@ static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *d
     default:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         case 0x16:
-            value = 0x0D;
+            value = 0x0DU;
             break;
         default:
             return DAGNY_LIBRARY_STUFFING;

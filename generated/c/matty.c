@@ -1132,6 +1132,8 @@ static uint8_t matty_pc_accept(struct matty_pc_decoder *decoder, uint8_t byte) {
         reason = matty_pc_take_head(decoder, index, byte);
     } else if (index < 4U + decoder->payload) {
         crosses = index + 1U == 4U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == MATTY_NO_REASON && crosses) {
         reason = matty_pc_cross(decoder);
@@ -1156,10 +1158,10 @@ static uint8_t matty_pc_unstuff(struct matty_pc_decoder *decoder, uint8_t byte) 
     default:
         switch (byte) {
         case 0xA9:
-            value = 0x56;
+            value = 0x56U;
             break;
         case 0xAA:
-            value = 0x55;
+            value = 0x55U;
             break;
         default:
             return MATTY_STUFFING;
@@ -1571,6 +1573,8 @@ static uint8_t matty_esp_accept(struct matty_esp_decoder *decoder, uint8_t byte)
         reason = matty_esp_take_head(decoder, index, byte);
     } else if (index < 4U + decoder->payload) {
         crosses = index + 1U == 4U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == MATTY_NO_REASON && crosses) {
         reason = matty_esp_cross(decoder);
@@ -1595,10 +1599,10 @@ static uint8_t matty_esp_unstuff(struct matty_esp_decoder *decoder, uint8_t byte
     default:
         switch (byte) {
         case 0xA9:
-            value = 0x56;
+            value = 0x56U;
             break;
         case 0xAA:
-            value = 0x55;
+            value = 0x55U;
             break;
         default:
             return MATTY_STUFFING;

@@ -1376,6 +1376,8 @@ static uint8_t matty_v4_pc_accept(struct matty_v4_pc_decoder *decoder, uint8_t b
         reason = matty_v4_pc_take_head(decoder, index, byte);
     } else if (index < 4U + decoder->payload) {
         crosses = index + 1U == 4U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == MATTY_V4_NO_REASON && crosses) {
         reason = matty_v4_pc_cross(decoder);
@@ -1400,10 +1402,10 @@ static uint8_t matty_v4_pc_unstuff(struct matty_v4_pc_decoder *decoder, uint8_t 
     default:
         switch (byte) {
         case 0xA9:
-            value = 0x56;
+            value = 0x56U;
             break;
         case 0xAA:
-            value = 0x55;
+            value = 0x55U;
             break;
         default:
             return MATTY_V4_STUFFING;
@@ -1818,6 +1820,8 @@ static uint8_t matty_v4_esp_accept(struct matty_v4_esp_decoder *decoder, uint8_t
         reason = matty_v4_esp_take_head(decoder, index, byte);
     } else if (index < 4U + decoder->payload) {
         crosses = index + 1U == 4U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == MATTY_V4_NO_REASON && crosses) {
         reason = matty_v4_esp_cross(decoder);
@@ -1842,10 +1846,10 @@ static uint8_t matty_v4_esp_unstuff(struct matty_v4_esp_decoder *decoder, uint8_
     default:
         switch (byte) {
         case 0xA9:
-            value = 0x56;
+            value = 0x56U;
             break;
         case 0xAA:
-            value = 0x55;
+            value = 0x55U;
             break;
         default:
             return MATTY_V4_STUFFING;

@@ -2016,6 +2016,8 @@ static uint8_t rflex_linux_accept(struct rflex_linux_decoder *decoder, uint8_t b
         reason = rflex_linux_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
         crosses = index + 1U == 6U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RFLEX_NO_REASON && crosses) {
         reason = rflex_linux_cross(decoder);
@@ -2041,7 +2043,7 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
     case 1:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         default:
             return RFLEX_STUFFING;
@@ -2059,7 +2061,7 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
     default:
         switch (byte) {
         case 0x01:
-            value = 0x7C;
+            value = 0x7CU;
             break;
         default:
             return RFLEX_STUFFING;
@@ -2642,6 +2644,8 @@ static uint8_t rflex_flex_accept(struct rflex_flex_decoder *decoder, uint8_t byt
         reason = rflex_flex_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
         crosses = index + 1U == 6U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RFLEX_NO_REASON && crosses) {
         reason = rflex_flex_cross(decoder);
@@ -2667,7 +2671,7 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
     case 1:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         default:
             return RFLEX_STUFFING;
@@ -2685,7 +2689,7 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
     default:
         switch (byte) {
         case 0x01:
-            value = 0x7C;
+            value = 0x7CU;
             break;
         default:
             return RFLEX_STUFFING;

@@ -2518,6 +2518,8 @@ static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *de
         reason = rflex_drivers_linux_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
         crosses = index + 1U == 6U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
         reason = rflex_drivers_linux_cross(decoder);
@@ -2543,7 +2545,7 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
     case 1:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         default:
             return RFLEX_DRIVERS_STUFFING;
@@ -2561,7 +2563,7 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
     default:
         switch (byte) {
         case 0x01:
-            value = 0x7C;
+            value = 0x7CU;
             break;
         default:
             return RFLEX_DRIVERS_STUFFING;
@@ -3150,6 +3152,8 @@ static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *deco
         reason = rflex_drivers_flex_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
         crosses = index + 1U == 6U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
         reason = rflex_drivers_flex_cross(decoder);
@@ -3175,7 +3179,7 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
     case 1:
         switch (byte) {
         case 0x00:
-            value = 0x1B;
+            value = 0x1BU;
             break;
         default:
             return RFLEX_DRIVERS_STUFFING;
@@ -3193,7 +3197,7 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
     default:
         switch (byte) {
         case 0x01:
-            value = 0x7C;
+            value = 0x7CU;
             break;
         default:
             return RFLEX_DRIVERS_STUFFING;

@@ -1634,6 +1634,8 @@ static uint8_t rn1_host_accept(struct rn1_host_decoder *decoder, uint8_t byte) {
             return RN1_ENCODING;
         }
         crosses = (decoder->flags & RN1_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RN1_NO_REASON && crosses) {
         reason = rn1_host_cross(decoder);
@@ -1991,6 +1993,8 @@ static uint8_t rn1_brain_accept(struct rn1_brain_decoder *decoder, uint8_t byte)
             return RN1_ENCODING;
         }
         crosses = (decoder->flags & RN1_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RN1_NO_REASON && crosses) {
         reason = rn1_brain_cross(decoder);

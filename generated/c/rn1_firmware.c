@@ -1973,6 +1973,8 @@ static uint8_t rn1_firmware_host_accept(struct rn1_firmware_host_decoder *decode
             return RN1_FIRMWARE_ENCODING;
         }
         crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RN1_FIRMWARE_NO_REASON && crosses) {
         reason = rn1_firmware_host_cross(decoder);
@@ -2342,6 +2344,8 @@ static uint8_t rn1_firmware_brain_accept(struct rn1_firmware_brain_decoder *deco
             return RN1_FIRMWARE_ENCODING;
         }
         crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == RN1_FIRMWARE_NO_REASON && crosses) {
         reason = rn1_firmware_brain_cross(decoder);

@@ -576,6 +576,8 @@ static uint8_t uherobot_daemon_accept(struct uherobot_daemon_decoder *decoder, u
         reason = uherobot_daemon_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
         crosses = index + 1U == 3U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == UHEROBOT_NO_REASON && crosses) {
         reason = uherobot_daemon_cross(decoder);
@@ -893,6 +895,8 @@ static uint8_t uherobot_board_accept(struct uherobot_board_decoder *decoder, uin
         reason = uherobot_board_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
         crosses = index + 1U == 3U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == UHEROBOT_NO_REASON && crosses) {
         reason = uherobot_board_cross(decoder);

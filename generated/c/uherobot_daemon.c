@@ -572,6 +572,8 @@ static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decod
         reason = uherobot_daemon_daemon_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
         crosses = index + 1U == 3U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
         reason = uherobot_daemon_daemon_cross(decoder);
@@ -913,6 +915,8 @@ static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder
         reason = uherobot_daemon_board_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
         crosses = index + 1U == 3U + decoder->payload;
+    } else {
+        /* A byte behind the payload is looked at when all are there. */
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
         reason = uherobot_daemon_board_cross(decoder);

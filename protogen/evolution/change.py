@@ -26,6 +26,8 @@ class Change:
     old_part: str | None = None
     new_part: str | None = None
     """The names of a frame's part that has another one now."""
+    taken_by: tuple[str, ...] = ()
+    """Messages of NEW that have this one's identity."""
     places: tuple[str, ...] = field(default=())
     """Other places with the same change, as an enum has that several fields use."""
 

@@ -73,10 +73,7 @@ def _messages(
         other = after[name]
         if name != message.name:
             yield _change("message-renamed", message, named(message.name, name))
-        senders = tuple(endpoints.get(item, item) for item in message.senders)
-        if set(senders) != set(other.senders):
-            words = named(", ".join(message.senders), ", ".join(other.senders))
-            yield _change("message-sender", message, words)
+        yield from _senders(message, other, new, endpoints)
         found = list(FieldComparison(message.name).compare(message.fields, other.fields))
         yield from found
         if message.sizes != other.sizes and not any(_is_wire(item) for item in found):
@@ -88,10 +85,31 @@ def _messages(
             yield _change("message-added", message, text)
 
 
+def _senders(
+    message: Message, other: Message, new: Protocol, endpoints: dict[str, str]
+) -> Iterator[Change]:
+    names = {sender: endpoints.get(sender, sender) for sender in message.senders}
+    if not set(other.senders) <= set(names.values()):
+        words = named(", ".join(message.senders), ", ".join(other.senders))
+        yield _change("message-sender-added", message, words)
+    for sender, name in names.items():
+        if name in other.senders:
+            continue
+        if (name, message.identity) in _reserved(new):
+            words = f"{sender} does not send it any more, {_identity(message)} is reserved"
+            yield _change("message-reserved", message, words)
+        else:
+            words = f"{sender} does not send it any more"
+            yield replace(_change("message-sender-deleted", message, words), sender=sender)
+
+
+def _reserved(protocol: Protocol) -> set[tuple[str, tuple[int, ...]]]:
+    return {(item.sender, item.identity) for item in protocol.reserved.identities}
+
+
 def _deleted(message: Message, new: Protocol, endpoints: dict[str, str]) -> Change:
-    reserved = {(item.sender, item.identity) for item in new.reserved.identities}
     senders = [endpoints.get(item, item) for item in message.senders]
-    if all((sender, message.identity) in reserved for sender in senders):
+    if all((sender, message.identity) in _reserved(new) for sender in senders):
         return _change("message-reserved", message, f"{_identity(message)} is reserved")
     return _change("message-deleted", message, f"{_identity(message)} is free for another meaning")
 
@@ -113,7 +131,8 @@ def _identities(
         taken = [item for item in taken if item not in mine]
         if taken:
             words = f"{_shown(message.identity)} was {message.name}, is {', '.join(taken)}"
-            yield replace(_change("identity-reused", message, words), sender=old.name)
+            change = _change("identity-reused", message, words)
+            yield replace(change, sender=old.name, taken_by=tuple(taken))
 
 
 def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:

@@ -23,12 +23,14 @@ class Finding:
     change: Change
     rule: Rule
     category: Category
-    """The rule's; SOURCE where no frame that an encoder makes shows a message's change."""
+    """The rule's; SOURCE where no frame that an encoder makes shows the change."""
     witnesses: tuple[Witness, ...] = ()
 
     @property
     def hurt(self) -> str:
         """Who is hurt."""
+        if self.category is Category.NONE:
+            return "nobody"
         old_sends = any(item.old_sends for item in self.witnesses)
         new_sends = any(not item.old_sends for item in self.witnesses)
         if old_sends and new_sends:
@@ -40,6 +42,8 @@ class Finding:
     @property
     def harm(self) -> str:
         """How, the worst first."""
+        if self.category is Category.NONE:
+            return "nothing"
         order = ["misread", "rejected", "lost"]
         found = sorted({item.harm.value for item in self.witnesses}, key=order.index)
         return ", ".join(found) or "recompile"
@@ -91,8 +95,7 @@ def _finding(change: Change, witnesses: Witnesses) -> Finding:
     if rule.category not in SHOWN_BY_FRAMES:
         return Finding(change, rule, rule.category)
     found = tuple(witnesses.of(change))
-    is_shown = bool(found) or change.message is None
-    return Finding(change, rule, rule.category if is_shown else Category.SOURCE, found)
+    return Finding(change, rule, rule.category if found else Category.SOURCE, found)
 
 
 def worst(found: Iterable[Finding]) -> Category:

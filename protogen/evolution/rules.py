@@ -62,7 +62,8 @@ RULES: tuple[Rule, ...] = (
     Rule("message-renamed", _S, "a message has another name", _RENAME),
     Rule("message-identity", _W, "a message has another identity", _NEW_ID),
     Rule("identity-reused", _W, "an identity means another message now", _NEW_ID),
-    Rule("message-sender", _S, "others send the message", "check who listens"),
+    Rule("message-sender-added", _S, "others send the message, too", "check who listens"),
+    Rule("message-sender-deleted", _W, "a sender of the message is gone", "reserve its identity"),
     Rule("message-overload", _V, "messages that share an identity are told apart otherwise", _BOTH),
     Rule("message-size", _W, "payloads of other sizes are allowed", _BOTH),
     # fields

@@ -55,9 +55,11 @@ def opened(given: str, path: Path | None = None) -> Iterator[Version]:
     wanted = Path(named) if named else path
     assert wanted is not None
     top = Path(_git("rev-parse", "--show-toplevel", folder=_folder(wanted)).decode().strip())
-    inside = wanted.resolve().relative_to(top) if path is wanted else _inside(wanted, top)
     with TemporaryDirectory(prefix="protogen-") as folder:
         _extract(revision, top, Path(folder))
+        inside = _inside(wanted, top)
+        if named and not (Path(folder) / inside).exists() and _is_below(wanted):
+            inside = wanted
         (Path(folder) / ".git").touch()  # What marks a project, whose files extend each other.
         yield _compiled(f"{revision}:{inside.as_posix()}", Path(folder) / inside)
 
@@ -101,9 +103,17 @@ def _folder(path: Path) -> Path:
 
 
 def _inside(path: Path, top: Path) -> Path:
-    """A path in git: below the working directory where it is there, else below the top."""
+    """The path below the top of a repository of what is below the working directory."""
     resolved = path.resolve()
-    return resolved.relative_to(top) if resolved.is_relative_to(top) else path
+    if not resolved.is_relative_to(top):
+        message = f"`{path}` is not in the repository `{top}`"
+        raise NoVersionError(message)
+    return resolved.relative_to(top)
+
+
+def _is_below(path: Path) -> bool:
+    """Whether a path may be meant from the top of a repository, as git has them."""
+    return not path.is_absolute() and ".." not in path.parts
 
 
 def _extract(revision: str, top: Path, folder: Path) -> None:

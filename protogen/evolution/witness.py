@@ -73,10 +73,10 @@ class Witness:
             return f"reads {self.received.message}"
         item = self.differences[0]
         if item.received is None:
-            return f"ignores {item.path}, which was {item.sent}"
+            return f"ignores {item.path}, which was {_shown(item.sent)}"
         if item.sent is None:
-            return f"reads {item.path} {item.received}, which nobody sent"
-        return f"reads {item.path} {item.received} where {item.sent} was meant"
+            return f"reads {item.path} {_shown(item.received)}, which nobody sent"
+        return f"reads {item.path} {_shown(item.received)} where {_shown(item.sent)} was meant"
 
 
 class Witnesses:
@@ -103,10 +103,20 @@ class Witnesses:
         return found
 
     def _shows(self, witness: Witness, change: Change) -> bool:
+        if change.message is None:
+            return not self._has_changed(witness)
         if change.path is None or witness.harm is Harm.REJECTED:
             return True
         paths = {change.path, change.now or change.path}
         return any(_is_inside(item.path, paths) for item in witness.differences)
+
+    def _has_changed(self, witness: Witness) -> bool:
+        """Whether the message has changes of its own, which the witness may show."""
+        names = self._comparison
+        name = witness.message
+        if not witness.old_sends:
+            name = _key_of(names.messages, name)
+        return any(change.message == name for change in names.changes)
 
     # --- what is sent -----------------------------------------------------------------------------
 
@@ -119,7 +129,8 @@ class Witnesses:
                 continue
             for message in sender.messages:
                 name = message.name if old_sends else _key_of(names.messages, message.name)
-                if change.message in (None, name):
+                taken = not old_sends and message.name in change.taken_by
+                if taken or change.message in (None, name):
                     yield sender, message
 
     def differing(self, old_sends: bool, sender: Sender, message: Message) -> list[Witness]:
@@ -141,7 +152,7 @@ class Witnesses:
                 continue
             sent = one.reads(sender.name, frame)
             received = other.reads(theirs, frame) if listens else Reading(None, "nobody listens")
-            if sent.message is None:
+            if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.
             harm, differences = self._judged(sent, received, old_sends)
             if harm is not None:
@@ -214,6 +225,10 @@ def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
     dice = Random(message.name)  # noqa: S311 - nothing secret
     count = min(boundary_rounds(message, sender.frame), _ROUNDS) + _RANDOM
     yield from islice(samples(message, sender.frame, dice), count)
+
+
+def _shown(value: str | None) -> str:
+    return value or "nothing"
 
 
 def _names(message: Message) -> list[str]:

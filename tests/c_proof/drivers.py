@@ -22,7 +22,8 @@ _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
 _PUSH = re.compile(r"void (\w+)_decoder_push\(")
 
-_HEAD = """#include "{name}.c"
+_HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
+#include "{name}.c"
 #include "__fc_builtin.h"
 
 static volatile int any;
@@ -90,7 +91,7 @@ def decode_driver(protocol: Protocol, header: str) -> Driver:
     flat = re.sub(r"\s+", " ", header)
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
     messages = {f"{protocol.name}_{message.name}": message for message in protocol.messages}
-    parts, proofs = [_HEAD.format(name=protocol.name)], []
+    parts, proofs = [_HEAD.format(name=protocol.name, upper=protocol.name.upper())], []
     for prefix, struct in _DECODE.findall(flat):
         room = greatest[prefix.upper()] + 1
         offsets = _deciding(messages[prefix]) if prefix in messages else ()
@@ -109,7 +110,7 @@ def push_driver(protocol: Protocol, header: str) -> Driver:
     proofs = [f"{prefix}_push" for prefix in _PUSH.findall(header)]
     bounds = _bounds(header)
     parts = [_DECODER.format(prefix=p.removesuffix("_push"), bounds=bounds) for p in proofs]
-    return _driver([_HEAD.format(name=protocol.name), *parts], proofs)
+    return _driver([_HEAD.format(name=protocol.name, upper=protocol.name.upper()), *parts], proofs)
 
 
 def _bounds(header: str) -> str:

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from c_proof.generated import Generated, generate
 from compiled import DOCUMENTS, FRAMINGS, ROOT, SCHEMAS, name_of, protocol_of
 from tooling import require_tool
 
-from c_proof.generated import Generated, generate
 from protogen.targets.c.options import EVENTS, STYLES, COptions, Events, Style
 
 TARGET = ROOT / "protogen" / "targets" / "c"

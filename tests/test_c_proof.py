@@ -11,11 +11,11 @@ import re
 from pathlib import Path
 
 import pytest
-from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
-
 from c_proof.drivers import Driver, decode_driver, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
+from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
+
 from protogen.targets.c.options import EVENTS, COptions, Events
 
 WIDE, NARROW = MACHINES

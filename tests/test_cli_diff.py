@@ -1,0 +1,361 @@
+"""`diff`, `breaking` and `rules` as processes: versions, formats, what counts, what goes wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pytest
+from cli_support import start
+from tooling import require_tool
+
+from protogen.evolution.rules import RULES
+
+OLD = """\
+protocol: demo
+endpoints: {board: Sensor board}
+byte_order: little
+frame:
+  start:   {literal: 0xAA}
+  kind:    {type: uint8, id: true}
+  payload: {}
+  crc:     {type: uint16, algorithm: CRC-16/KERMIT, covers: [kind, payload]}
+transparency:
+  covers: kind..crc
+  escape: {byte: 0xAB, of: [0xAA, 0xAB], transform: {xor: 0x20}}
+messages:
+  reading: {id: 1, from: board, fields: {value: {type: uint16, unit: mm}}}
+  ping: {id: 3, from: board, fields: {number: uint8}}
+"""
+GONE = OLD[: OLD.index("  ping:")]
+RESERVED = f"{GONE}reserved: {{identities: [{{from: board, id: 3}}]}}\n"
+TURNED = OLD.replace("type: uint16, unit: mm", "type: uint16, byte_order: big, unit: cm")
+TEMPORARY = Path(tempfile.gettempdir()).resolve()
+DIALECT = """\
+protocol: demo_two
+extends: ../demo.yaml
+messages:
+  pong: {id: 4, from: board, fields: {number: uint8}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in {"old": OLD, "gone": GONE, "reserved": RESERVED, "turned": TURNED}.items():
+        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def protogen(folder: Path, *arguments: str) -> subprocess.CompletedProcess[bytes]:
+    # What the tests run in may be a git repository; only a scratch one counts.
+    return start(*arguments, cwd=folder, NO_COLOR="1", GIT_CEILING_DIRECTORIES=str(TEMPORARY))
+
+
+def answer(folder: Path, *arguments: str, code: int) -> str:
+    done = protogen(folder, *arguments)
+    output = done.stdout.decode()
+    assert done.returncode == code, f"{output}\n{done.stderr.decode()}"
+    return output
+
+
+def complaint(folder: Path, *arguments: str, code: int = 2) -> str:
+    done = protogen(folder, *arguments)
+    assert done.returncode == code, done.stdout.decode()
+    assert b"Traceback" not in done.stderr
+    return done.stderr.decode()
+
+
+def rules_in(output: str) -> list[str]:
+    return [item["rule"] for report in json.loads(output) for item in report["findings"]]
+
+
+# --- formats --------------------------------------------------------------------------------------
+
+
+class TestDiff:
+    def test_text_has_rule_place_frame_and_mend(self, folder: Path) -> None:
+        lines = answer(folder, "diff", "old.yaml", "gone.yaml", code=1).splitlines()
+        assert lines == [
+            "ping",
+            "  WIRE [message-deleted] ping: a message is gone: identity 0x03 is free for another"
+            " meaning",
+            "    at old.yaml:14 (old)",
+            "    hurts new receiver of old frames: rejected",
+            "    old board sends ping AA 03 00 68 2A; new finds no message in it: unknown",
+            "    mend: reserve its identity",
+        ]
+
+    def test_nothing_changed(self, folder: Path) -> None:
+        assert answer(folder, "diff", "old.yaml", "old.yaml", code=0) == "demo: no change\n"
+
+    def test_comments_and_the_order_of_keys_are_no_change(self, folder: Path) -> None:
+        text = OLD.replace("{id: 3, from: board", "{from: board, summary: A ping, id: 3")
+        (folder / "same.yaml").write_text(f"# Seen.\n{text}", encoding="utf-8")
+        answer(folder, "diff", "old.yaml", "same.yaml", code=0)
+
+    def test_markdown_is_a_changelog_entry(self, folder: Path) -> None:
+        output = answer(folder, "diff", "old.yaml", "gone.yaml", "--format", "markdown", code=1)
+        assert output.splitlines() == [
+            "### demo",
+            "",
+            "- **ping**",
+            "  - ping: a message is gone: identity 0x03 is free for another meaning"
+            " (WIRE, rejected)",
+            "    - old board sends ping AA 03 00 68 2A; new finds no message in it: unknown",
+            "",
+        ]
+
+    def test_markdown_without_changes(self, folder: Path) -> None:
+        output = answer(folder, "diff", "old.yaml", "old.yaml", "--format", "markdown", code=0)
+        assert "No change." in output
+
+    def test_json_holds_everything(self, folder: Path) -> None:
+        output = answer(folder, "diff", "old.yaml", "turned.yaml", "--format", "json", code=1)
+        (report,) = json.loads(output)
+        assert report["protocol"] == "demo"
+        assert report["old"] != report["new"]
+        order, unit = report["findings"]
+        assert (order["rule"], order["category"]) == ("field-byte-order", "WIRE")
+        assert (unit["rule"], unit["category"]) == ("field-unit", "VALUE")
+        assert (order["message"], order["place"]) == ("reading", "reading.value")
+        assert (order["hurt"], order["harm"]) == ("both", "misread")
+        old, new = order["witnesses"]
+        assert (old["sends"], new["sends"]) == ("old", "new")
+        payload = bytes.fromhex(old["frame"].replace("ab8a", "aa").replace("ab8b", "ab"))[2:4]
+        assert old["sent"]["value"].startswith(f"{int.from_bytes(payload, 'little')} (")
+        assert old["received"]["value"].startswith(f"{int.from_bytes(payload, 'big')} (")
+
+    def test_json_without_changes(self, folder: Path) -> None:
+        output = answer(folder, "diff", "old.yaml", "old.yaml", "--format", "json", code=0)
+        assert rules_in(output) == []
+
+    def test_what_hurts_nobody_is_a_change(self, folder: Path) -> None:
+        output = answer(folder, "diff", "old.yaml", "reserved.yaml", code=1)
+        assert "NONE [message-reserved] ping" in output
+        assert "hurts" not in output
+        assert "mend" not in output
+
+
+class TestBreaking:
+    def test_refuses_with_a_frame(self, folder: Path) -> None:
+        output = answer(folder, "breaking", "old.yaml", "gone.yaml", code=1)
+        assert "WIRE [message-deleted] ping" in output
+        assert "AA 03 00 68 2A" in output
+
+    def test_passes_what_is_reserved(self, folder: Path) -> None:
+        output = answer(folder, "breaking", "old.yaml", "reserved.yaml", code=0)
+        assert output == "nothing is broken\n"
+
+    def test_json(self, folder: Path) -> None:
+        command = ["breaking", "old.yaml", "gone.yaml", "--format", "json"]
+        assert rules_in(answer(folder, *command, code=1)) == ["message-deleted"]
+        command = ["breaking", "old.yaml", "reserved.yaml", "--format", "json"]
+        assert rules_in(answer(folder, *command, code=0)) == []
+
+    def test_github_names_the_line_in_new(self, folder: Path) -> None:
+        command = ["breaking", "old.yaml", "turned.yaml", "--format", "github"]
+        lines = answer(folder, *command, code=1).splitlines()
+        assert len(lines) == 2
+        begins = "::error file=turned.yaml,line=13,title=field-byte-order::reading.value: "
+        assert lines[0].startswith(begins)
+        assert "%0Aold board sends reading AA 01 " in lines[0]
+        assert "%0Anew board sends reading AA 01 " in lines[0]
+
+    def test_github_of_a_message_that_is_gone(self, folder: Path) -> None:
+        command = ["breaking", "old.yaml", "gone.yaml", "--format", "github"]
+        (line,) = answer(folder, *command, code=1).splitlines()
+        assert line.startswith("::error file=gone.yaml,title=message-deleted::ping: ")
+
+    def test_github_prints_nothing_without_findings(self, folder: Path) -> None:
+        command = ["breaking", "old.yaml", "reserved.yaml", "--format", "github"]
+        assert answer(folder, *command, code=0) == ""
+
+    @pytest.mark.parametrize(
+        ("options", "left"),
+        [
+            ([], {"field-byte-order", "field-unit"}),
+            (["--use", "VALUE"], {"field-unit"}),
+            (["--use", "field-byte-order"], {"field-byte-order"}),
+            (["--use", "VALUE", "--use", "field-byte-order"], {"field-byte-order", "field-unit"}),
+            (["--use", "SOURCE"], set()),
+            (["--except", "field-unit"], {"field-byte-order"}),
+            (["--except", "field-unit", "--except", "field-byte-order"], set()),
+            (["--ignore", "reading.value"], set()),
+            (["--ignore", "reading.*"], set()),
+            (["--ignore", "ping.*"], {"field-byte-order", "field-unit"}),
+            (["--ignore", "field-unit=reading.*"], {"field-byte-order"}),
+            (["--ignore", "*=reading.value"], set()),
+        ],
+        ids=" ".join,
+    )
+    def test_what_counts(self, options: list[str], left: set[str], folder: Path) -> None:
+        command = ["breaking", "old.yaml", "turned.yaml", "--format", "json", *options]
+        output = answer(folder, *command, code=1 if left else 0)
+        assert set(rules_in(output)) == left
+
+    def test_several_schemas_against_one(self, folder: Path) -> None:
+        command = ["breaking", "reserved.yaml", "gone.yaml", "--against", "old.yaml"]
+        output = answer(folder, *command, "--format", "json", code=1)
+        assert [report["schema"] for report in json.loads(output)] == ["reserved.yaml", "gone.yaml"]
+        assert rules_in(output) == ["message-deleted"]
+
+
+def test_rules_lists_them_all(folder: Path) -> None:
+    done = start("rules", cwd=folder, NO_COLOR="1", COLUMNS="240")
+    assert done.returncode == 0
+    output = done.stdout.decode()
+    for rule in RULES:
+        assert f"{rule.name} " in output
+        assert rule.about in output
+
+
+# --- versions -------------------------------------------------------------------------------------
+
+
+class TestFolders:
+    def test_schemas_are_compared_by_their_paths(self, folder: Path) -> None:
+        for name, texts in {"was": (OLD, OLD), "is": (OLD, GONE)}.items():
+            (folder / name / "inner").mkdir(parents=True)
+            (folder / name / "same.yaml").write_text(texts[0], encoding="utf-8")
+            (folder / name / "inner" / "edited.yaml").write_text(texts[1], encoding="utf-8")
+        output = answer(folder, "breaking", "was", "is", "--format", "json", code=1)
+        found = {report["schema"]: len(report["findings"]) for report in json.loads(output)}
+        assert found == {"same.yaml": 0, "inner/edited.yaml": 1}
+
+    def test_schemas_that_come_and_go(self, folder: Path) -> None:
+        for name in ("was", "is"):
+            (folder / name).mkdir()
+        (folder / "was" / "first.yaml").write_text(OLD, encoding="utf-8")
+        (folder / "is" / "second.yaml").write_text(OLD, encoding="utf-8")
+        output = answer(folder, "diff", "was", "is", code=1)
+        assert sorted(output.splitlines()) == ["first.yaml is gone", "second.yaml is new"]
+        output = answer(folder, "diff", "was", "is", "--format", "json", code=1)
+        texts = {report["schema"]: report["text"] for report in json.loads(output)}
+        assert texts == {"first.yaml": "is gone", "second.yaml": "is new"}
+        assert answer(folder, "breaking", "was", "is", code=0) == "nothing is broken\n"
+
+
+@pytest.fixture
+def repository(folder: Path) -> Path:
+    """A repository whose only commit has `schemas/demo.yaml` and a dialect of it."""
+    require_tool("git")
+    (folder / "schemas" / "dialects").mkdir(parents=True)
+    (folder / "schemas" / "demo.yaml").write_text(OLD, encoding="utf-8")
+    (folder / "schemas" / "dialects" / "two.yaml").write_text(DIALECT, encoding="utf-8")
+    git(folder, "init", "--quiet", "--initial-branch", "main")
+    git(folder, "add", "schemas")
+    git(folder, "commit", "--quiet", "--message", "First")
+    return folder
+
+
+def git(folder: Path, *arguments: str) -> None:
+    names = {"GIT_AUTHOR_NAME": "T", "GIT_AUTHOR_EMAIL": "t@example.org"}
+    names |= {"GIT_COMMITTER_NAME": "T", "GIT_COMMITTER_EMAIL": "t@example.org"}
+    nowhere = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
+    environment = {**os.environ, **names, **nowhere}
+    subprocess.run(["git", *arguments], cwd=folder, env=environment, check=True, timeout=60)
+
+
+class TestGit:
+    def test_a_file_of_a_revision(self, repository: Path) -> None:
+        new = "schemas/demo.yaml"
+        old = f"git:main:{new}"
+        answer(repository, "diff", old, new, code=0)
+        (repository / new).write_text(GONE, encoding="utf-8")
+        assert "[message-deleted] ping" in answer(repository, "diff", old, new, code=1)
+        assert "[message-added] ping" in answer(repository, "diff", new, old, code=1)
+
+    @pytest.mark.parametrize("new", ["schemas", "schemas/demo.yaml", "schemas/dialects/two.yaml"])
+    def test_against_a_revision(self, new: str, repository: Path) -> None:
+        command = ["breaking", new, "--against", "git:HEAD"]
+        assert answer(repository, *command, code=0) == "nothing is broken\n"
+        # A dialect changes with what it extends.
+        (repository / "schemas" / "demo.yaml").write_text(TURNED, encoding="utf-8")
+        output = answer(repository, *command, "--format", "json", code=1)
+        rules = rules_in(output)
+        assert set(rules) == {"field-byte-order", "field-unit"}
+        assert len(rules) == (4 if new == "schemas" else 2)
+
+    def test_two_revisions(self, repository: Path) -> None:
+        (repository / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        git(repository, "commit", "--quiet", "--all", "--message", "Second")
+        command = ["breaking", "git:HEAD~1:schemas/demo.yaml", "git:HEAD:schemas/demo.yaml"]
+        assert "[message-deleted]" in answer(repository, *command, code=1)
+
+    def test_from_a_folder_inside(self, repository: Path) -> None:
+        inner = repository / "schemas"
+        (inner / "demo.yaml").write_text(GONE, encoding="utf-8")
+        # As git has them: paths below where one is, or below the top.
+        for old in ("git:main:demo.yaml", "git:main:schemas/demo.yaml"):
+            assert "[message-deleted]" in answer(inner, "breaking", old, "demo.yaml", code=1)
+        command = ["breaking", "demo.yaml", "--against", "git:main"]
+        assert "[message-deleted]" in answer(inner, *command, code=1)
+
+    def test_leaves_the_working_tree_alone(self, repository: Path) -> None:
+        (repository / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        before = sorted(path for path in repository.rglob("*") if ".git" not in path.parts)
+        answer(repository, "breaking", "schemas", "--against", "git:main", code=1)
+        assert before == sorted(path for path in repository.rglob("*") if ".git" not in path.parts)
+        assert (repository / "schemas" / "demo.yaml").read_text(encoding="utf-8") == GONE
+
+    def test_no_such_revision(self, repository: Path) -> None:
+        words = complaint(repository, "breaking", "schemas", "--against", "git:nowhere")
+        assert "git: " in words
+        assert "nowhere" in words
+
+    def test_no_such_file_in_a_revision(self, repository: Path) -> None:
+        words = complaint(repository, "diff", "git:main:other.yaml", "schemas/demo.yaml")
+        assert "there is no `main:other.yaml`" in words
+
+    def test_a_file_outside_of_the_repository(self, repository: Path) -> None:
+        assert "git" in complaint(repository, "diff", "git:main:../other.yaml", "old.yaml")
+
+    def test_a_revision_without_a_file(self, repository: Path) -> None:
+        words = complaint(repository, "diff", "schemas/demo.yaml", "git:main")
+        assert "`git:main` names no file: write `git:main:PATH`" in words
+
+
+# --- what goes wrong ------------------------------------------------------------------------------
+
+
+class TestMistakes:
+    def test_not_a_git_repository(self, folder: Path) -> None:
+        words = complaint(folder, "breaking", "old.yaml", "--against", "git:main")
+        assert "not a git repository" in words
+
+    @pytest.mark.parametrize("command", ["diff", "breaking"])
+    @pytest.mark.parametrize("files", [("old.yaml", "nix.yaml"), ("nix.yaml", "old.yaml")])
+    def test_missing_file(self, command: str, files: tuple[str, str], folder: Path) -> None:
+        assert "there is no `nix.yaml`" in complaint(folder, command, *files)
+
+    @pytest.mark.parametrize("options", [["--use"], ["--except"], ["--ignore"]], ids=str)
+    def test_unknown_rule(self, options: list[str], folder: Path) -> None:
+        name = "message-delete=ping" if options == ["--ignore"] else "message-delete"
+        words = complaint(folder, "breaking", "old.yaml", "gone.yaml", *options, name)
+        assert "there is no rule `message-delete`" in words
+        assert "did you mean `message-deleted`?" in words
+
+    def test_a_rule_like_no_other(self, folder: Path) -> None:
+        words = complaint(folder, "breaking", "old.yaml", "gone.yaml", "--use", "zzzzzzzz")
+        assert "protogen rules lists them" in words
+
+    @pytest.mark.parametrize("command", ["diff", "breaking"])
+    def test_a_schema_with_an_error(self, command: str, folder: Path) -> None:
+        (folder / "bad.yaml").write_text(OLD.replace("number: uint8", "number: unit8"))
+        for files in (("old.yaml", "bad.yaml"), ("bad.yaml", "old.yaml")):
+            done = protogen(folder, command, *files)
+            words = (done.stdout + done.stderr).decode()
+            assert done.returncode == 1
+            assert "bad.yaml:14:47: error[PG104]: there is no type `unit8`" in words
+            assert "did you mean `uint8`?" in words
+            assert "Traceback" not in words
+
+    def test_one_version_is_too_few(self, folder: Path) -> None:
+        words = complaint(folder, "breaking", "old.yaml")
+        assert "give OLD and NEW, or NEW with --against" in words
+
+    def test_three_versions_are_too_many(self, folder: Path) -> None:
+        complaint(folder, "breaking", "old.yaml", "gone.yaml", "turned.yaml")
