@@ -1,6 +1,6 @@
 """What compilers and checkers of style say of generated C: nothing but what is stated with reasons.
 
-What the target deviates from is stated beside it: protogen/targets/c/.clang-tidy and MISRA.md.
+What the target deviates from is stated beside it: protogen/targets/c/.clang-tidy and README.md.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ def deviations(made: Generated) -> dict[str, str]:
 
 @pytest.mark.parametrize("path", [*DOCUMENTS, *FRAMINGS], ids=name_of)
 def test_misra_deviations_are_stated(path: Path, tmp_path: Path) -> None:
-    stated = set(_STATED.findall((TARGET / "MISRA.md").read_text(encoding="utf-8")))
+    stated = set(_STATED.findall((TARGET / "README.md").read_text(encoding="utf-8")))
     found = deviations(generate(protocol_of(path), tmp_path))
     assert "15.5" in found, "the addon was not run"
     assert set(found) <= stated, {rule: found[rule] for rule in set(found) - stated}
