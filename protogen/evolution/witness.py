@@ -16,9 +16,9 @@ from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 
-_ROUNDS = 64
+ROUNDS = 64
 """Samples with boundaries, at most."""
-_RANDOM = 60
+RANDOM = 60
 """Random samples behind these."""
 _INDEX = re.compile(r"\[\d+\]")
 
@@ -223,7 +223,7 @@ class Witnesses:
 
 def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
     dice = Random(message.name)  # noqa: S311 - nothing secret
-    count = min(boundary_rounds(message, sender.frame), _ROUNDS) + _RANDOM
+    count = min(boundary_rounds(message, sender.frame), ROUNDS) + RANDOM
     yield from islice(samples(message, sender.frame, dice), count)
 
 
