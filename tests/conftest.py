@@ -31,3 +31,17 @@ def project_root() -> Path:
 def require_tool() -> Callable[[str], str]:
     """Return the function that finds a program, or skips the test (see `tooling`)."""
     return tooling.require_tool
+
+
+@pytest.fixture
+def fixed_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A seed always draws the same, whatever modules a worker has imported before.
+
+    Hypothesis also draws constants that it finds in the sources of imported modules.
+    """
+    from hypothesis.internal.conjecture import providers
+
+    if hasattr(providers, "_get_local_constants") and hasattr(providers, "CONSTANTS_CACHE"):
+        nothing = providers.Constants()
+        monkeypatch.setattr(providers, "_get_local_constants", lambda: nothing)
+        monkeypatch.setattr(providers, "CONSTANTS_CACHE", {})

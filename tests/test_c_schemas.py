@@ -41,6 +41,7 @@ GREATEST = 2000
 """Longer payloads take long in Python, and are like shorter ones."""
 
 
+@pytest.mark.usefixtures("fixed_draws")
 @pytest.mark.parametrize("number", range(RUNS))
 def test_a_random_schema_is_the_same_in_c(
     number: int, tmp_path_factory: pytest.TempPathFactory

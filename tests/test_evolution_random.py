@@ -31,6 +31,7 @@ EDITS = 12
 """Of each schema; about half of them compile."""
 
 
+@pytest.mark.usefixtures("fixed_draws")
 @pytest.mark.parametrize("number", range(RUNS))
 def test_findings_and_frames_agree(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
