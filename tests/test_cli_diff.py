@@ -176,25 +176,25 @@ class TestBreaking:
     @pytest.mark.parametrize(
         ("options", "left"),
         [
-            ([], {"field-byte-order", "field-unit"}),
-            (["--use", "VALUE"], {"field-unit"}),
-            (["--use", "field-byte-order"], {"field-byte-order"}),
-            (["--use", "VALUE", "--use", "field-byte-order"], {"field-byte-order", "field-unit"}),
-            (["--use", "SOURCE"], set()),
-            (["--except", "field-unit"], {"field-byte-order"}),
-            (["--except", "field-unit", "--except", "field-byte-order"], set()),
-            (["--ignore", "reading.value"], set()),
-            (["--ignore", "reading.*"], set()),
-            (["--ignore", "ping.*"], {"field-byte-order", "field-unit"}),
-            (["--ignore", "field-unit=reading.*"], {"field-byte-order"}),
-            (["--ignore", "*=reading.value"], set()),
+            ([], ["field-byte-order", "field-unit"]),
+            (["--use", "VALUE"], ["field-unit"]),
+            (["--use", "field-byte-order"], ["field-byte-order"]),
+            (["--use", "VALUE", "--use", "field-byte-order"], ["field-byte-order", "field-unit"]),
+            (["--use", "SOURCE"], []),
+            (["--except", "field-unit"], ["field-byte-order"]),
+            (["--except", "field-unit", "--except", "field-byte-order"], []),
+            (["--ignore", "reading.value"], []),
+            (["--ignore", "reading.*"], []),
+            (["--ignore", "ping.*"], ["field-byte-order", "field-unit"]),
+            (["--ignore", "field-unit=reading.*"], ["field-byte-order"]),
+            (["--ignore", "*=reading.value"], []),
         ],
         ids=" ".join,
     )
-    def test_what_counts(self, options: list[str], left: set[str], folder: Path) -> None:
+    def test_what_counts(self, options: list[str], left: list[str], folder: Path) -> None:
         command = ["breaking", "old.yaml", "turned.yaml", "--format", "json", *options]
         output = answer(folder, *command, code=1 if left else 0)
-        assert set(rules_in(output)) == left
+        assert sorted(set(rules_in(output))) == left
 
     def test_several_schemas_against_one(self, folder: Path) -> None:
         command = ["breaking", "reserved.yaml", "gone.yaml", "--against", "old.yaml"]
