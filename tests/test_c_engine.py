@@ -84,7 +84,7 @@ def test_another_frame_than_the_reference_makes_is_a_failure() -> None:
     other = Other(module_at(MATTY).PROTOCOL)
     (case, *_) = [c for c in cases(protocol, 3, 1, "go") if c.parts["counter"]]
     outcome = try_case(engine, protocol, case, other)
-    assert outcome.problem.startswith("another engine, python, ")
+    assert outcome.problem.startswith("another engine, construct, ")
     assert smallest(engine, protocol, outcome, other).problem
 
 
@@ -132,12 +132,13 @@ def test_an_answer_that_ends_early_is_an_error() -> None:
 # --- protogen fuzz --------------------------------------------------------------------------------
 
 
-def test_both_engines_are_tried() -> None:
+def test_all_engines_are_tried() -> None:
     require_tool("cc")
     result = run("fuzz", str(MATTY), "--message", "go", "--examples", "5", "--seed", "7")
     assert result.exit_code == 0
-    python, c = result.output.splitlines()
+    construct, python, c = result.output.splitlines()
     assert python.startswith("python: ")
+    assert construct == python.replace("python: ", "construct: ")
     assert c == python.replace("python: ", "c: ")
 
 

@@ -167,13 +167,14 @@ def test_mistakes(arguments: list[str], message: str) -> None:
 def test_everything_comes_back() -> None:
     result = run("fuzz", MATTY, "--examples", "5", "--seed", "7")
     assert result.exit_code == 0
-    assert result.output.startswith("python: ")
+    assert result.output.startswith("construct: ")
     assert result.output.endswith("samples, all came back (seed 7)\n")
 
 
 def test_one_message() -> None:
     result = run("fuzz", MATTY, "--message", "go", "--examples", "20", "--seed", "7")
-    assert result.output.splitlines()[0] == "python: 20 samples, all came back (seed 7)"
+    due = [f"{name}: 20 samples, all came back (seed 7)" for name in ("construct", "python")]
+    assert result.output.splitlines()[:2] == due
 
 
 def test_another_seed_each_time() -> None:
@@ -205,7 +206,7 @@ def test_failure_is_reported_with_all_that_it_takes(monkeypatch: pytest.MonkeyPa
     result = run("fuzz", MATTY, "--message", "go", "--seed", "7", "--examples", "3")
     assert result.exit_code == 1
     lines = result.output.splitlines()
-    assert lines[0] == "go, sent by pc, through python:"
+    assert lines[0] == "go, sent by pc, through construct:"
     assert lines[1].startswith("  the payload ")
     assert lines[1].endswith("gives other values: {'speed': 1, 'steer': 2}")
     assert lines[2].startswith('  fields: {"speed": ')

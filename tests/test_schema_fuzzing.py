@@ -219,6 +219,8 @@ def _check_stream(
     stream = data.draw(streams(sent))
     events = codec.events_of(module, sender, [stream.data])
     codec.check_lossless(module, sender, stream.data, events)
+    reference = codec.events_of(module, sender, [stream.data], "construct")
+    assert _shown(reference) == _shown(events)
     single = [bytes((byte,)) for byte in stream.data]
     for cut in (data.draw(portions(stream.data)), single):
         assert _shown(codec.events_of(module, sender, cut)) == _shown(events)
@@ -234,6 +236,7 @@ def _check_any_bytes(data: st.DataObject, module: ModuleType, sender: Sender) ->
     junk = data.draw(st.binary(max_size=50))
     events = codec.events_of(module, sender, [junk])
     codec.check_lossless(module, sender, junk, events)
+    assert _shown(codec.events_of(module, sender, [junk], "construct")) == _shown(events)
     cut = data.draw(portions(junk))
     assert _shown(codec.events_of(module, sender, cut)) == _shown(events)
     _check_exact(module, sender, junk)

@@ -11,6 +11,7 @@ plan; most of its messages have a name and a character and nothing more.
 
 from __future__ import annotations
 
+import struct as _struct
 import typing as _typing
 from dataclasses import dataclass as _dataclass
 from fractions import Fraction as _Fraction
@@ -18,6 +19,7 @@ from fractions import Fraction as _Fraction
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import constructs as _c
+from protogen.runtime import fast as _fast
 
 SPEC_HASH = "6baa3a58f2e3bb708220180f1f44f5fabd459f4b176946c5580b841864174129"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
@@ -399,6 +401,574 @@ HOST_FRAME = _rt.FrameSpec(
     ambiguous_cut=True,
 )
 
+# --- the fast engine ----------------------------------------------------------------------------
+#
+# What is plainly in order goes through these functions; they raise, or stop, where the reference
+# (construct, and the machine that cuts frames byte by byte) has to decide.
+# fmt: off
+
+_new = _fast.new
+_BYTES = _fast.BYTES
+_UNPACK_0 = _struct.Struct("<B").unpack_from
+_PACK_0 = _struct.Struct("<B").pack
+_MEMBERS_0 = _fast.Members(PowerCode)
+_CHECKSUM_0 = _checksum.Xor8().compute
+
+
+def _read_sonar(data: bytes) -> Sonar:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Sonar)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_sonar(item: Sonar) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_gps(data: bytes) -> Gps:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Gps)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_gps(item: Gps) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_bump(data: bytes) -> Bump:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Bump)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_bump(item: Bump) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_odometry(data: bytes) -> Odometry:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Odometry)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_odometry(item: Odometry) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_speed(data: bytes) -> Speed:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Speed)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_speed(item: Speed) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_wheel_slip(data: bytes) -> WheelSlip:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(WheelSlip)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_wheel_slip(item: WheelSlip) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_battery(data: bytes) -> Battery:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Battery)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_battery(item: Battery) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_reflex_settings(data: bytes) -> ReflexSettings:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(ReflexSettings)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_reflex_settings(item: ReflexSettings) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_hardware_status(data: bytes) -> HardwareStatus:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(HardwareStatus)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_hardware_status(item: HardwareStatus) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_motor(data: bytes) -> Motor:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Motor)
+    item.s = data[0]
+    return item
+
+
+def _write_motor(item: Motor) -> bytes:
+    v1 = item.s
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_steering(data: bytes) -> Steering:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Steering)
+    item.s = data[0]
+    return item
+
+
+def _write_steering(item: Steering) -> bytes:
+    v1 = item.s
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_reflex(data: bytes) -> Reflex:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Reflex)
+    item.reflex = data[0]
+    return item
+
+
+def _write_reflex(item: Reflex) -> bytes:
+    v1 = item.reflex
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_power_down(data: bytes) -> PowerDown:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(PowerDown)
+    v1 = data[0]
+    item.code = _MEMBERS_0[v1]
+    if item.code != 3:
+        raise _fast.Unclear
+    return item
+
+
+def _write_power_down(item: PowerDown) -> bytes:
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    if v1 != 3:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_power(data: bytes) -> Power:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Power)
+    v1 = data[0]
+    item.code = _MEMBERS_0[v1]
+    return item
+
+
+def _write_power(item: Power) -> bytes:
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_laser(data: bytes) -> Laser:
+    if not 0 <= len(data) <= 512:
+        raise _fast.Unclear
+    item = _new(Laser)
+    n1, left2 = divmod(len(data) - (0), 1)
+    if left2 or n1 > 512:
+        raise _fast.Unclear
+    v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
+    at = 0 + 1 * n1
+    item.readings = v3
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_laser(item: Laser) -> bytes:
+    v1 = item.readings
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) > 512:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    payload = _struct.pack(f"<{len(v1)}B", *v1)
+    if not 0 <= len(payload) <= 512:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_command(data: bytes) -> Command:
+    if not 0 <= len(data) <= 128:
+        raise _fast.Unclear
+    item = _new(Command)
+    v1 = data[0:]
+    if len(v1) > 128:
+        raise _fast.Unclear
+    at = len(data)
+    item.data = v1
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_command(item: Command) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return payload
+
+
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    try:
+        while True:
+            payload_size, read = _HOST_KINDS[data[at]]
+            if payload_size < 0:
+                end = data.find(b"\x0a", at + 1)
+                if end < 0:
+                    return at
+                end += 1
+            elif payload_size:
+                end = at + 3 + payload_size
+            else:
+                end = at + 2
+            if end > size:
+                return at
+            raw = data[at:end]
+            if len(raw) > 515:
+                return at
+            if not raw.endswith(b"\x0a"):
+                return at
+            content = raw[:-1]
+            if len(content) <= 2:
+                if len(content) != 1:
+                    return at
+                payload = b""
+            else:
+                payload = content[1:-1]
+            if payload:
+                if content[-1] != _CHECKSUM_0(content[:-1]):
+                    return at
+            numbers = (content[0],)
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x4D: (1, _read_motor),
+    0x53: (1, _read_steering),
+    0x52: (1, _read_reflex),
+    0x50: (1, _read_power),
+    0x4C: (-1, _read_laser),
+    0x43: (-1, _read_command),
+}
+
+def _frame_host(payload: bytes, id_: int | None) -> bytes:
+    events: list[_typing.Any] = []
+    if payload:
+        content = _PACK_0(id_) + payload
+        content += _BYTES[_CHECKSUM_0(content)]
+        wire = content + b"\x0a"
+        end = _cut_host(wire, 0, 0, events)
+        if end != len(wire) or [event.payload for event in events] != [payload]:
+            raise _fast.Unclear
+        return wire
+    content = _PACK_0(id_) + payload
+    wire = content + b"\x0a"
+    end = _cut_host(wire, 0, 0, events)
+    if end != len(wire) or [event.payload for event in events] != [payload]:
+        raise _fast.Unclear
+    return wire
+
+
+def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    try:
+        while True:
+            payload_size, read = _ROBOT_KINDS[data[at]]
+            if payload_size < 0:
+                end = data.find(b"\x0a", at + 1)
+                if end < 0:
+                    return at
+                end += 1
+            elif payload_size:
+                end = at + 3 + payload_size
+            else:
+                end = at + 2
+            if end > size:
+                return at
+            raw = data[at:end]
+            if len(raw) > 515:
+                return at
+            if not raw.endswith(b"\x0a"):
+                return at
+            content = raw[:-1]
+            if len(content) <= 2:
+                if len(content) != 1:
+                    return at
+                payload = b""
+            else:
+                payload = content[1:-1]
+            if payload:
+                if content[-1] != _CHECKSUM_0(content[:-1]):
+                    return at
+            numbers = (content[0],)
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = ROBOT_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x53: (-1, _read_sonar),
+    0x47: (-1, _read_gps),
+    0x42: (-1, _read_bump),
+    0x4F: (-1, _read_odometry),
+    0x57: (-1, _read_wheel_slip),
+    0x62: (-1, _read_battery),
+    0x52: (-1, _read_reflex_settings),
+    0x48: (-1, _read_hardware_status),
+    0x4C: (-1, _read_laser),
+    0x43: (-1, _read_command),
+}
+
+def _frame_robot(payload: bytes, id_: int | None) -> bytes:
+    events: list[_typing.Any] = []
+    if payload:
+        content = _PACK_0(id_) + payload
+        content += _BYTES[_CHECKSUM_0(content)]
+        wire = content + b"\x0a"
+        end = _cut_robot(wire, 0, 0, events)
+        if end != len(wire) or [event.payload for event in events] != [payload]:
+            raise _fast.Unclear
+        return wire
+    content = _PACK_0(id_) + payload
+    wire = content + b"\x0a"
+    end = _cut_robot(wire, 0, 0, events)
+    if end != len(wire) or [event.payload for event in events] != [payload]:
+        raise _fast.Unclear
+    return wire
+
+
+_ENCODERS = _fast.encoders(
+    _fast.SenderWriters(
+        "host",
+        _frame_host,
+        {
+            Motor: _write_motor,
+            Steering: _write_steering,
+            Reflex: _write_reflex,
+            PowerDown: _write_power_down,
+            Power: _write_power,
+            Laser: _write_laser,
+            Command: _write_command,
+        },
+    ),
+    _fast.SenderWriters(
+        "robot",
+        _frame_robot,
+        {
+            Sonar: _write_sonar,
+            Gps: _write_gps,
+            Bump: _write_bump,
+            Odometry: _write_odometry,
+            Speed: _write_speed,
+            WheelSlip: _write_wheel_slip,
+            Battery: _write_battery,
+            ReflexSettings: _write_reflex_settings,
+            HardwareStatus: _write_hardware_status,
+            Laser: _write_laser,
+            Command: _write_command,
+        },
+    ),
+)
+# fmt: on
+
 # --- the codec ----------------------------------------------------------------------------------
 
 HostMessage = Motor | Steering | Reflex | PowerDown | Power | Laser | Command
@@ -443,6 +1013,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Motor, Steering, Reflex, Power, Laser, Command),
     encode_only=(PowerDown,),
+    cut=_cut_host,
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
@@ -461,6 +1032,7 @@ ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
         Command,
     ),
     encode_only=(Speed,),
+    cut=_cut_robot,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""
@@ -478,44 +1050,70 @@ def encode(
     message: HostMessage | RobotMessage,
     sender: Sender | None = None,
     strict: bool = True,
+    *,
+    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
     Raises EncodeError where a value is missing or out of range; with `strict=False` only where it
     does not fit the wire.
     """
-    return PROTOCOL.encode(message, sender, strict)
+    if strict and engine == "fast":
+        try:
+            write, frame, identity = _ENCODERS[type(message), sender]
+            return frame(write(message), *identity)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
+    return PROTOCOL.encode(message, sender, strict, engine)
 
 
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["host"]) -> HostMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
+) -> HostMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["robot"]) -> RobotMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["robot"], engine: _rt.Engine = "fast"
+) -> RobotMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender) -> HostMessage | RobotMessage: ...
-def decode(frame: bytes, sender: Sender) -> HostMessage | RobotMessage:
+def decode(
+    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+) -> HostMessage | RobotMessage: ...
+def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | RobotMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    return PROTOCOL.decode(frame, sender)
+    return PROTOCOL.decode(frame, sender, engine)
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
 
     @_typing.overload
-    def __init__(self: Decoder[HostMessage, Parts], sender: _typing.Literal["host"]) -> None: ...
+    def __init__(
+        self: Decoder[HostMessage, Parts],
+        sender: _typing.Literal["host"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[RobotMessage, Parts], sender: _typing.Literal["robot"]) -> None: ...
+    def __init__(
+        self: Decoder[RobotMessage, Parts],
+        sender: _typing.Literal["robot"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[HostMessage | RobotMessage, Parts], sender: Sender) -> None: ...
-    def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+    def __init__(
+        self: Decoder[HostMessage | RobotMessage, Parts],
+        sender: Sender,
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
+    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.sender(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+        super().__init__(PROTOCOL.sender(sender), encode)
 
     def encode(
         self,

@@ -11,12 +11,14 @@ replaced them.
 
 from __future__ import annotations
 
+import struct as _struct
 import typing as _typing
 from dataclasses import dataclass as _dataclass
 from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
 from protogen.runtime import constructs as _c
+from protogen.runtime import fast as _fast
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "24728b7a9b7205d00f7a52d605f1c3708d73177b891af3259fa4096019b84ebb"
@@ -438,6 +440,407 @@ HOST_FRAME = _rt.FrameSpec(
     stuffed=("id", "payload"),
 )
 
+# --- the fast engine ----------------------------------------------------------------------------
+#
+# What is plainly in order goes through these functions; they raise, or stop, where the reference
+# (construct, and the machine that cuts frames byte by byte) has to decide.
+# fmt: off
+
+_new = _fast.new
+_BYTES = _fast.BYTES
+_UNPACK_0 = _struct.Struct("<5B").unpack_from
+_PACK_0 = _struct.Struct("<5B").pack
+_UNPACK_1 = _struct.Struct("<HHHhhhb").unpack_from
+_PACK_1 = _struct.Struct("<HHHhhhb").pack
+_UNPACK_2 = _struct.Struct("<BBi").unpack_from
+_PACK_2 = _struct.Struct("<BBi").pack
+_UNPACK_3 = _struct.Struct("<hh").unpack_from
+_PACK_3 = _struct.Struct("<hh").pack
+_UNPACK_4 = _struct.Struct("<b").unpack_from
+_PACK_4 = _struct.Struct("<b").pack
+_UNPACK_5 = _struct.Struct("<bB").unpack_from
+_PACK_5 = _struct.Struct("<bB").pack
+_UNPACK_6 = _struct.Struct("<B").unpack_from
+_PACK_6 = _struct.Struct("<B").pack
+_MEMBERS_0 = _fast.Members(PowerCode)
+_UNPACK_7 = _struct.Struct("<ii").unpack_from
+_PACK_7 = _struct.Struct("<ii").pack
+_UNPACK_8 = _struct.Struct("<7s").unpack_from
+_PACK_8 = _struct.Struct("<7s").pack
+_STUFFING_0 = _transparency.Escape(0x1B, frozenset({0x0D, 0x1B}), 0x1B)
+
+
+def _read_sonar(data: bytes) -> Sonar:
+    if len(data) != 5:
+        raise _fast.Unclear
+    item = _new(Sonar)
+    item.distances = list(_UNPACK_0(data, 0))
+    return item
+
+
+def _write_sonar(item: Sonar) -> bytes:
+    v1 = item.distances
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) != 5:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    return _PACK_0(*v1)
+
+
+def _read_gps(data: bytes) -> Gps:
+    if not 0 <= len(data) <= 126:
+        raise _fast.Unclear
+    item = _new(Gps)
+    v1 = data[0:]
+    if len(v1) > 126:
+        raise _fast.Unclear
+    at = len(data)
+    item.nmea = v1.decode("latin-1")
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_gps(item: Gps) -> bytes:
+    v1 = item.nmea
+    v2 = v1.encode("ascii")
+    if len(v2) > 126:
+        raise _fast.Unclear
+    payload = v2
+    if not 0 <= len(payload) <= 126:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_odometry(data: bytes) -> Odometry:
+    if len(data) != 13:
+        raise _fast.Unclear
+    item = _new(Odometry)
+    (
+        item.right_count,
+        item.left_count,
+        item.quad_count,
+        item.right_speed,
+        item.left_speed,
+        item.quad_speed,
+        item.steer,
+    ) = _UNPACK_1(data, 0)
+    return item
+
+
+def _write_odometry(item: Odometry) -> bytes:
+    v1 = item.right_count
+    v2 = item.left_count
+    v3 = item.quad_count
+    v4 = item.right_speed
+    v5 = item.left_speed
+    v6 = item.quad_speed
+    v7 = item.steer
+    if not (type(v1) is type(v2) is type(v3) is type(v4) is type(v5) is type(v6) is int):
+        raise _fast.Unclear
+    if type(v7) is not int:
+        raise _fast.Unclear
+    return _PACK_1(v1, v2, v3, v4, v5, v6, v7)
+
+
+def _read_battery(data: bytes) -> Battery:
+    if len(data) != 6:
+        raise _fast.Unclear
+    item = _new(Battery)
+    item.main_battery, item.motor_battery, item.idle = _UNPACK_2(data, 0)
+    return item
+
+
+def _write_battery(item: Battery) -> bytes:
+    v1 = item.main_battery
+    v2 = item.motor_battery
+    v3 = item.idle
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    return _PACK_2(v1, v2, v3)
+
+
+def _read_compass(data: bytes) -> Compass:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(Compass)
+    item.x, item.y = _UNPACK_3(data, 0)
+    return item
+
+
+def _write_compass(item: Compass) -> bytes:
+    v1 = item.x
+    v2 = item.y
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_3(v1, v2)
+
+
+def _read_motor(data: bytes) -> Motor:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Motor)
+    (item.speed,) = _UNPACK_4(data, 0)
+    return item
+
+
+def _write_motor(item: Motor) -> bytes:
+    v1 = item.speed
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_4(v1)
+
+
+def _read_drive(data: bytes) -> Drive:
+    if len(data) != 2:
+        raise _fast.Unclear
+    item = _new(Drive)
+    item.speed, item.steer = _UNPACK_5(data, 0)
+    return item
+
+
+def _write_drive(item: Drive) -> bytes:
+    v1 = item.speed
+    v2 = item.steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_5(v1, v2)
+
+
+def _read_steering(data: bytes) -> Steering:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Steering)
+    item.position = data[0]
+    return item
+
+
+def _write_steering(item: Steering) -> bytes:
+    v1 = item.position
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_6(v1)
+
+
+def _read_power(data: bytes) -> Power:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Power)
+    v1 = data[0]
+    item.code = _MEMBERS_0[v1]
+    return item
+
+
+def _write_power(item: Power) -> bytes:
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_6(v1)
+
+
+def _read_gps_position(data: bytes) -> GpsPosition:
+    if len(data) != 8:
+        raise _fast.Unclear
+    item = _new(GpsPosition)
+    item.latitude, item.longitude = _UNPACK_7(data, 0)
+    return item
+
+
+def _write_gps_position(item: GpsPosition) -> bytes:
+    v1 = item.latitude
+    v2 = item.longitude
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_7(v1, v2)
+
+
+def _read_laser(data: bytes) -> Laser:
+    if not 0 <= len(data) <= 512:
+        raise _fast.Unclear
+    item = _new(Laser)
+    n1, left2 = divmod(len(data) - (0), 1)
+    if left2 or n1 > 512:
+        raise _fast.Unclear
+    v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
+    at = 0 + 1 * n1
+    item.readings = v3
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_laser(item: Laser) -> bytes:
+    v1 = item.readings
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) > 512:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    payload = _struct.pack(f"<{len(v1)}B", *v1)
+    if not 0 <= len(payload) <= 512:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_shutdown(data: bytes) -> Shutdown:
+    if len(data) != 7:
+        raise _fast.Unclear
+    item = _new(Shutdown)
+    (v1,) = _UNPACK_8(data, 0)
+    item.confirmation = v1.rstrip(b"\0").decode("latin-1")
+    if item.confirmation != "ZZZZZZZ":
+        raise _fast.Unclear
+    return item
+
+
+def _write_shutdown(item: Shutdown) -> bytes:
+    v1 = item.confirmation
+    v2 = v1.encode("ascii")
+    if len(v2) > 7 or v2.endswith(b"\0"):
+        raise _fast.Unclear
+    if v1 != "ZZZZZZZ":
+        raise _fast.Unclear
+    return _PACK_8(v2)
+
+
+def _read_host_77(data: bytes) -> Motor | Drive:
+    if len(data) in Motor.SIZES:
+        return _read_motor(data)
+    if len(data) in Drive.SIZES:
+        return _read_drive(data)
+    raise _fast.Unclear
+
+
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            end = data.find(b"\x0d", at)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 1027:
+                return at
+            content = raw[:-1]
+            if 0x0D in content or 0x1B in content:
+                content = _STUFFING_0.decode(content)
+            if len(content) < 1:
+                return at
+            payload = content[1:]
+            numbers = (content[0],)
+            payload_size, read = _HOST_KINDS[content[0]]
+            if 0 <= payload_size != len(payload):
+                return at
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x4D: (-1, _read_host_77),
+    0x53: (1, _read_steering),
+    0x50: (1, _read_power),
+    0x47: (8, _read_gps_position),
+    0x4C: (-1, _read_laser),
+    0x5A: (7, _read_shutdown),
+}
+
+def _frame_host(payload: bytes, id_: int | None) -> bytes:
+    content = _PACK_6(id_) + payload
+    return _STUFFING_0.encode(content) + b"\x0d"
+
+
+def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            end = data.find(b"\x0d", at)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 1027:
+                return at
+            content = raw[:-1]
+            if 0x0D in content or 0x1B in content:
+                content = _STUFFING_0.decode(content)
+            if len(content) < 1:
+                return at
+            payload = content[1:]
+            numbers = (content[0],)
+            payload_size, read = _ROBOT_KINDS[content[0]]
+            if 0 <= payload_size != len(payload):
+                return at
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = ROBOT_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x53: (5, _read_sonar),
+    0x47: (-1, _read_gps),
+    0x4F: (13, _read_odometry),
+    0x62: (6, _read_battery),
+    0x43: (4, _read_compass),
+    0x4C: (-1, _read_laser),
+    0x5A: (7, _read_shutdown),
+}
+
+def _frame_robot(payload: bytes, id_: int | None) -> bytes:
+    content = _PACK_6(id_) + payload
+    return _STUFFING_0.encode(content) + b"\x0d"
+
+
+_ENCODERS = _fast.encoders(
+    _fast.SenderWriters(
+        "host",
+        _frame_host,
+        {
+            Motor: _write_motor,
+            Drive: _write_drive,
+            Steering: _write_steering,
+            Power: _write_power,
+            GpsPosition: _write_gps_position,
+            Laser: _write_laser,
+            Shutdown: _write_shutdown,
+        },
+    ),
+    _fast.SenderWriters(
+        "robot",
+        _frame_robot,
+        {
+            Sonar: _write_sonar,
+            Gps: _write_gps,
+            Odometry: _write_odometry,
+            Battery: _write_battery,
+            Compass: _write_compass,
+            Laser: _write_laser,
+            Shutdown: _write_shutdown,
+        },
+    ),
+)
+# fmt: on
+
 # --- the codec ----------------------------------------------------------------------------------
 
 HostMessage = Motor | Drive | Steering | Power | GpsPosition | Laser | Shutdown
@@ -465,12 +868,14 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     HOST_FRAME,
     Parts,
     messages=(Motor, Drive, Steering, Power, GpsPosition, Laser, Shutdown),
+    cut=_cut_host,
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
     HOST_FRAME,
     Parts,
     messages=(Sonar, Gps, Odometry, Battery, Compass, Laser, Shutdown),
+    cut=_cut_robot,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""
@@ -488,44 +893,70 @@ def encode(
     message: HostMessage | RobotMessage,
     sender: Sender | None = None,
     strict: bool = True,
+    *,
+    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
     Raises EncodeError where a value is missing or out of range; with `strict=False` only where it
     does not fit the wire.
     """
-    return PROTOCOL.encode(message, sender, strict)
+    if strict and engine == "fast":
+        try:
+            write, frame, identity = _ENCODERS[type(message), sender]
+            return frame(write(message), *identity)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
+    return PROTOCOL.encode(message, sender, strict, engine)
 
 
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["host"]) -> HostMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
+) -> HostMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["robot"]) -> RobotMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["robot"], engine: _rt.Engine = "fast"
+) -> RobotMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender) -> HostMessage | RobotMessage: ...
-def decode(frame: bytes, sender: Sender) -> HostMessage | RobotMessage:
+def decode(
+    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+) -> HostMessage | RobotMessage: ...
+def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | RobotMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    return PROTOCOL.decode(frame, sender)
+    return PROTOCOL.decode(frame, sender, engine)
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
 
     @_typing.overload
-    def __init__(self: Decoder[HostMessage, Parts], sender: _typing.Literal["host"]) -> None: ...
+    def __init__(
+        self: Decoder[HostMessage, Parts],
+        sender: _typing.Literal["host"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[RobotMessage, Parts], sender: _typing.Literal["robot"]) -> None: ...
+    def __init__(
+        self: Decoder[RobotMessage, Parts],
+        sender: _typing.Literal["robot"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[HostMessage | RobotMessage, Parts], sender: Sender) -> None: ...
-    def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+    def __init__(
+        self: Decoder[HostMessage | RobotMessage, Parts],
+        sender: Sender,
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
+    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.sender(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+        super().__init__(PROTOCOL.sender(sender), encode)
 
     def encode(
         self,

@@ -9,13 +9,16 @@ What the robot's later firmware and the PC program add to the document.
 
 from __future__ import annotations
 
+import struct as _struct
 import typing as _typing
 from dataclasses import dataclass as _dataclass
 from fractions import Fraction as _Fraction
+from zlib import adler32 as _adler32
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import constructs as _c
+from protogen.runtime import fast as _fast
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "726898ed912fa822b88887315e8f66eefc016b1aa21b6ec013246747f9291116"
@@ -464,6 +467,434 @@ PC_FRAME = _rt.FrameSpec(
     stuffed=("length", "counter", "command", "payload", "crc"),
 )
 
+# --- the fast engine ----------------------------------------------------------------------------
+#
+# What is plainly in order goes through these functions; they raise, or stop, where the reference
+# (construct, and the machine that cuts frames byte by byte) has to decide.
+# fmt: off
+
+_new = _fast.new
+_BYTES = _fast.BYTES
+_UNPACK_0 = _struct.Struct("<B").unpack_from
+_MEMBERS_0 = _fast.Members(StopMode)
+_PACK_0 = _struct.Struct("<B").pack
+_MEMBERS_1 = _fast.Members(RobotMode)
+_UNPACK_1 = _struct.Struct("<hh").unpack_from
+_PACK_1 = _struct.Struct("<hh").pack
+_UNPACK_2 = _struct.Struct("<HH").unpack_from
+_PACK_2 = _struct.Struct("<HH").pack
+_MEMBERS_2 = _fast.Members(GpsModeMode)
+_UNPACK_3 = _struct.Struct("<B3s").unpack_from
+_NUMBER_0 = _rt.Number(24, False, "little", False)
+_PACK_3 = _struct.Struct("<B3s").pack
+_UNPACK_4 = _struct.Struct("<BBHHhhHHHHhhh").unpack_from
+_MEMBERS_3 = _fast.Members(StatusStatus)
+_PACK_4 = _struct.Struct("<BBHHhhHHHHhhh").pack
+_UNPACK_5 = _struct.Struct("<BB").unpack_from
+_PACK_5 = _struct.Struct("<BB").pack
+_STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
+_PACK_6 = _struct.Struct("<BBBB").pack
+
+
+def _read_stop(data: bytes) -> Stop:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Stop)
+    v1 = data[0]
+    item.mode = _MEMBERS_0[v1]
+    return item
+
+
+def _write_stop(item: Stop) -> bytes:
+    v1 = item.mode
+    if type(v1) is not StopMode and type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_reset(data: bytes) -> Reset:
+    if len(data) != 0:
+        raise _fast.Unclear
+    item = _new(Reset)
+    return item
+
+
+def _write_reset(item: Reset) -> bytes:
+    return b""
+
+
+def _read_mode(data: bytes) -> Mode:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(Mode)
+    v1 = data[0]
+    item.mode = _MEMBERS_1[v1]
+    return item
+
+
+def _write_mode(item: Mode) -> bytes:
+    v1 = item.mode
+    if type(v1) is not RobotMode and type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_go(data: bytes) -> Go:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(Go)
+    item.speed, item.steer = _UNPACK_1(data, 0)
+    return item
+
+
+def _write_go(item: Go) -> bytes:
+    v1 = item.speed
+    v2 = item.steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_1(v1, v2)
+
+
+def _read_limits(data: bytes) -> Limits:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(Limits)
+    item.max_speed, item.max_steer = _UNPACK_1(data, 0)
+    return item
+
+
+def _write_limits(item: Limits) -> bytes:
+    v1 = item.max_speed
+    v2 = item.max_steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_1(v1, v2)
+
+
+def _read_timing(data: bytes) -> Timing:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(Timing)
+    item.period, item.timeout = _UNPACK_2(data, 0)
+    return item
+
+
+def _write_timing(item: Timing) -> bytes:
+    v1 = item.period
+    v2 = item.timeout
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_2(v1, v2)
+
+
+def _read_gps_mode(data: bytes) -> GpsMode:
+    if len(data) != 1:
+        raise _fast.Unclear
+    item = _new(GpsMode)
+    v1 = data[0]
+    item.mode = _MEMBERS_2[v1]
+    return item
+
+
+def _write_gps_mode(item: GpsMode) -> bytes:
+    v1 = item.mode
+    if type(v1) is not GpsModeMode and type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(v1)
+
+
+def _read_version_query(data: bytes) -> VersionQuery:
+    if len(data) != 0:
+        raise _fast.Unclear
+    item = _new(VersionQuery)
+    return item
+
+
+def _write_version_query(item: VersionQuery) -> bytes:
+    return b""
+
+
+def _read_led(data: bytes) -> Led:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(Led)
+    item.index, v1 = _UNPACK_3(data, 0)
+    item.rgb = _NUMBER_0.decode(v1)
+    return item
+
+
+def _write_led(item: Led) -> bytes:
+    v1 = item.index
+    v2 = item.rgb
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_3(v1, _NUMBER_0.encode(v2))
+
+
+def _read_ack(data: bytes) -> Ack:
+    if len(data) != 0:
+        raise _fast.Unclear
+    item = _new(Ack)
+    return item
+
+
+def _write_ack(item: Ack) -> bytes:
+    return b""
+
+
+def _read_nack(data: bytes) -> Nack:
+    if len(data) != 0:
+        raise _fast.Unclear
+    item = _new(Nack)
+    return item
+
+
+def _write_nack(item: Nack) -> bytes:
+    return b""
+
+
+def _read_status(data: bytes) -> Status:
+    if len(data) != 24:
+        raise _fast.Unclear
+    item = _new(Status)
+    (
+        v1,
+        v2,
+        item.voltage,
+        item.current,
+        item.speed,
+        item.angle,
+        item.encoder0,
+        item.encoder1,
+        item.encoder2,
+        item.encoder3,
+        item.roll,
+        item.pitch,
+        item.yaw,
+    ) = _UNPACK_4(data, 0)
+    item.status = _MEMBERS_3[v1]
+    item.mode = _MEMBERS_1[v2]
+    return item
+
+
+def _write_status(item: Status) -> bytes:
+    v1 = item.status
+    if type(v1) is not StatusStatus and type(v1) is not int:
+        raise _fast.Unclear
+    v2 = item.mode
+    if type(v2) is not RobotMode and type(v2) is not int:
+        raise _fast.Unclear
+    v3 = item.voltage
+    v4 = item.current
+    v5 = item.speed
+    v6 = item.angle
+    v7 = item.encoder0
+    v8 = item.encoder1
+    v9 = item.encoder2
+    v10 = item.encoder3
+    v11 = item.roll
+    v12 = item.pitch
+    v13 = item.yaw
+    if not (type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is type(v8) is int):
+        raise _fast.Unclear
+    if not (type(v9) is type(v10) is type(v11) is type(v12) is type(v13) is int):
+        raise _fast.Unclear
+    return _PACK_4(v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13)
+
+
+def _read_gps(data: bytes) -> Gps:
+    if not 0 <= len(data) <= 121:
+        raise _fast.Unclear
+    item = _new(Gps)
+    v1 = data[0:]
+    if len(v1) > 121:
+        raise _fast.Unclear
+    at = len(data)
+    item.nmea = v1.decode("latin-1")
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_gps(item: Gps) -> bytes:
+    v1 = item.nmea
+    v2 = v1.encode("ascii")
+    if len(v2) > 121:
+        raise _fast.Unclear
+    payload = v2
+    if not 0 <= len(payload) <= 121:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_version(data: bytes) -> Version:
+    if len(data) != 2:
+        raise _fast.Unclear
+    item = _new(Version)
+    item.serial_number, item.version = _UNPACK_5(data, 0)
+    return item
+
+
+def _write_version(item: Version) -> bytes:
+    v1 = item.serial_number
+    v2 = item.version
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_5(v1, v2)
+
+
+def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            if data[at] != 0x55:
+                return at
+            end = data.find(b"\x55", at + 1)
+            if end < 0:
+                return at
+            raw = data[at:end]
+            if len(raw) > 252:
+                return at
+            content = raw[1:]
+            if 0x56 in content:
+                content = _STUFFING_0.decode(content)
+            if len(content) < 4:
+                return at
+            payload = content[3:-1]
+            if len(payload) > 122:
+                return at
+            if content[0] != len(payload) + 2:
+                return at
+            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+                return at
+            numbers = (content[1], content[2])
+            read = _PC_KINDS.get(content[2])
+            if read is None:
+                events.append(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = PC_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_PC_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x53: _read_stop,
+    0x52: _read_reset,
+    0x4D: _read_mode,
+    0x47: _read_go,
+    0x4C: _read_limits,
+    0x54: _read_timing,
+    0x50: _read_gps_mode,
+    0x56: _read_version_query,
+    0x44: _read_led,
+}
+
+def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_6(0x55, len(payload) + 2, counter_, command_) + payload
+    content += _BYTES[(-_adler32(content[1:], 0) & 0xFF)]
+    return content[:1] + _STUFFING_0.encode(content[1:])
+
+
+def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            if data[at] != 0x55:
+                return at
+            end = data.find(b"\x55", at + 1)
+            if end < 0:
+                return at
+            raw = data[at:end]
+            if len(raw) > 252:
+                return at
+            content = raw[1:]
+            if 0x56 in content:
+                content = _STUFFING_0.decode(content)
+            if len(content) < 4:
+                return at
+            payload = content[3:-1]
+            if len(payload) > 122:
+                return at
+            if content[0] != len(payload) + 2:
+                return at
+            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+                return at
+            numbers = (content[1], content[2])
+            read = _ESP_KINDS.get(content[2])
+            if read is None:
+                events.append(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = ESP_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_ESP_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x41: _read_ack,
+    0x4E: _read_nack,
+    0x49: _read_status,
+    0x50: _read_gps,
+    0x56: _read_version,
+}
+
+def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_6(0x55, len(payload) + 2, counter_, command_) + payload
+    content += _BYTES[(-_adler32(content[1:], 0) & 0xFF)]
+    return content[:1] + _STUFFING_0.encode(content[1:])
+
+
+_ENCODERS = _fast.encoders(
+    _fast.SenderWriters(
+        "pc",
+        _frame_pc,
+        {
+            Stop: _write_stop,
+            Reset: _write_reset,
+            Mode: _write_mode,
+            Go: _write_go,
+            Limits: _write_limits,
+            Timing: _write_timing,
+            GpsMode: _write_gps_mode,
+            VersionQuery: _write_version_query,
+            Led: _write_led,
+        },
+    ),
+    _fast.SenderWriters(
+        "esp",
+        _frame_esp,
+        {
+            Ack: _write_ack,
+            Nack: _write_nack,
+            Status: _write_status,
+            Gps: _write_gps,
+            Version: _write_version,
+        },
+    ),
+)
+# fmt: on
+
 # --- the codec ----------------------------------------------------------------------------------
 
 PcMessage = Stop | Reset | Mode | Go | Limits | Timing | GpsMode | VersionQuery | Led
@@ -493,12 +924,14 @@ PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
     PC_FRAME,
     Parts,
     messages=(Stop, Reset, Mode, Go, Limits, Timing, GpsMode, VersionQuery, Led),
+    cut=_cut_pc,
 )
 ESP_SENDER: _rt.SenderSpec[EspMessage, Parts] = _rt.SenderSpec(
     "esp",
     PC_FRAME,
     Parts,
     messages=(Ack, Nack, Status, Gps, Version),
+    cut=_cut_esp,
 )
 PC_FORMAT = _rt.FrameFormat(PC_SENDER)
 """The frame of pc as a construct declaration."""
@@ -518,44 +951,63 @@ def encode(
     strict: bool = True,
     *,
     counter: int | None = None,
+    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
     `counter` (0..255) has to be given; an `Encoder` counts by itself. Raises EncodeError where a
     value is missing or out of range; with `strict=False` only where it does not fit the wire.
     """
-    return PROTOCOL.encode(message, sender, strict, counter=counter)
+    if strict and engine == "fast":
+        try:
+            write, frame, identity = _ENCODERS[type(message), sender]
+            return frame(write(message), *identity, counter)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
+    return PROTOCOL.encode(message, sender, strict, engine, counter=counter)
 
 
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["pc"]) -> PcMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["pc"], engine: _rt.Engine = "fast"
+) -> PcMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["esp"]) -> EspMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["esp"], engine: _rt.Engine = "fast"
+) -> EspMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender) -> PcMessage | EspMessage: ...
-def decode(frame: bytes, sender: Sender) -> PcMessage | EspMessage:
+def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage: ...
+def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    return PROTOCOL.decode(frame, sender)
+    return PROTOCOL.decode(frame, sender, engine)
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
 
     @_typing.overload
-    def __init__(self: Decoder[PcMessage, Parts], sender: _typing.Literal["pc"]) -> None: ...
+    def __init__(
+        self: Decoder[PcMessage, Parts], sender: _typing.Literal["pc"], engine: _rt.Engine = "fast"
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[EspMessage, Parts], sender: _typing.Literal["esp"]) -> None: ...
+    def __init__(
+        self: Decoder[EspMessage, Parts],
+        sender: _typing.Literal["esp"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[PcMessage | EspMessage, Parts], sender: Sender) -> None: ...
-    def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+    def __init__(
+        self: Decoder[PcMessage | EspMessage, Parts], sender: Sender, engine: _rt.Engine = "fast"
+    ) -> None: ...
+    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.sender(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint and advances its counters."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+        super().__init__(PROTOCOL.sender(sender), encode)
 
     def encode(
         self,

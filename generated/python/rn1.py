@@ -12,6 +12,7 @@ There is no checksum.
 
 from __future__ import annotations
 
+import struct as _struct
 import typing as _typing
 from dataclasses import dataclass as _dataclass
 from dataclasses import field as _field
@@ -19,6 +20,7 @@ from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
 from protogen.runtime import constructs as _c
+from protogen.runtime import fast as _fast
 
 SPEC_HASH = "565ea17f0e53401a51734accef5f6311e381b9176fff89e4804f1d33d5f40210"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
@@ -494,6 +496,566 @@ BRAIN_FRAME = _rt.FrameSpec(
     seven_bit=True,
 )
 
+# --- the fast engine ----------------------------------------------------------------------------
+#
+# What is plainly in order goes through these functions; they raise, or stop, where the reference
+# (construct, and the machine that cuts frames byte by byte) has to decide.
+# fmt: off
+
+_new = _fast.new
+_BYTES = _fast.BYTES
+_UNPACK_0 = _struct.Struct("<3s").unpack_from
+_NUMBER_0 = _rt.Number(16, False, "little", True)
+_PACK_0 = _struct.Struct("<3s").pack
+_UNPACK_1 = _struct.Struct("<B").unpack_from
+_PACK_1 = _struct.Struct("<B").pack
+_UNPACK_2 = _struct.Struct("<BB").unpack_from
+_PACK_2 = _struct.Struct("<BB").pack
+_UNPACK_3 = _struct.Struct("<HH").unpack_from
+_PAIRS_0 = _fast.Pairs(14, True, "little")
+_CODES_0 = _fast.PairCodes(14, True, "little")
+_PACK_3 = _struct.Struct("<HH").pack
+_UNPACK_4 = _struct.Struct("<3B").unpack_from
+_MEMBERS_0 = _fast.Members(MaintenanceOperation)
+_UNPACK_5 = _struct.Struct("<BHHH").unpack_from
+_MEMBERS_1 = _fast.Members(GyroStatus)
+_PACK_4 = _struct.Struct("<BHHH").pack
+_MEMBERS_2 = _fast.Members(XcelStatus)
+_MEMBERS_3 = _fast.Members(CompassStatus)
+_UNPACK_6 = _struct.Struct("<BHHB").unpack_from
+_PACK_5 = _struct.Struct("<BHHB").pack
+_MEMBERS_4 = _fast.Members(LidarStatus)
+_PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
+_PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
+_MEMBERS_5 = _fast.Members(SonarStatus)
+_UNPACK_7 = _struct.Struct("<BHH").unpack_from
+_PAIRS_1 = _fast.Pairs(14, False, "little")
+_CODES_1 = _fast.PairCodes(14, False, "little")
+_PACK_6 = _struct.Struct("<BHH").pack
+
+
+def _read_maintenance_argument_reconfig_uart(
+    data: bytes, at: int
+) -> MaintenanceArgumentReconfigUart:
+    item = _new(MaintenanceArgumentReconfigUart)
+    (v1,) = _UNPACK_0(data, at)
+    item.baud_rate_register = _NUMBER_0.decode(v1)
+    return item
+
+
+def _write_maintenance_argument_reconfig_uart(item: MaintenanceArgumentReconfigUart) -> bytes:
+    if type(item) is not MaintenanceArgumentReconfigUart:
+        raise _fast.Unclear
+    v1 = item.baud_rate_register
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_0(_NUMBER_0.encode(v1))
+
+
+def _read_maintenance_argument_run_motor_controller_flasher(
+    data: bytes, at: int
+) -> MaintenanceArgumentRunMotorControllerFlasher:
+    item = _new(MaintenanceArgumentRunMotorControllerFlasher)
+    v1 = data[at]
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.motor_controller = v1
+    return item
+
+
+def _write_maintenance_argument_run_motor_controller_flasher(
+    item: MaintenanceArgumentRunMotorControllerFlasher
+) -> bytes:
+    if type(item) is not MaintenanceArgumentRunMotorControllerFlasher:
+        raise _fast.Unclear
+    v1 = item.motor_controller
+    if not 1 <= v1 <= 4:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    if type(v1) is not int:
+        raise _fast.Unclear
+    return _PACK_1(v1)
+
+
+def _read_move_manual(data: bytes) -> MoveManual:
+    if len(data) != 2:
+        raise _fast.Unclear
+    item = _new(MoveManual)
+    v1, v2 = _UNPACK_2(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.speed = (v1 ^ 0x40) - 0x40
+    if v2 >> 7:
+        raise _fast.Unclear
+    item.arc = (v2 ^ 0x40) - 0x40
+    return item
+
+
+def _write_move_manual(item: MoveManual) -> bytes:
+    v1 = item.speed
+    if not -64 <= v1 <= 63:
+        raise _fast.Unclear
+    v2 = item.arc
+    if not -64 <= v2 <= 63:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_2(v1 & 0x7F, v2 & 0x7F)
+
+
+def _read_move_relative_twostep(data: bytes) -> MoveRelativeTwostep:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(MoveRelativeTwostep)
+    v1, v2 = _UNPACK_3(data, 0)
+    item.angle = _PAIRS_0[v1]
+    item.forward = _PAIRS_0[v2]
+    return item
+
+
+def _write_move_relative_twostep(item: MoveRelativeTwostep) -> bytes:
+    v1 = item.angle
+    v2 = item.forward
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_3(_CODES_0[v1], _CODES_0[v2])
+
+
+def _read_move_relative_arc(data: bytes) -> MoveRelativeArc:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(MoveRelativeArc)
+    v1, v2 = _UNPACK_3(data, 0)
+    item.angle = _PAIRS_0[v1]
+    item.forward = _PAIRS_0[v2]
+    return item
+
+
+def _write_move_relative_arc(item: MoveRelativeArc) -> bytes:
+    v1 = item.angle
+    v2 = item.forward
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_3(_CODES_0[v1], _CODES_0[v2])
+
+
+def _read_maintenance(data: bytes) -> Maintenance:
+    if not 4 <= len(data) <= 7:
+        raise _fast.Unclear
+    item = _new(Maintenance)
+    v1: list[_typing.Any] = []
+    for v2 in _UNPACK_4(data, 0):
+        if v2 >> 7:
+            raise _fast.Unclear
+        v1.append(v2)
+    item.magic = v1
+    if item.magic != [66, 17, 122]:
+        raise _fast.Unclear
+    v3 = data[3]
+    if v3 >> 7:
+        raise _fast.Unclear
+    item.operation = _MEMBERS_0[v3]
+    at = 4
+    case4: _typing.Any = None
+    if item.operation in (81, 82):
+        pass
+    elif item.operation == 65:
+        s5 = _read_maintenance_argument_reconfig_uart(data, at)
+        case4 = s5
+        at = at + 3
+    elif item.operation == 83:
+        s6 = _read_maintenance_argument_run_motor_controller_flasher(data, at)
+        case4 = s6
+        at = at + 1
+    else:
+        case4 = data[at :]
+        if len(case4) > 3:
+            raise _fast.Unclear
+        if not case4.isascii():
+            raise _fast.Unclear
+        at = len(data)
+    item.argument = case4
+    if at != len(data):
+        raise _fast.Unclear
+    return item
+
+
+def _write_maintenance(item: Maintenance) -> bytes:
+    v1 = item.magic
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) != 3:
+        raise _fast.Unclear
+    v2: list[bytes] = []
+    for each3 in v1:
+        if not 0 <= each3 <= 127:
+            raise _fast.Unclear
+        if type(each3) is not int:
+            raise _fast.Unclear
+        v2.append(_PACK_1(each3))
+    if v1 != [66, 17, 122]:
+        raise _fast.Unclear
+    v4 = item.operation
+    if type(v4) is not MaintenanceOperation and type(v4) is not int:
+        raise _fast.Unclear
+    if not 0 <= v4 <= 127:
+        raise _fast.Unclear
+    v5 = item.argument
+    if v4 in (81, 82):
+        if v5 is not None:
+            raise _fast.Unclear
+        case6 = b""
+    elif v4 == 65:
+        if type(v5) is not MaintenanceArgumentReconfigUart:
+            raise _fast.Unclear
+        v7 = v5.baud_rate_register
+        if type(v7) is not int:
+            raise _fast.Unclear
+        case6 = _PACK_0(_NUMBER_0.encode(v7))
+    elif v4 == 83:
+        if type(v5) is not MaintenanceArgumentRunMotorControllerFlasher:
+            raise _fast.Unclear
+        v8 = v5.motor_controller
+        if not 1 <= v8 <= 4:
+            raise _fast.Unclear
+        if not 0 <= v8 <= 127:
+            raise _fast.Unclear
+        if type(v8) is not int:
+            raise _fast.Unclear
+        case6 = _PACK_1(v8)
+    else:
+        if type(v5) is not bytes:
+            raise _fast.Unclear
+        if len(v5) > 3:
+            raise _fast.Unclear
+        if not v5.isascii():
+            raise _fast.Unclear
+        case6 = v5
+    payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
+    if not 4 <= len(payload) <= 7:
+        raise _fast.Unclear
+    return payload
+
+
+def _read_gyro(data: bytes) -> Gyro:
+    if len(data) != 7:
+        raise _fast.Unclear
+    item = _new(Gyro)
+    v1, v2, v3, v4 = _UNPACK_5(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = _MEMBERS_1[v1]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
+    return item
+
+
+def _write_gyro(item: Gyro) -> bytes:
+    v1 = item.status
+    if type(v1) is not GyroStatus and type(v1) is not int:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.int_x
+    v3 = item.int_y
+    v4 = item.int_z
+    if not (type(v2) is type(v3) is type(v4) is int):
+        raise _fast.Unclear
+    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+
+
+def _read_xcel(data: bytes) -> Xcel:
+    if len(data) != 7:
+        raise _fast.Unclear
+    item = _new(Xcel)
+    v1, v2, v3, v4 = _UNPACK_5(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = _MEMBERS_2[v1]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
+    return item
+
+
+def _write_xcel(item: Xcel) -> bytes:
+    v1 = item.status
+    if type(v1) is not XcelStatus and type(v1) is not int:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.int_x
+    v3 = item.int_y
+    v4 = item.int_z
+    if not (type(v2) is type(v3) is type(v4) is int):
+        raise _fast.Unclear
+    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+
+
+def _read_compass(data: bytes) -> Compass:
+    if len(data) != 7:
+        raise _fast.Unclear
+    item = _new(Compass)
+    v1, v2, v3, v4 = _UNPACK_5(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = _MEMBERS_3[v1]
+    item.avg_x = _PAIRS_0[v2]
+    item.avg_y = _PAIRS_0[v3]
+    item.avg_z = _PAIRS_0[v4]
+    return item
+
+
+def _write_compass(item: Compass) -> bytes:
+    v1 = item.status
+    if type(v1) is not CompassStatus and type(v1) is not int:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.avg_x
+    v3 = item.avg_y
+    v4 = item.avg_z
+    if not (type(v2) is type(v3) is type(v4) is int):
+        raise _fast.Unclear
+    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+
+
+def _read_optflow(data: bytes) -> Optflow:
+    if len(data) != 6:
+        raise _fast.Unclear
+    item = _new(Optflow)
+    v1, v2, v3, v4 = _UNPACK_6(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = v1
+    item.dx = _PAIRS_0[v2]
+    item.dy = _PAIRS_0[v3]
+    if v4 >> 7:
+        raise _fast.Unclear
+    item.q = v4
+    return item
+
+
+def _write_optflow(item: Optflow) -> bytes:
+    v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.dx
+    v3 = item.dy
+    v4 = item.q
+    if not 0 <= v4 <= 127:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
+        raise _fast.Unclear
+    return _PACK_5(v1, _CODES_0[v2], _CODES_0[v3], v4)
+
+
+def _read_lidar(data: bytes) -> Lidar:
+    if len(data) != 721:
+        raise _fast.Unclear
+    item = _new(Lidar)
+    v1 = data[0]
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = _MEMBERS_4[v1]
+    v2 = _PAIR_LIST_0(data[1 : 721])
+    if len(v2) != 360:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _write_lidar(item: Lidar) -> bytes:
+    v1 = item.status
+    if type(v1) is not LidarStatus and type(v1) is not int:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.distances
+    if type(v2) is not list:
+        raise _fast.Unclear
+    if len(v2) != 360:
+        raise _fast.Unclear
+    return b"".join((_PACK_1(v1), _PAIR_LIST_1(v2)))
+
+
+def _read_sonar(data: bytes) -> Sonar:
+    if len(data) != 15:
+        raise _fast.Unclear
+    item = _new(Sonar)
+    v1 = data[0]
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = _MEMBERS_5[v1]
+    v2 = _PAIR_LIST_0(data[1 : 15])
+    if len(v2) != 7:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _write_sonar(item: Sonar) -> bytes:
+    v1 = item.status
+    if type(v1) is not SonarStatus and type(v1) is not int:
+        raise _fast.Unclear
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.distances
+    if type(v2) is not list:
+        raise _fast.Unclear
+    if len(v2) != 7:
+        raise _fast.Unclear
+    return b"".join((_PACK_1(v1), _PAIR_LIST_1(v2)))
+
+
+def _read_facing(data: bytes) -> Facing:
+    if len(data) != 5:
+        raise _fast.Unclear
+    item = _new(Facing)
+    v1, v2, v3 = _UNPACK_7(data, 0)
+    if v1 >> 7:
+        raise _fast.Unclear
+    item.status = v1
+    item.heading = _PAIRS_1[v2]
+    item.speed = _PAIRS_0[v3]
+    return item
+
+
+def _write_facing(item: Facing) -> bytes:
+    v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    v2 = item.heading
+    v3 = item.speed
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    return _PACK_6(v1, _CODES_1[v2], _CODES_0[v3])
+
+
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            if not 0x80 <= data[at] <= 0xFE:
+                return at
+            end = data.find(b"\xff", at)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 9:
+                return at
+            content = raw[:-1]
+            if len(content) < 1:
+                return at
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            numbers = (content[0],)
+            payload_size, read = _HOST_KINDS[content[0]]
+            if 0 <= payload_size != len(payload):
+                return at
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (2, _read_move_manual),
+    0x81: (4, _read_move_relative_twostep),
+    0x82: (4, _read_move_relative_arc),
+    0xFE: (-1, _read_maintenance),
+}
+
+def _frame_host(payload: bytes, start_: int | None) -> bytes:
+    if not payload.isascii():
+        raise _fast.Unclear
+    content = _PACK_1(start_) + payload
+    return content + b"\xff"
+
+
+def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    try:
+        while True:
+            payload_size, read = _BRAIN_KINDS[data[at]]
+            end = at + 1 + payload_size
+            if end > size:
+                return at
+            raw = data[at:end]
+            content = raw
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            numbers = (content[0],)
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = BRAIN_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (7, _read_gyro),
+    0x81: (7, _read_xcel),
+    0x82: (7, _read_compass),
+    0x83: (6, _read_optflow),
+    0x84: (721, _read_lidar),
+    0x85: (15, _read_sonar),
+    0xA0: (5, _read_facing),
+}
+
+def _frame_brain(payload: bytes, start_: int | None) -> bytes:
+    if not payload.isascii():
+        raise _fast.Unclear
+    content = _PACK_1(start_) + payload
+    return content
+
+
+_ENCODERS = _fast.encoders(
+    _fast.SenderWriters(
+        "host",
+        _frame_host,
+        {
+            MoveManual: _write_move_manual,
+            MoveRelativeTwostep: _write_move_relative_twostep,
+            MoveRelativeArc: _write_move_relative_arc,
+            Maintenance: _write_maintenance,
+        },
+    ),
+    _fast.SenderWriters(
+        "brain",
+        _frame_brain,
+        {
+            Gyro: _write_gyro,
+            Xcel: _write_xcel,
+            Compass: _write_compass,
+            Optflow: _write_optflow,
+            Lidar: _write_lidar,
+            Sonar: _write_sonar,
+            Facing: _write_facing,
+        },
+    ),
+)
+# fmt: on
+
 # --- the codec ----------------------------------------------------------------------------------
 
 HostMessage = MoveManual | MoveRelativeTwostep | MoveRelativeArc | Maintenance
@@ -520,12 +1082,14 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     HOST_FRAME,
     Parts,
     messages=(MoveManual, MoveRelativeTwostep, MoveRelativeArc, Maintenance),
+    cut=_cut_host,
 )
 BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     "brain",
     BRAIN_FRAME,
     Parts,
     messages=(Gyro, Xcel, Compass, Optflow, Lidar, Sonar, Facing),
+    cut=_cut_brain,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""
@@ -543,44 +1107,70 @@ def encode(
     message: HostMessage | BrainMessage,
     sender: Sender | None = None,
     strict: bool = True,
+    *,
+    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
     Raises EncodeError where a value is missing or out of range; with `strict=False` only where it
     does not fit the wire.
     """
-    return PROTOCOL.encode(message, sender, strict)
+    if strict and engine == "fast":
+        try:
+            write, frame, identity = _ENCODERS[type(message), sender]
+            return frame(write(message), *identity)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
+    return PROTOCOL.encode(message, sender, strict, engine)
 
 
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["host"]) -> HostMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
+) -> HostMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["brain"]) -> BrainMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["brain"], engine: _rt.Engine = "fast"
+) -> BrainMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender) -> HostMessage | BrainMessage: ...
-def decode(frame: bytes, sender: Sender) -> HostMessage | BrainMessage:
+def decode(
+    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+) -> HostMessage | BrainMessage: ...
+def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | BrainMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    return PROTOCOL.decode(frame, sender)
+    return PROTOCOL.decode(frame, sender, engine)
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
 
     @_typing.overload
-    def __init__(self: Decoder[HostMessage, Parts], sender: _typing.Literal["host"]) -> None: ...
+    def __init__(
+        self: Decoder[HostMessage, Parts],
+        sender: _typing.Literal["host"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[BrainMessage, Parts], sender: _typing.Literal["brain"]) -> None: ...
+    def __init__(
+        self: Decoder[BrainMessage, Parts],
+        sender: _typing.Literal["brain"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[HostMessage | BrainMessage, Parts], sender: Sender) -> None: ...
-    def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+    def __init__(
+        self: Decoder[HostMessage | BrainMessage, Parts],
+        sender: Sender,
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
+    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.sender(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+        super().__init__(PROTOCOL.sender(sender), encode)
 
     def encode(
         self,

@@ -10,12 +10,14 @@ no checksum.
 
 from __future__ import annotations
 
+import struct as _struct
 import typing as _typing
 from dataclasses import dataclass as _dataclass
 from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
 from protogen.runtime import constructs as _c
+from protogen.runtime import fast as _fast
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "38490cb78d21d42471aca2b27899ab3dab1efed0a378179e7f6a540c9bd1c76e"
@@ -221,6 +223,241 @@ BOARD_FRAME = _rt.FrameSpec(
     stuffed=("length", "type", "payload"),
 )
 
+# --- the fast engine ----------------------------------------------------------------------------
+#
+# What is plainly in order goes through these functions; they raise, or stop, where the reference
+# (construct, and the machine that cuts frames byte by byte) has to decide.
+# fmt: off
+
+_new = _fast.new
+_BYTES = _fast.BYTES
+_UNPACK_0 = _struct.Struct(">hh").unpack_from
+_UNPACK_1 = _struct.Struct(">8H").unpack_from
+_UNPACK_2 = _struct.Struct("<B").unpack_from
+_MEMBERS_0 = _fast.Members(MotorsServosLedsLeds)
+_PACK_0 = _struct.Struct(">8H").pack
+_PACK_1 = _struct.Struct(">hh").pack
+_PACK_2 = _struct.Struct("<B").pack
+_UNPACK_3 = _struct.Struct(">2H").unpack_from
+_PACK_3 = _struct.Struct(">2H").pack
+_UNPACK_4 = _struct.Struct(">hhh").unpack_from
+_PACK_4 = _struct.Struct(">hhh").pack
+_STUFFING_0 = _transparency.Base16Upper()
+_PACK_5 = _struct.Struct("<BBB").pack
+
+
+def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
+    if len(data) != 21:
+        raise _fast.Unclear
+    item = _new(MotorsServosLeds)
+    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
+    item.servos = list(_UNPACK_1(data, 4))
+    v1 = data[20]
+    item.leds = _MEMBERS_0[v1]
+    return item
+
+
+def _write_motors_servos_leds(item: MotorsServosLeds) -> bytes:
+    v1 = item.motor_1
+    v2 = item.motor_2
+    v3 = item.servos
+    if type(v3) is not list:
+        raise _fast.Unclear
+    if len(v3) != 8:
+        raise _fast.Unclear
+    if not set(map(type, v3)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    v4 = item.leds
+    if type(v4) is not MotorsServosLedsLeds and type(v4) is not int:
+        raise _fast.Unclear
+    return b"".join((_PACK_1(v1, v2), _PACK_0(*v3), _PACK_2(v4)))
+
+
+def _read_motors_two_servos(data: bytes) -> MotorsTwoServos:
+    if len(data) != 8:
+        raise _fast.Unclear
+    item = _new(MotorsTwoServos)
+    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
+    item.servos = list(_UNPACK_3(data, 4))
+    return item
+
+
+def _write_motors_two_servos(item: MotorsTwoServos) -> bytes:
+    v1 = item.motor_1
+    v2 = item.motor_2
+    v3 = item.servos
+    if type(v3) is not list:
+        raise _fast.Unclear
+    if len(v3) != 2:
+        raise _fast.Unclear
+    if not set(map(type, v3)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return b"".join((_PACK_1(v1, v2), _PACK_3(*v3)))
+
+
+def _read_motor_test(data: bytes) -> MotorTest:
+    if len(data) != 4:
+        raise _fast.Unclear
+    item = _new(MotorTest)
+    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
+    return item
+
+
+def _write_motor_test(item: MotorTest) -> bytes:
+    v1 = item.motor_1
+    v2 = item.motor_2
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    return _PACK_1(v1, v2)
+
+
+def _read_status(data: bytes) -> Status:
+    if len(data) != 6:
+        raise _fast.Unclear
+    item = _new(Status)
+    item.voltage, item.current, item.temperature = _UNPACK_4(data, 0)
+    return item
+
+
+def _write_status(item: Status) -> bytes:
+    v1 = item.voltage
+    v2 = item.current
+    v3 = item.temperature
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    return _PACK_4(v1, v2, v3)
+
+
+def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            if data[at] != 0x62:
+                return at
+            end = data.find(b"\x65", at + 1)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 512:
+                return at
+            if raw.find(b"\x62", 1) > 0:
+                return at
+            content = raw[1:-1]
+            content = _STUFFING_0.decode(content)
+            if len(content) < 2:
+                return at
+            payload = content[2:]
+            if len(payload) > 253:
+                return at
+            if content[0] != len(payload) + 2:
+                return at
+            numbers = (content[1],)
+            read = _DAEMON_KINDS.get(content[1])
+            if read is None:
+                events.append(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = DAEMON_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x00: _read_motors_servos_leds,
+    0x01: _read_motors_two_servos,
+    0x03: _read_motor_test,
+}
+
+def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
+    content = _PACK_5(0x62, len(payload) + 2, type_) + payload
+    return content[:1] + _STUFFING_0.encode(content[1:]) + b"\x65"
+
+
+def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    try:
+        while True:
+            if data[at] != 0x62:
+                return at
+            end = data.find(b"\x65", at + 1)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 512:
+                return at
+            if raw.find(b"\x62", 1) > 0:
+                return at
+            content = raw[1:-1]
+            content = _STUFFING_0.decode(content)
+            if len(content) < 2:
+                return at
+            payload = content[2:]
+            if len(payload) > 253:
+                return at
+            if content[0] != len(payload) + 2:
+                return at
+            numbers = (content[1],)
+            read = _BOARD_KINDS.get(content[1])
+            if read is None:
+                events.append(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_rt.MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = BOARD_SENDER
+            events.append(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x01: _read_status,
+}
+
+def _frame_board(payload: bytes, type_: int | None) -> bytes:
+    content = _PACK_5(0x62, len(payload) + 2, type_) + payload
+    return content[:1] + _STUFFING_0.encode(content[1:]) + b"\x65"
+
+
+_ENCODERS = _fast.encoders(
+    _fast.SenderWriters(
+        "daemon",
+        _frame_daemon,
+        {
+            MotorsServosLeds: _write_motors_servos_leds,
+            MotorsTwoServos: _write_motors_two_servos,
+            MotorTest: _write_motor_test,
+        },
+    ),
+    _fast.SenderWriters(
+        "board",
+        _frame_board,
+        {
+            Status: _write_status,
+        },
+    ),
+)
+# fmt: on
+
 # --- the codec ----------------------------------------------------------------------------------
 
 DaemonMessage = MotorsServosLeds | MotorsTwoServos | MotorTest
@@ -240,12 +477,14 @@ DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
     DAEMON_FRAME,
     Parts,
     messages=(MotorsServosLeds, MotorsTwoServos, MotorTest),
+    cut=_cut_daemon,
 )
 BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     "board",
     BOARD_FRAME,
     Parts,
     messages=(Status,),
+    cut=_cut_board,
 )
 DAEMON_FORMAT = _rt.FrameFormat(DAEMON_SENDER)
 """The frame of daemon as a construct declaration."""
@@ -263,24 +502,40 @@ def encode(
     message: DaemonMessage | BoardMessage,
     sender: Sender | None = None,
     strict: bool = True,
+    *,
+    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
     Raises EncodeError where a value is missing or out of range; with `strict=False` only where it
     does not fit the wire.
     """
-    return PROTOCOL.encode(message, sender, strict)
+    if strict and engine == "fast":
+        try:
+            write, frame, identity = _ENCODERS[type(message), sender]
+            return frame(write(message), *identity)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
+    return PROTOCOL.encode(message, sender, strict, engine)
 
 
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["daemon"]) -> DaemonMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["daemon"], engine: _rt.Engine = "fast"
+) -> DaemonMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: _typing.Literal["board"]) -> BoardMessage: ...
+def decode(
+    frame: bytes, sender: _typing.Literal["board"], engine: _rt.Engine = "fast"
+) -> BoardMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender) -> DaemonMessage | BoardMessage: ...
-def decode(frame: bytes, sender: Sender) -> DaemonMessage | BoardMessage:
+def decode(
+    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+) -> DaemonMessage | BoardMessage: ...
+def decode(
+    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+) -> DaemonMessage | BoardMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    return PROTOCOL.decode(frame, sender)
+    return PROTOCOL.decode(frame, sender, engine)
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
@@ -288,21 +543,31 @@ class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
 
     @_typing.overload
     def __init__(
-        self: Decoder[DaemonMessage, Parts], sender: _typing.Literal["daemon"]
+        self: Decoder[DaemonMessage, Parts],
+        sender: _typing.Literal["daemon"],
+        engine: _rt.Engine = "fast",
     ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[BoardMessage, Parts], sender: _typing.Literal["board"]) -> None: ...
+    def __init__(
+        self: Decoder[BoardMessage, Parts],
+        sender: _typing.Literal["board"],
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
     @_typing.overload
-    def __init__(self: Decoder[DaemonMessage | BoardMessage, Parts], sender: Sender) -> None: ...
-    def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+    def __init__(
+        self: Decoder[DaemonMessage | BoardMessage, Parts],
+        sender: Sender,
+        engine: _rt.Engine = "fast",
+    ) -> None: ...
+    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.sender(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender))
+        super().__init__(PROTOCOL.sender(sender), encode)
 
     def encode(
         self,

@@ -10,6 +10,8 @@ from protogen.cli.exits import UsageError
 from protogen.cli.schemas import find_sender, open_protocol
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from protogen.model.protocol import Protocol
     from protogen.runtime.codec import Protocol as RuntimeProtocol
     from protogen.runtime.decoder import Decoder
@@ -20,7 +22,13 @@ class Codec:
     """A protocol, and what the module that would be generated for it makes of it."""
 
     protocol: Protocol
-    runtime: RuntimeProtocol[Any, Any]
+    module: ModuleType
+
+    @property
+    def runtime(self) -> RuntimeProtocol[Any, Any]:
+        """The module's `PROTOCOL`."""
+        runtime: RuntimeProtocol[Any, Any] = self.module.PROTOCOL
+        return runtime
 
     @property
     def senders(self) -> tuple[str, ...]:
@@ -51,4 +59,4 @@ def open_codec(schema: Path) -> Codec:
     from protogen.targets.python.live import module_of
 
     protocol = open_protocol(schema)
-    return Codec(protocol, module_of(protocol).PROTOCOL)
+    return Codec(protocol, module_of(protocol))

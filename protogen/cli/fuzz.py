@@ -68,16 +68,19 @@ def _engines(codec: Codec) -> tuple[list[Engine], bool]:
     from protogen.fuzzing.c_library import CompileError, find_compiler
     from protogen.fuzzing.python_engine import PythonEngine
 
-    python = PythonEngine(codec.runtime)
+    found: list[Engine] = [
+        PythonEngine(codec.runtime),
+        PythonEngine(codec.runtime, codec.module.encode),
+    ]
     compiler = find_compiler()
     if compiler is None:
         typer.echo("c: there is no C compiler (cc, gcc or clang), so generated C is not tried")
-        return [python], True
+        return found, True
     try:
-        return [python, CEngine(codec.protocol, compiler)], True
+        return [*found, CEngine(codec.protocol, compiler)], True
     except CompileError as error:
         typer.echo(f"c: {compiler} refuses the generated C:\n{error}", err=True)
-        return [python], False
+        return found, False
 
 
 def _fuzz(codec: Codec, engine: Engine, run: Run, first: Engine) -> bool:

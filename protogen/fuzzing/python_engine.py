@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Any, Literal
 
 from protogen.fuzzing.engine import Refused, Seen
 from protogen.fuzzing.samples import Values
@@ -14,11 +14,14 @@ from protogen.runtime.errors import EncodeError
 
 
 class PythonEngine:
-    """A generated module's codec."""
+    """A generated module's codec: the reference, or with the module's own `encode` the fast one."""
 
-    name = "python"
-
-    def __init__(self, codec: Protocol[Any, Any]) -> None:
+    def __init__(
+        self, codec: Protocol[Any, Any], encode: Callable[..., bytes] | None = None
+    ) -> None:
+        self.name = "construct" if encode is None else "python"
+        self._engine: Literal["construct", "fast"] = "construct" if encode is None else "fast"
+        self._encode = encode or codec.encode
         self._codec = codec
         self._messages = {
             message.NAME: message
@@ -43,13 +46,13 @@ class PythonEngine:
         """Encode a whole frame. Raises Refused."""
         try:
             record = self._messages[message].from_dict(values)
-            return self._codec.encode(record, sender, **parts)
+            return self._encode(record, sender, **parts)
         except EncodeError as error:
             raise Refused(str(error)) from None
 
     def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
         """Feed the pieces to a new decoder and flush it."""
-        decoder = Decoder(self._codec.sender(sender))
+        decoder = Decoder(self._codec.sender(sender), self._engine)
         events = [event for piece in pieces for event in decoder.feed(piece)]
         return [_seen(event) for event in (*events, *decoder.flush())]
 

@@ -1,7 +1,7 @@
 """The names that generated modules, and those who use them, need."""
 
 from protogen.runtime.codec import Encoder, Protocol
-from protogen.runtime.decoder import Decoder
+from protogen.runtime.decoder import Decoder, Engine
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import CodecError, DecodeError, EncodeError, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEvent
@@ -56,6 +56,7 @@ __all__ = [
     "EncodeError",
     "Encoder",
     "End",
+    "Engine",
     "EnumRange",
     "Event",
     "FieldRules",

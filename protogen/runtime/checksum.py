@@ -10,10 +10,10 @@ import binascii
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, reduce
+from functools import cache
 from itertools import accumulate
-from operator import xor
 from typing import Protocol
+from zlib import adler32
 
 GREATEST_WIDTH = 64
 
@@ -29,6 +29,18 @@ class Checksum(Protocol):
         """Return the checksum of `data`, 0 .. 2**width - 1."""
 
 
+_LONG = 256
+"""So many bytes have a sum of more than 16 bits, or nearly."""
+
+
+def _shifts(size: int) -> tuple[int, ...]:
+    """By how many bits to shift, until all of `size` bytes lie on top of each other."""
+    return tuple(8 << power for power in reversed(range(size.bit_length())))
+
+
+_SHIFTS = tuple(_shifts((1 << bits) - 1) for bits in range(_LONG.bit_length()))
+
+
 @dataclass(frozen=True, slots=True)
 class Xor8:
     """The exclusive or of all bytes and `init`."""
@@ -42,7 +54,12 @@ class Xor8:
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0..255."""
-        return reduce(xor, data, self.init)
+        # Halves of one great integer are laid over each other, until they are one byte.
+        great = int.from_bytes(data, "little")
+        size = len(data)
+        for shift in _SHIFTS[size.bit_length()] if size < _LONG else _shifts(size):
+            great ^= great >> shift
+        return great & 0xFF ^ self.init
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +76,9 @@ class Sum8:
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0..255."""
-        total = self.init + sum(data)
+        # Adler-32 without its first 1 is a sum modulo 65521, and faster.
+        total = adler32(data, 0) & 0xFFFF if len(data) < _LONG else sum(data)
+        total += self.init
         return (-total if self.negated else total) & 0xFF
 
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Generic
 
 from protogen.runtime.assembly import encode_frame
+from protogen.runtime.decoder import Engine, check_engine
 from protogen.runtime.errors import DecodeError, EncodeError
-from protogen.runtime.events import FrameEvent, UnknownEvent
+from protogen.runtime.events import Event, FrameEvent, MessageEvent, UnknownEvent
 from protogen.runtime.frame import CounterPart
 from protogen.runtime.lines import encode_line, split_parts
 from protogen.runtime.message import Message
-from protogen.runtime.reading import read_frame
+from protogen.runtime.reading import may_start, read_frame
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
 
@@ -41,14 +42,16 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         message: Message,
         sender: str | None = None,
         strict: bool = True,
+        engine: Engine = "construct",
         **parts: int | None,
     ) -> bytes:
-        """The frame of a message.
+        """The frame of a message, as the reference makes it.
 
         `sender` is needed only where several endpoints send the message in different frames;
         `parts` gives counters and other values of the frame. Raises EncodeError where a value is
         missing, out of range or does not fit; with `strict=False` only where it does not fit.
         """
+        check_engine(engine)
         return _encode(self._sender_of(message, sender), message, parts, strict)
 
     def encode_unknown(self, sender: str, parts: Mapping[str, int], payload: bytes) -> bytes:
@@ -78,8 +81,15 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """The event of exactly one valid frame. Raises DecodeError."""
         return read_frame(self.sender(sender), frame)
 
-    def decode(self, frame: bytes, sender: str) -> MessageT_co:
+    def decode(self, frame: bytes, sender: str, engine: Engine = "fast") -> MessageT_co:
         """The message of exactly one frame. Raises DecodeError."""
+        check_engine(engine)
+        spec = self.sender(sender)
+        if engine == "fast" and spec.cut is not None and may_start(spec.layout, frame):
+            events: list[Event[MessageT_co, PartsT_co]] = []
+            end = spec.cut(frame, 0, 0, events)
+            if end == len(frame) and len(events) == 1 and isinstance(events[0], MessageEvent):
+                return events[0].message
         event = self.read(frame, sender)
         if isinstance(event, UnknownEvent):
             raise DecodeError("unknown", f"no message has the identity of {event.parts}")
@@ -111,8 +121,12 @@ def _encode(
 class Encoder:
     """Makes the frames of one endpoint, one after another, and advances their counters."""
 
-    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+    def __init__(
+        self, sender: SenderSpec[Any, Any], encode: Callable[..., bytes] | None = None
+    ) -> None:
+        """`encode` is the function of the generated module; else the reference encodes."""
         self._sender = sender
+        self._encode = encode or self._encode_by_reference
         self._counters = {
             part.name: part for part in sender.layout.values if isinstance(part, CounterPart)
         }
@@ -131,10 +145,15 @@ class Encoder:
             raise EncodeError("message", problem)
         counted = [name for name in self._counters if parts.get(name) is None]
         given = {**parts, **{name: self._next[name] for name in counted}}
-        wire = _encode(self._sender, message, given, strict)
+        wire = self._encode(message, self._sender.name, strict, **given)
         for name in counted:
             self._next[name] = _following(self._counters[name], self._next[name])
         return wire
+
+    def _encode_by_reference(
+        self, message: Message, sender: str, strict: bool, **parts: int | None
+    ) -> bytes:
+        return _encode(self._sender, message, parts, strict)
 
 
 def _following(part: CounterPart, value: int) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Generic
+from typing import Generic, Literal, get_args
 
 from protogen.runtime.constructs import PayloadError
 from protogen.runtime.errors import Reason
@@ -11,6 +11,16 @@ from protogen.runtime.frame import AfterEnd, Anywhere
 from protogen.runtime.machine import Candidate, Cut, Failure
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.starts import starts_of
+
+Engine = Literal["fast", "construct"]
+"""What decodes and encodes. `construct` is the reference: byte by byte, and construct's own parser.
+`fast` does the same with generated straight-line code wherever bytes and values are in order."""
+
+
+def check_engine(engine: str) -> None:
+    """Raise ValueError unless there is such an engine."""
+    if engine not in get_args(Engine):
+        raise ValueError(f"there is no engine {engine!r}; there are: {', '.join(get_args(Engine))}")
 
 
 class Decoder(Generic[MessageT_co, PartsT_co]):
@@ -21,13 +31,16 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     yet become a start literal of three bytes or more.
     """
 
-    def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co]) -> None:
+    def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co], engine: Engine = "fast") -> None:
+        check_engine(engine)
         self._sender = sender
+        self._cut = sender.cut if engine == "fast" else None
         self._starts = starts_of(sender.frame)
+        self._least = sender.frame.least
         self._greatest = sender.frame.greatest
         self._is_anywhere = isinstance(sender.frame.start, Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
-        self._data = bytearray()  # What is not delivered, and a little context in front of it.
+        self._data = b""  # What is not delivered, and a little context in front of it.
         self._offset = 0  # Of the first of these bytes in the input.
         # Places in these bytes:
         self._done = 0  # All in front of it is delivered.
@@ -46,6 +59,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the next bytes of the input; the events that are certain now."""
         self._data += data
+        if self._candidate is not None and len(self._data) - self._scan >= self._least:
+            # It may stand here as a whole now, in which case what was pushed needs not be.
+            self._cut_frames()
         self._run(final=False)
         return self._deliver()
 
@@ -54,7 +70,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._run(final=True)
         events = self._deliver()
         self._offset += len(self._data)
-        self._data.clear()
+        self._data = b""
         self._done = self._scan = 0
         self._is_fresh = True
         return events
@@ -63,7 +79,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """The events so far; what they cover is forgotten."""
         passed = self._done - self._starts.context
         if passed > 0:
-            del self._data[:passed]
+            self._data = self._data[passed:]
             self._offset += passed
             self._done -= passed
             self._scan -= passed
@@ -104,7 +120,21 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if not self._is_anywhere:
             self._noise(start, complete=True)
         self._scan = self._pushed = start
-        self._candidate = Candidate(self._sender)
+        if not self._cut_frames():
+            self._candidate = Candidate(self._sender)
+
+    def _cut_frames(self) -> bool:
+        """Take whole frames that stand here and are plainly in order; whether there were any."""
+        if self._cut is None or self._done != self._scan:
+            return False
+        end = self._cut(self._data, self._scan, self._offset, self._events)
+        if end == self._scan:
+            return False
+        self._done = end
+        self._give_up(end)
+        if self._sender.layout.shares_delimiter:
+            self._share_end()
+        return True
 
     def _take(self, candidate: Candidate, final: bool) -> bool:
         """Give the candidate bytes until its verdict."""
@@ -128,15 +158,15 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
         if self._failure is None:
             self._give_up(self._done)
-            self._share_end()
+            if self._sender.layout.shares_delimiter and not self._cut_frames():
+                self._share_end()
         return True
 
     def _share_end(self) -> None:
         """Where one literal starts and ends frames, that of a valid frame may do both."""
-        if self._sender.layout.shares_delimiter:
-            self._pushed = self._scan
-            self._shares_start = True
-            self._candidate = Candidate(self._sender, shares_start=True)
+        self._pushed = self._scan
+        self._shares_start = True
+        self._candidate = Candidate(self._sender, shares_start=True)
 
     def _read(self, cut: Cut) -> Failure | None:
         """Deliver the frame, unless its payload is not that of its message."""
@@ -177,7 +207,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def _cover(self, end: int) -> tuple[int, bytes]:
         """Deliver all up to `end`: where it starts in the input, and its bytes."""
         offset = self._offset + self._done
-        raw = bytes(self._data[self._done : end])
+        raw = self._data[self._done : end]
         self._done = end
         return offset, raw
 

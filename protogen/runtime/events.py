@@ -15,7 +15,7 @@ from protogen.runtime.machine import Cut
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, repr=False)
 class MessageEvent(Generic[MessageT_co, PartsT_co]):
     """A valid frame of a known message."""
 
@@ -25,13 +25,28 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     """Of the first byte, counted from the start of the input."""
     raw: bytes
     """The bytes on the wire."""
-    sender: str
-    """The endpoint whose bytes are decoded."""
-    parts: PartsT_co
-    """The frame's identity, counters and values."""
+    numbers: tuple[int, ...]
+    """The values of `parts`, in their order."""
     message: MessageT_co
-    payload: bytes = field(repr=False)
-    codec: SenderSpec[Any, Any] = field(repr=False, compare=False)
+    payload: bytes
+    codec: SenderSpec[Any, Any]
+
+    # Not frozen, and parts made when they are asked for: of some streams a second holds millions.
+
+    @property
+    def sender(self) -> str:
+        """The endpoint whose bytes are decoded."""
+        return self.codec.name
+
+    @property
+    def parts(self) -> PartsT_co:
+        """The frame's identity, counters and values."""
+        parts: PartsT_co = self.codec.parts(*self.numbers)
+        return parts
+
+    def __repr__(self) -> str:
+        shown = ("offset", "raw", "sender", "parts", "message")
+        return f"MessageEvent({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 
     @property
     def size(self) -> int:
@@ -110,10 +125,11 @@ def frame_event(
     offset: int,
 ) -> FrameEvent[MessageT_co, PartsT_co]:
     """The event of a complete frame; no message: its identity is unknown."""
-    parts = sender.shown(cut.numbers)
+    numbers = tuple(cut.numbers[name] for name in sender.layout.shown)
     if message is None:
+        parts = sender.parts(*numbers)
         return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
-    return MessageEvent(offset, raw, sender.name, parts, message, cut.payload, sender)
+    return MessageEvent(offset, raw, numbers, message, cut.payload, sender)
 
 
 def _line(event: Any, **named: str) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -15,6 +15,10 @@ MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
 
 Identity = tuple[int, ...]
+
+Cutter = Callable[[bytes, int, int, list[Any]], int]
+"""Called with data, a place in them, the offset of the data in the input, and a list to which it
+adds events. Gives the place of the first byte that it did not take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +61,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     parts: type[PartsT_co]
     messages: tuple[type[MessageT_co], ...]
     encode_only: tuple[type[MessageT_co], ...] = ()
+    cut: Cutter | None = field(default=None, repr=False, compare=False)
+    """Takes whole frames that are plainly in order; None where only the reference cuts them."""
     layout: Layout = field(init=False, repr=False, compare=False)
     _kin: Mapping[Identity, Kin[MessageT_co]] = field(init=False, repr=False, compare=False)
 
@@ -82,10 +88,6 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         """
         kin = self.kin(self.identity(numbers))
         return None if kin is None else kin.read(payload)
-
-    def shown(self, numbers: Mapping[str, int]) -> PartsT_co:
-        """The parts that events show."""
-        return self.parts(**{name: numbers[name] for name in self.layout.shown})
 
     def named(self, name: str) -> type[MessageT_co] | None:
         """The message called `name`, if this endpoint sends one."""

@@ -15,10 +15,10 @@ class Starts(Protocol):
     def context(self) -> int:
         """How many bytes in front of a place tell whether it is a start."""
 
-    def find(self, data: bytearray, low: int, high: int) -> int:
+    def find(self, data: bytes, low: int, high: int) -> int:
         """The first start from `low` on that lies before `high`; -1 if there is none."""
 
-    def undecided(self, data: bytearray, low: int) -> int:
+    def undecided(self, data: bytes, low: int) -> int:
         """The first place from `low` on that more bytes may yet make a start; else the end."""
 
 
@@ -30,11 +30,11 @@ class LiteralStarts:
     def __init__(self, literal: bytes) -> None:
         self._literal = literal
 
-    def find(self, data: bytearray, low: int, high: int) -> int:
+    def find(self, data: bytes, low: int, high: int) -> int:
         """The first place before `high` where the whole literal stands."""
         return data.find(self._literal, low, high - 1 + len(self._literal))
 
-    def undecided(self, data: bytearray, low: int) -> int:
+    def undecided(self, data: bytes, low: int) -> int:
         """Where the data end with the beginning of the literal."""
         for place in range(max(low, len(data) - len(self._literal) + 1), len(data)):
             if self._literal.startswith(data[place:]):
@@ -51,12 +51,12 @@ class SetStarts:
         first, last = (re.escape(bytes((byte,))) for byte in (least, greatest))
         self._pattern = re.compile(b"[" + first + b"-" + last + b"]")
 
-    def find(self, data: bytearray, low: int, high: int) -> int:
+    def find(self, data: bytes, low: int, high: int) -> int:
         """The first such byte."""
         found = self._pattern.search(data, low, high)
         return -1 if found is None else found.start()
 
-    def undecided(self, data: bytearray, low: int) -> int:
+    def undecided(self, data: bytes, low: int) -> int:
         """The end: each byte decides."""
         return len(data)
 
@@ -68,12 +68,12 @@ class EndStarts:
         self._end = end
         self.context = len(end)
 
-    def find(self, data: bytearray, low: int, high: int) -> int:
+    def find(self, data: bytes, low: int, high: int) -> int:
         """The first place behind an end."""
         found = data.find(self._end, max(low - len(self._end), 0), high - 1)
         return -1 if found < 0 else found + len(self._end)
 
-    def undecided(self, data: bytearray, low: int) -> int:
+    def undecided(self, data: bytes, low: int) -> int:
         """The end: what lies in front of a place decides."""
         return len(data)
 
@@ -83,11 +83,11 @@ class EveryStart:
 
     context = 0
 
-    def find(self, data: bytearray, low: int, high: int) -> int:
+    def find(self, data: bytes, low: int, high: int) -> int:
         """The place `low` itself."""
         return low if low < high else -1
 
-    def undecided(self, data: bytearray, low: int) -> int:
+    def undecided(self, data: bytes, low: int) -> int:
         """The end: every byte is a start."""
         return len(data)
 

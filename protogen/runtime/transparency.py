@@ -171,7 +171,16 @@ class Substitution:
 class _CodeBook:
     """A substitution table, prepared for both directions."""
 
-    __slots__ = ("_decoded", "_listed", "_sequences", "_strict", "_table", "codewords", "prefixes")
+    __slots__ = (
+        "_decoded",
+        "_listed",
+        "_sequences",
+        "_steps",
+        "_table",
+        "_unsent",
+        "codewords",
+        "prefixes",
+    )
 
     def __init__(self, table: Mapping[int, bytes]) -> None:
         sequences = table.values()
@@ -182,23 +191,48 @@ class _CodeBook:
         self._decoded = {sequence: _ONE_BYTE[byte] for byte, sequence in table.items()}
         self._listed = _any_of(map(_ONE_BYTE.__getitem__, table))
         self._sequences = _any_of(sequences)
-        self._strict = _any_of((*sequences, *map(_ONE_BYTE.__getitem__, special)))
+        self._steps = _steps(self._table)
+        self._unsent = bytes(byte for byte in special if byte not in table)
         self.codewords = literals | self._decoded
         self.prefixes = {seq[:length] for seq in sequences for length in range(1, len(seq))}
 
     def encode(self, data: bytes) -> bytes:
-        return self._listed.sub(lambda found: self._table[found[0]], data)
+        if self._steps is None:
+            return self._listed.sub(lambda found: self._table[found[0]], data)
+        for byte, sequence in self._steps:
+            data = data.replace(byte, sequence)
+        return data
 
     def restore(self, region: bytes) -> bytes:
         """Return the region with every sequence replaced by its byte, all else as it is."""
         return self._sequences.sub(lambda found: self._decoded[found[0]], region)
 
     def restore_strictly(self, region: bytes) -> bytes | None:
-        """Return the region with every sequence replaced; None where a special byte begins none."""
-        decoded = self._decoded
-        if all(found in decoded for found in self._strict.findall(region)):
-            return self.restore(region)
-        return None
+        """Return the region with every sequence replaced; None where it is not an encoder's."""
+        data = region
+        if self._steps is None:
+            data = self.restore(region)
+        else:
+            for byte, sequence in reversed(self._steps):
+                data = data.replace(sequence, byte)
+        if self._unsent and len(data.translate(None, self._unsent)) < len(data):
+            return None
+        return data if self.encode(data) == region else None
+
+
+def _steps(table: Mapping[bytes, bytes]) -> tuple[tuple[bytes, bytes], ...] | None:
+    """The table in an order in which its bytes can be replaced one after the other.
+
+    None where there is none: what is put in for a byte must hold no byte that comes later.
+    """
+    left, steps = dict(table), []
+    while left:
+        free = (b for b in left if not any(other != b and other in left[b] for other in left))
+        byte = next(free, None)
+        if byte is None:
+            return None
+        steps.append((byte, left.pop(byte)))
+    return tuple(steps)
 
 
 def _any_of(sequences: Iterable[bytes]) -> re.Pattern[bytes]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from types import ModuleType
 from typing import Any
+
+import pytest
 
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.messages import Message
@@ -42,11 +45,14 @@ def encode(
     An end that nothing protects may stand in the payload: then a decoder would cut the frame there.
     """
     try:
-        frame: bytes = module.PROTOCOL.encode(made, sender.name, **parts)
+        frame: bytes = module.encode(made, sender.name, engine="construct", **parts)
     except EncodeError as error:
+        with pytest.raises(EncodeError, match=re.escape(str(error))):
+            module.encode(made, sender.name, **parts)
         too_large = len(made.to_payload()) > sender.framing.payload.greatest
         assert too_large or (sender.framing.cut_ambiguous and "decoder" in str(error)), error
         return None
+    assert module.encode(made, sender.name, **parts) == frame
     shown = all_parts(sender.frame, message, parts)
     assert frame == frame_bytes(sender.frame, message, made.to_payload(), shown)
     return frame
@@ -94,9 +100,11 @@ def check_decoded(
     assert event.payload == made.to_payload()
 
 
-def events_of(module: ModuleType, sender: Sender, data: Iterable[bytes]) -> list[Any]:
+def events_of(
+    module: ModuleType, sender: Sender, data: Iterable[bytes], engine: str = "fast"
+) -> list[Any]:
     """The events of portions of a stream, with its end."""
-    decoder = module.Decoder(sender.name)
+    decoder = module.Decoder(sender.name, engine)
     events: list[Any] = []
     for portion in data:
         events += decoder.feed(portion)

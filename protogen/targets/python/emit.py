@@ -9,6 +9,7 @@ from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
 from protogen.targets.printing import environment
+from protogen.targets.python.fast.view import fast_view
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring
 
@@ -62,6 +63,7 @@ def source(protocol: Protocol, runtime: str = RUNTIME) -> str:
         .get_template("module.py.j2")
         .render(
             module=module,
+            fast=fast_view(protocol, module.arguments),
             runtime=runtime,
             encode_doc=docstring(_encode_doc(module), 4),
             encoder_doc=docstring(_encoder_doc(module), 8),

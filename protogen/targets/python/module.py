@@ -10,12 +10,14 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
+from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, method, remark, union, wrapped
 
 _INDENT = 4
+_ENGINE = 'engine: _rt.Engine = "fast"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +44,8 @@ class SenderView:
     frame_text: str
     """Its value; empty where another sender has the same frame."""
     spec_text: str
+    decode_head: str
+    """Of the overload of `decode`."""
     messages: tuple[RecordClass, ...]
     """Messages that no sender before it sends."""
 
@@ -70,6 +74,9 @@ class Module:
     counts: bool
     registry: str
     decoder_heads: tuple[str, ...]
+    decode_stub: str
+    """Of the overload of `decode` for any sender."""
+    decode_head: str
 
 
 def view(protocol: Protocol) -> Module:
@@ -102,6 +109,8 @@ def view(protocol: Protocol) -> Module:
         counts=any(_counters(sender) for sender in protocol.senders),
         registry=_registry(protocol),
         decoder_heads=_decoder_heads(senders, any_message, any_parts),
+        decode_stub=_decode_head("Sender", any_message, after=5),
+        decode_head=_decode_head("Sender", any_message, after=1),
     )
 
 
@@ -201,6 +210,9 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
                 frame=frame,
                 frame_text="" if known else frame_text,
                 spec_text=_sender_spec(sender, frame, parts[sender.name].name, union_name),
+                decode_head=_decode_head(
+                    f"_typing.Literal[{text(sender.name)}]", union_name, after=5
+                ),
                 messages=tuple(
                     classes.message_class(message, _identity_words(sender, message))
                     for message in new
@@ -220,9 +232,17 @@ def _decoder_heads(senders: tuple[SenderView, ...], message: str, parts: str) ->
     )
 
 
+def _decode_head(name: str, message: str, after: int) -> str:
+    parameters = f"frame: bytes, sender: {name}, {_ENGINE}"
+    return method("def decode(", parameters, f") -> {message}", 0, after)
+
+
 def _decoder_head(messages: str, parts: str, name: str, end: str) -> str:
     return method(
-        "def __init__(", f"self: Decoder[{messages}, {parts}], sender: {name}", end, _INDENT
+        "def __init__(",
+        f"self: Decoder[{messages}, {parts}], sender: {name}, {_ENGINE}",
+        end,
+        _INDENT,
     )
 
 
@@ -276,6 +296,7 @@ def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
         parts,
         messages=tuple_of(shown),
         encode_only=tuple_of(encode_only) if encode_only else None,
+        cut=f"_cut_{sender.name}" if FastFrame(sender).can_cut else None,
     )
     return name + wrapped(expression, len(name), 0, after=0)
 

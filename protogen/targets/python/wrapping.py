@@ -83,11 +83,18 @@ def union(start: str, members: str, indent: int) -> str:
     return "\n".join([f"{start}(", *lines, f"{margin})"])
 
 
-def method(start: str, parameters: str, end: str, indent: int) -> str:
-    """The head of a function; its parameters have a line of their own where they do not fit."""
-    if indent + len(start) + len(parameters) + len(end) <= WIDTH:
+def method(start: str, parameters: str, end: str, indent: int, after: int = 0) -> str:
+    """The head of a function; its parameters have lines of their own where they do not fit.
+
+    `after` characters follow it.
+    """
+    if indent + len(start) + len(parameters) + len(end) + after <= WIDTH:
         return f"{start}{parameters}{end}"
     margin = " " * indent
+    if indent + _INDENT + len(parameters) > WIDTH:
+        inner = " " * (indent + _INDENT)
+        lines = [f"{inner}{parameter}," for parameter in _items(parameters)]
+        return "\n".join([start, *lines, f"{margin}{end}"])
     return f"{start}\n{margin}{' ' * _INDENT}{parameters}\n{margin}{end}"
 
 

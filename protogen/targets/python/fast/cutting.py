@@ -1,0 +1,410 @@
+"""Functions that cut frames: bytes on the wire become events, as long as they are in order."""
+
+from __future__ import annotations
+
+from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart, NumberPart
+from protogen.model.framing import StartLiteral, StartSet
+from protogen.model.types import Integer
+from protogen.model.wire import fixed_size
+from protogen.targets.python import frames as tables
+from protogen.targets.python.fast.frames import FastFrame, Kin
+from protogen.targets.python.fast.lines import Constants, Lines
+from protogen.targets.python.literals import octets_in_class as literal
+from protogen.targets.python.literals import tuple_of
+
+_SHORT = 256
+"""So many bytes can be summed by Adler-32 without its modulus showing."""
+
+
+def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
+    """The body of `_cut_SENDER(data, at, base, events)`.
+
+    It takes whole frames from `at` on, appends their events, and gives the place of the first byte
+    that it did not take. `base` is the offset of the data in the input.
+    """
+    return _Cutter(frame, Lines(constants)).body()
+
+
+def kinds(frame: FastFrame) -> str:
+    """What the cutter looks up an identity in: readers, or with them the payload's size."""
+    entries = [_kind(frame, kin) for kin in frame.kins]
+    lines = [
+        f"    {identity_key(kin.identity)}: {entry}," for kin, entry in entries_of(frame, entries)
+    ]
+    return "\n".join(["{", *lines, "}"])
+
+
+def entries_of(frame: FastFrame, entries: list[str | None]) -> list[tuple[Kin, str]]:
+    """The identities that have an entry."""
+    pairs = zip(frame.kins, entries, strict=True)
+    return [(kin, entry) for kin, entry in pairs if entry is not None]
+
+
+def _kind(frame: FastFrame, kin: Kin) -> str | None:
+    if len(kin.messages) > 1:
+        reader = f"_read_{frame.sender.name}_{'_'.join(map(str, kin.identity))}"
+    else:
+        reader = f"_read_{kin.messages[0].name}"
+    if frame.length is not None:
+        return reader
+    return f"({-1 if kin.fixed is None else kin.fixed}, {reader})"
+
+
+def identity_key(identity: tuple[int, ...]) -> str:
+    """An identity as a key: a number, or several."""
+    if len(identity) == 1:
+        return f"0x{identity[0]:02X}"
+    return tuple_of(f"0x{value:02X}" for value in identity)
+
+
+class _Cutter:
+    """Writes the body of one function."""
+
+    def __init__(self, frame: FastFrame, lines: Lines) -> None:
+        self.frame = frame
+        self.lines = lines
+        self.name = frame.sender.name
+
+    def body(self) -> tuple[str, ...]:
+        if self.frame.ended_by in ("length", "kind"):
+            self.lines.add("size = len(data)")
+        with self.lines.block("try:"), self.lines.block("while True:"):
+            self._locate()
+            self._content()
+            self._payload()
+            self._head()
+            self._checksums()
+            self._event()
+        with self.lines.block("except _fast.ANYTHING:  # The reference looks at what is here."):
+            self.lines.add("return at")
+        return self.lines.text
+
+    def _stop_if(self, condition: str) -> None:
+        self.lines.add(f"if {condition}:")
+        self.lines.add("    return at")
+
+    # --- where the frame ends ---------------------------------------------------------------------
+
+    def _locate(self) -> None:
+        """Set `raw`, the frame's bytes, and `end`, the place behind them."""
+        self._start()
+        match self.frame.ended_by:
+            case "start":
+                self._until_start()
+            case "end":
+                self._until_end()
+            case "length":
+                self._by_length()
+            case "kind":
+                self._by_kind()
+
+    def _start(self) -> None:
+        start = self.frame.start
+        if isinstance(start, StartSet) and self.frame.ended_by != "kind":
+            self._stop_if(f"not 0x{start.least:02X} <= data[at] <= 0x{start.greatest:02X}")
+        elif isinstance(start, StartLiteral):
+            begin = literal(start.bytes)
+            if self.frame.shares:
+                self.lines.add(f"begun = at + {len(start.bytes)} * data.startswith({begin}, at)")
+            elif len(start.bytes) == 1:
+                self._stop_if(f"data[at] != 0x{start.bytes[0]:02X}")
+            else:
+                self._stop_if(f"not data.startswith({begin}, at)")
+
+    def _until_start(self) -> None:
+        if isinstance(self.frame.start, StartLiteral):
+            self.lines.add(f"end = data.find({literal(self.frame.start.bytes)}, at + 1)")
+            self._stop_if("end < 0")
+        else:
+            self.lines.add(f"found = {self._starts()}(data, at + 1)")
+            self._stop_if("found is None")
+            self.lines.add("end = found.start()")
+        self._raw()
+
+    def _starts(self) -> str:
+        start = self.frame.start
+        assert isinstance(start, StartSet)
+        pattern = f'rb"[\\x{start.least:02x}-\\x{start.greatest:02x}]"'
+        return self.lines.constants.named("STARTS", f"_re.compile({pattern}).search")
+
+    def _until_end(self) -> None:
+        frame = self.frame
+        at = "begun" if frame.shares else f"at + {len(frame.start_bytes)}"
+        self.lines.add(f"end = data.find({literal(frame.end)}, {at.removesuffix(' + 0')})")
+        self._stop_if("end < 0")
+        self.lines.add(f"end += {len(frame.end)}")
+        self._raw()
+        self._no_start_inside()
+
+    def _raw(self) -> None:
+        self.lines.add("raw = data[at:end]")
+        size = f"len(raw) + {len(self.frame.start_bytes)}" if self.frame.shares else "len(raw)"
+        open_kinds = any(kin.fixed is None for kin in self.frame.kins)
+        if self.frame.ended_by != "kind" or open_kinds:
+            self._stop_if(f"{size} > {self.frame.framing.greatest}")
+
+    def _no_start_inside(self) -> None:
+        """A start that can't occur inside of a frame ends it where it stands."""
+        start = self.frame.start
+        if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
+            self._stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
+        elif isinstance(start, StartSet) and start.protected and not self._is_seen_by_bits:
+            self._stop_if(f"{self._starts()}(raw, 1)")
+
+    @property
+    def _is_seen_by_bits(self) -> bool:
+        """Whether the check for 7-bit bytes finds any start inside of a frame."""
+        frame, start = self.frame, self.frame.start
+        assert isinstance(start, StartSet)
+        alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
+        outside = all(not start.least <= byte <= start.greatest for byte in frame.end)
+        return frame.framing.seven_bit and start.least >= 0x80 and alone and outside
+
+    def _by_length(self) -> None:
+        frame, length = self.frame, self.frame.length
+        assert length is not None
+        around = frame.head_size + frame.tail_size + len(frame.end)
+        self.lines.add(f"count = {self._number('data', length, 'at + ')} - {self._counted(length)}")
+        if frame.optional:
+            with self.lines.block(f"if count == {-self._optional_size}:"):
+                self.lines.add(f"end = at + {around - self._optional_size}")
+            with self.lines.block("elif count > 0:"):
+                self.lines.add(f"end = at + {around} + count")
+            with self.lines.block("else:"):
+                self.lines.add("return at")
+        else:
+            self._stop_if("count < 0")
+            self.lines.add(f"end = at + {around} + count")
+        self._sized()
+
+    @property
+    def _optional_size(self) -> int:
+        return sum(fixed_size(part) for part in self.frame.checksums if part.when_payload)
+
+    def _by_kind(self) -> None:
+        frame = self.frame
+        around = frame.head_size + frame.tail_size + len(frame.end)
+        key = self._identity("data", "at + ")
+        self.lines.add(f"payload_size, read = _{self.name.upper()}_KINDS[{key}]")
+        open_kinds = any(kin.fixed is None for kin in frame.kins)
+        if open_kinds and frame.end:
+            with self.lines.block("if payload_size < 0:"):
+                self.lines.add(f"end = data.find({literal(frame.end)}, at + {frame.head_size})")
+                self._stop_if("end < 0")
+                self.lines.add(f"end += {len(frame.end)}")
+            head = "elif payload_size:" if frame.optional else "else:"
+            with self.lines.block(head):
+                self.lines.add(f"end = at + {around} + payload_size")
+            if frame.optional:
+                with self.lines.block("else:"):
+                    self.lines.add(f"end = at + {around - self._optional_size}")
+        else:
+            if open_kinds:
+                self._stop_if("payload_size < 0")
+            less = f" - {self._optional_size} * (not payload_size)" if frame.optional else ""
+            self.lines.add(f"end = at + {around} + payload_size{less}")
+        self._sized()
+
+    def _sized(self) -> None:
+        """Take a frame of a known size."""
+        self._stop_if("end > size")
+        self._raw()
+        if self.frame.end:
+            self._stop_if(f"not raw.endswith({literal(self.frame.end)})")
+        self._no_start_inside()
+
+    # --- what is in it ----------------------------------------------------------------------------
+
+    def _content(self) -> None:
+        """Set `content`: all parts before stuffing, but not the end, nor literals in front."""
+        frame = self.frame
+        first = "begun - at" if frame.shares else str(frame.before or "")
+        last = str(-(len(frame.end) + frame.behind) or "")
+        if not frame.stuffed:
+            whole = first or last
+            self.lines.add(f"content = raw[{first}:{last}]" if whole else "content = raw")
+            return
+        self.lines.add(f"content = raw[{first}:{last}]")
+        self._unstuffed()
+        pieces = ["content"]
+        if frame.before and not frame.skipped:
+            pieces.insert(0, f"raw[:{frame.before}]")
+        if frame.behind:
+            pieces.append(f"raw[{last}:{-len(frame.end) or ''}]")
+        if len(pieces) > 1:
+            self.lines.add(f"content = {' + '.join(pieces)}")
+
+    def _unstuffed(self) -> None:
+        transparency = tables.transparency(self.frame.sender.frame.transparency)
+        decode = f"{self.lines.constants.named('STUFFING', transparency)}.decode"
+        specials = self.frame.specials
+        if specials is None:
+            self._strictly()
+            self.lines.add(f"content = {decode}(content)")
+            return
+        found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
+        with self.lines.block(f"if {found}:"):
+            if self.frame.lenient:
+                self.lines.add("return at")
+            else:
+                self.lines.add(f"content = {decode}(content)")
+
+    def _strictly(self) -> None:
+        """A lenient receiver may end a region elsewhere; only the reference knows."""
+        if self.frame.lenient:
+            self.lines.add("return at")
+
+    def _payload(self) -> None:
+        """Set `payload`, and check that there is room for it."""
+        frame = self.frame
+        around = frame.head_size - frame.skipped + frame.tail_size
+        head = frame.head_size - frame.skipped
+        sliced = f"payload = {frame.slice_of('content', head, -frame.tail_size)}"
+        if frame.optional:
+            with self.lines.block(f"if len(content) <= {around}:"):
+                self._stop_if(f"len(content) != {around - self._optional_size}")
+                self.lines.add('payload = b""')
+            with self.lines.block("else:"):
+                self.lines.add(sliced)
+        else:
+            if frame.ended_by in ("end", "start"):
+                self._stop_if(f"len(content) < {max(around, 1)}")
+            self.lines.add(sliced)
+        if frame.length is not None:
+            self._stop_if(f"len(payload) > {frame.framing.payload.greatest}")
+        if frame.framing.seven_bit:
+            self._stop_if("not payload.isascii()")
+
+    def _head(self) -> None:
+        for part in self.frame.head:
+            if isinstance(part, LiteralPart) and not self._is_start(part):
+                first, source = self.frame.offset(part), "content"
+                if first < 0:
+                    first, source = first + self.frame.skipped, "raw"
+                self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
+        if self.frame.length is not None:
+            self._length(self.frame.length)
+
+    def _is_start(self, part: LiteralPart) -> bool:
+        """Whether finding the start has checked the literal."""
+        behind = self.frame.offset(part) + self.frame.skipped + len(part.bytes)
+        return behind <= len(self.frame.start_bytes)
+
+    @staticmethod
+    def _has_padding(type_: Integer) -> bool:
+        return type_.bits % 8 != 0 or type_.byte_bits == 7
+
+    def _length(self, part: LengthPart) -> None:
+        counted = self._counted(part)
+        value = f"len(payload) + {counted}" if counted else "len(payload)"
+        if self.frame.optional:
+            value = f"({value} - {self._optional_size} * (not payload))"
+        number = self._number("content", part)
+        self._stop_if(f"{number} != {value}")
+        greatest = counted + self.frame.framing.payload.greatest
+        if part.least > counted - self._optional_size or part.greatest < greatest:
+            self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
+
+    def _counted(self, part: LengthPart) -> int:
+        """What the length counts besides the payload."""
+        return sum(
+            fixed_size(other)
+            for other in self.frame.sender.frame.parts
+            if other.name in part.counts
+        )
+
+    # --- numbers ----------------------------------------------------------------------------------
+
+    def _number(self, source: str, part: NumberPart, base: str = "") -> str:
+        """The value of a part of the head."""
+        # In the data, counted from the frame's start, nothing is skipped.
+        first = self.frame.offset(part) + (self.frame.skipped if base else 0)
+        place = f"{base}{first}" if first or not base else base.removesuffix(" + ")
+        if part.type.size == 1 and not self._has_padding(part.type):
+            return f"{source}[{place}]"
+        behind = f"{base}{first + part.type.size}"
+        piece = f"{source}[{place} : {behind}]"
+        if self._has_padding(part.type):
+            return f"{self._codec(part.type)}.decode({piece})"
+        return f'int.from_bytes({piece}, "{part.type.byte_order}")'
+
+    def _codec(self, type_: Integer) -> str:
+        seven = type_.byte_bits == 7
+        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
+        return self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
+
+    def _identity(self, source: str, base: str = "") -> str:
+        return ", ".join(self._number(source, part, base) for part in self.frame.identity) or "()"
+
+    # --- checksums --------------------------------------------------------------------------------
+
+    def _checksums(self) -> None:
+        if not self.frame.checksums:
+            return
+        if self.frame.optional:
+            with self.lines.block("if payload:"):
+                self._compare()
+        else:
+            self._compare()
+
+    def _compare(self) -> None:
+        for part in self.frame.checksums:
+            due = checksum(
+                part, self.frame.covered(part, "content"), self.frame, self.lines.constants
+            )
+            first = self.frame.offset(part)
+            if part.type.size == 1 and not self._has_padding(part.type):
+                self._stop_if(f"content[{first}] != {due}")
+                continue
+            last = first + part.type.size
+            found = self.frame.slice_of("content", first, last)
+            self._stop_if(f"{found} != {self._codec(part.type)}.encode({due})")
+
+    # --- the event --------------------------------------------------------------------------------
+
+    def _event(self) -> None:
+        frame = self.frame
+        numbers = tuple_of(self._number("content", part) for part in frame.shown)
+        self.lines.add(f"numbers = {numbers}")
+        if frame.ended_by != "kind":
+            self._look_up()
+        self.lines.add("event = _new(_rt.MessageEvent)")
+        self.lines.add("event.message = read(payload)")
+        self.lines.add("event.offset = base + at")
+        for name in ("raw", "numbers", "payload"):
+            self.lines.add(f"event.{name} = {name}")
+        self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
+        self.lines.add("events.append(event)")
+        self.lines.add("at = end")
+
+    def _look_up(self) -> None:
+        frame = self.frame
+        kinds = f"_{self.name.upper()}_KINDS"
+        key = self._identity("content")
+        if frame.length is not None:
+            self.lines.add(f"read = {kinds}.get({self._key(key)})")
+            with self.lines.block("if read is None:"):
+                self._unknown()
+            return
+        self.lines.add(f"payload_size, read = {kinds}[{key}]")
+        self._stop_if("0 <= payload_size != len(payload)")
+
+    def _key(self, key: str) -> str:
+        return f"({key})" if len(self.frame.identity) != 1 else key
+
+    def _unknown(self) -> None:
+        spec = f"{self.name.upper()}_SENDER"
+        self.lines.add(f"events.append(_fast.unknown({spec}, base + at, raw, numbers, payload))")
+        self.lines.add("at = end")
+        self.lines.add("continue")
+
+
+def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constants) -> str:
+    """A checksum of `data` as an expression."""
+    spec = part.algorithm
+    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
+    if spec.kind == "sum" and spec.init == 0 and greatest < _SHORT:
+        total = f"_adler32({data}, 0)"
+        return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
+    compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.compute")
+    return f"{compute}({data})"

@@ -1,0 +1,263 @@
+"""A sender's frame as the fast engine sees it: where its parts lie, and what finds its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    CounterPart,
+    Escape,
+    IdentityPart,
+    LiteralPart,
+    Part,
+    PayloadPart,
+    Substitution,
+    ValuePart,
+)
+from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
+from protogen.model.messages import Message
+from protogen.model.protocol import Sender
+from protogen.model.wire import fixed_size
+from protogen.targets.python.literals import octets_in_class
+
+EndedBy = Literal["end", "start", "length", "kind"]
+"""What tells where a frame ends: an end that is looked for, the next start, a length, or the
+identity."""
+
+_MOST_SPECIALS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Kin:
+    """The messages that a receiver may find behind one identity."""
+
+    identity: tuple[int, ...]
+    messages: tuple[Message, ...]
+
+    @property
+    def fixed(self) -> int | None:
+        """The payload's size, where no message has another one."""
+        sizes = {message.sizes.fixed for message in self.messages}
+        return sizes.pop() if len(sizes) == 1 else None
+
+
+class FastFrame:
+    """Everything about a sender's frames that the functions of the fast engine are printed from."""
+
+    def __init__(self, sender: Sender, *, skips_start: bool = False) -> None:
+        """With `skips_start` the content begins behind literals in front of what is stuffed."""
+        self.sender = sender
+        self.framing = sender.framing
+        frame = sender.frame
+        self.start = self.framing.start
+        self.end = b"" if self.framing.end is None else self.framing.end.bytes
+        self.parts = _without_end(frame.parts, len(self.end))
+        index = next(i for i, part in enumerate(self.parts) if isinstance(part, PayloadPart))
+        self.head, self.tail = self.parts[:index], self.parts[index + 1 :]
+        self.head_size = sum(map(fixed_size, self.head))
+        self.tail_size = sum(map(fixed_size, self.tail))
+        self.length = frame.length
+        self.checksums = frame.checksums
+        self.identity = frame.identity
+        self.shown = tuple(
+            part for part in self.parts if isinstance(part, IdentityPart | CounterPart | ValuePart)
+        )
+        self.kins = _kins(sender)
+        self.before, self.stuffed, self.behind = self._regions()
+        self.skipped = self._literals_in_front if skips_start else 0
+        """Bytes at the start of a frame that are not in the content."""
+
+    @property
+    def _literals_in_front(self) -> int:
+        """The bytes in front of what is stuffed, if they are all literals; else 0."""
+        transparency = self.sender.frame.transparency
+        if transparency is None:
+            return len(self.start_bytes) if self.shares else 0
+        names = [part.name for part in self.parts]
+        front = self.parts[: names.index(transparency.first)]
+        return self.before if all(isinstance(part, LiteralPart) for part in front) else 0
+
+    def _regions(self) -> tuple[int, bool, int]:
+        """Bytes in front of what is stuffed, whether anything is, and bytes behind it."""
+        transparency = self.sender.frame.transparency
+        if transparency is None:
+            return 0, False, 0
+        names = [part.name for part in self.parts]
+        first = names.index(transparency.first)
+        last = names.index(transparency.last) if transparency.last in names else len(names) - 1
+        before = sum(map(fixed_size, self.parts[:first]))
+        return before, True, sum(map(fixed_size, self.parts[last + 1 :]))
+
+    # --- what can be cut --------------------------------------------------------------------------
+
+    @property
+    def ended_by(self) -> EndedBy | None:
+        """What tells where a frame ends; None where only the reference can."""
+        protected_end = self.framing.end is not None and self.framing.end.protected
+        protected_start = isinstance(self.start, StartLiteral | StartSet) and self.start.protected
+        if self.stuffed:
+            if protected_end:
+                return "end"
+            return "start" if protected_start and not self.end else None
+        if protected_end:
+            return "end"
+        if self.length is not None:
+            return "length"
+        return "kind" if self.identity else None
+
+    @property
+    def can_cut(self) -> bool:
+        """Whether there is a function that cuts frames; else the reference does it alone."""
+        return (
+            self.ended_by is not None
+            and not isinstance(self.start, Anywhere)
+            and all(part in self.head for part in self.identity)
+            and (self.length is None or self.length in self.head)
+            and all(isinstance(part, ChecksumPart) for part in self.tail)
+            and not any(part.over_wire for part in self.checksums if self.stuffed)
+            and len({part.when_payload for part in self.checksums}) < 2
+            and not (self.optional and any(part in self.head for part in self.checksums))
+            and self._region_is_plain
+            and (not self.shares or self._literals_in_front == len(self.start_bytes))
+        )
+
+    @property
+    def _region_is_plain(self) -> bool:
+        """Whether the payload is in what is stuffed, if anything is, and the start is not."""
+        if not self.stuffed:
+            return True
+        starts_in_front = isinstance(self.start, AfterEnd) or self.before > 0
+        return starts_in_front and self.before <= self.head_size and self.behind <= self.tail_size
+
+    @property
+    def can_frame(self) -> bool:
+        """Whether there is a function that makes frames; else the reference does it alone."""
+        return (
+            (self.can_cut or not self.framing.cut_ambiguous)
+            and not any(part.over_wire for part in self.checksums)
+            and self.tail == self.checksums
+            and self._region_is_plain
+        )
+
+    @property
+    def optional(self) -> bool:
+        """Whether the checksums are absent where the payload is empty."""
+        return any(part.when_payload for part in self.checksums)
+
+    @property
+    def shares(self) -> bool:
+        """Whether the end of a frame may be the start of the next as well."""
+        return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
+
+    @property
+    def start_bytes(self) -> bytes:
+        """The start literal; empty where there is none."""
+        return self.start.bytes if isinstance(self.start, StartLiteral) else b""
+
+    # --- stuffing ---------------------------------------------------------------------------------
+
+    @property
+    def specials(self) -> tuple[int, ...] | None:
+        """Bytes without which a stuffed region stands for itself.
+
+        None where there are too many, or where every region is encoded.
+        """
+        transparency = self.sender.frame.transparency
+        match None if transparency is None else transparency.encoding:
+            case Substitution(table=table):
+                found = {byte for byte, _ in table} | {code[0] for _, code in table}
+            case Escape(byte=byte, of=of):
+                found = {byte, *of}
+            case Base16() | Cobs() | None:
+                return None
+        if self.ended_by == "start" and len(self.start_bytes) == 1:
+            found -= set(self.start_bytes)
+        return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
+
+    @property
+    def lenient(self) -> bool:
+        """Whether a receiver takes escapes that an encoder would not make."""
+        transparency = self.sender.frame.transparency
+        return transparency is not None and transparency.lenient
+
+    # --- where parts lie --------------------------------------------------------------------------
+
+    def offset(self, part: Part) -> int:
+        """Where a part of the head begins in the content, and one of the tail, from its end."""
+        if part in self.head:
+            return sum(map(fixed_size, self.head[: self.head.index(part)])) - self.skipped
+        return -sum(map(fixed_size, self.tail[self.tail.index(part) :]))
+
+    def slice_of(self, content: str, first: int, last: int) -> str:
+        """Bytes of the content; a `last` of 0 is its end, negative numbers count from there."""
+        if first == 0 and last == 0:
+            return content
+        return f"{content}[{first or ''}:{last or ''}]"
+
+    def covered(self, part: ChecksumPart, content: str, missing: int = 0) -> str:
+        """What a checksum covers, as an expression.
+
+        The content's last `missing` bytes are not there yet.
+        """
+        runs: list[tuple[int, int] | bytes] = []
+        for name in part.covers:
+            run = self._run(name)
+            before = runs[-1] if runs else None
+            if isinstance(run, tuple) and isinstance(before, tuple) and before[1] == run[0] != 0:
+                runs[-1] = (before[0], run[1])
+            else:
+                runs.append(run)
+        pieces = [
+            octets_in_class(run)
+            if isinstance(run, bytes)
+            else self.slice_of(content, *(_moved(bound, missing) for bound in run))
+            for run in runs
+        ]
+        return " + ".join(pieces) or 'b""'
+
+    def _has(self, part: LiteralPart) -> bool:
+        """Whether a literal is in the content."""
+        return part in self.head and self.offset(part) >= 0
+
+    def _run(self, name: str) -> tuple[int, int] | bytes:
+        """Where a part begins and ends in the content; the bytes of one that is not in it."""
+        part = self.sender.frame.part(name)
+        if isinstance(part, LiteralPart) and not self._has(part):
+            return part.bytes
+        if isinstance(part, PayloadPart):
+            return self.head_size - self.skipped, -self.tail_size
+        first = self.offset(part)
+        return first, first + fixed_size(part)
+
+
+def _moved(bound: int, missing: int) -> int:
+    """A place counted from the content's end, where the last `missing` bytes are not there."""
+    return bound + missing if bound < 0 else bound
+
+
+def _without_end(parts: tuple[Part, ...], left: int) -> tuple[Part, ...]:
+    """The parts without the literals that make up the end."""
+    count = len(parts)
+    while left > 0 and isinstance(part := parts[count - 1], LiteralPart):
+        left -= len(part.bytes)
+        count -= 1
+    return parts[:count]
+
+
+def _kins(sender: Sender) -> tuple[Kin, ...]:
+    hidden = {
+        name
+        for overload in sender.overloads
+        if overload.yields is not None
+        for name in overload.messages
+        if name != overload.yields
+    }
+    found: dict[tuple[int, ...], list[Message]] = {}
+    for message in sender.messages:
+        if message.name not in hidden:
+            found.setdefault(message.identity, []).append(message)
+    return tuple(Kin(identity, tuple(messages)) for identity, messages in found.items())

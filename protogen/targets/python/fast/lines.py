@@ -1,0 +1,79 @@
+"""Lines of a printed function, and the constants that it uses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from protogen.targets.python.wrapping import wrapped
+
+_INDENT = "    "
+
+
+class Constants:
+    """The module's constants of the fast engine: each expression gets one name."""
+
+    def __init__(self) -> None:
+        self._names: dict[str, str] = {}
+
+    def named(self, kind: str, expression: str) -> str:
+        """The name of an expression's value; `kind` begins it."""
+        if expression not in self._names:
+            count = sum(name.startswith(f"_{kind}_") for name in self._names.values())
+            self._names[expression] = f"_{kind}_{count}"
+        return self._names[expression]
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """One assignment for each."""
+        return tuple(
+            f"{name} = {wrapped(expression, len(name) + 3, 0, after=0)}"
+            for expression, name in self._names.items()
+        )
+
+
+class Lines:
+    """The body of a function, written from top to bottom."""
+
+    def __init__(self, constants: Constants) -> None:
+        self.constants = constants
+        self._lines: list[str] = []
+        self._depth = 0
+        self._locals = 0
+
+    def add(self, line: str) -> None:
+        """One statement."""
+        self._lines.append(_INDENT * self._depth + self._broken(line))
+
+    def _broken(self, line: str) -> str:
+        """A statement whose expression is broken at commas where it does not fit."""
+        for word in ("return ", " = "):
+            start, found, expression = line.partition(word)
+            if found:
+                indent = len(_INDENT) * (self._depth + 1)
+                column = indent + len(start + word)
+                return start + word + wrapped(expression, column, indent, after=0)
+        return line
+
+    def refuse_if(self, condition: str) -> None:
+        """Leave it to the reference where the condition holds."""
+        self.add(f"if {condition}:")
+        self.add(f"{_INDENT}raise _fast.Unclear")
+
+    def local(self, kind: str = "v") -> str:
+        """A fresh local name."""
+        self._locals += 1
+        return f"{kind}{self._locals}"
+
+    @contextmanager
+    def block(self, head: str) -> Iterator[None]:
+        """A compound statement."""
+        self.add(head)
+        self._depth += 1
+        yield
+        self._depth -= 1
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """All lines so far."""
+        return tuple(self._lines)

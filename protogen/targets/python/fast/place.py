@@ -1,0 +1,24 @@
+"""Where a printed function stands in the bytes that it reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(slots=True)
+class Place:
+    """A place in `data`: a variable, where the bytes before vary in size, and a number."""
+
+    variable: str = ""
+    offset: int = 0
+
+    @property
+    def text(self) -> str:
+        """The place as an expression."""
+        if not self.variable:
+            return str(self.offset)
+        return f"{self.variable} + {self.offset}" if self.offset else self.variable
+
+    def behind(self, size: int) -> str:
+        """The place that lies `size` bytes further, as an expression."""
+        return Place(self.variable, self.offset + size).text

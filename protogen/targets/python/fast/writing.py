@@ -1,0 +1,331 @@
+"""Functions that write records: a message becomes the bytes of its payload."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from protogen.model.fields import Field
+from protogen.model.messages import Message
+from protogen.model.types import (
+    Array,
+    Counted,
+    Extent,
+    Fill,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
+from protogen.targets.python.fast.layout import (
+    array_code,
+    code_of,
+    is_named,
+    is_native,
+    is_pair,
+    order_of,
+    outer_names,
+    outside,
+)
+from protogen.targets.python.fast.lines import Constants, Lines
+from protogen.targets.python.formats import constant, is_empty
+from protogen.targets.python.literals import number, tuple_of
+from protogen.targets.python.spelling import class_name
+
+_GREATEST_FLOAT32 = "3.4028234663852886e38"
+
+
+def message_writer(message: Message, constants: Constants) -> tuple[str, ...]:
+    """The body of `_write_NAME(item)`, which gives the payload."""
+    writer = _Writer(Lines(constants))
+    payload = writer.record("item", message.fields)
+    if message.sizes.fixed is None:
+        writer.lines.add(f"payload = {payload}")
+        writer.lines.refuse_if(outside(message.sizes, "payload"))
+        payload = "payload"
+    writer.lines.add(f"return {payload}")
+    return writer.lines.text
+
+
+def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
+    """The body of `_write_NAME(item, OUTER...)`; OUTER are raw values of fields in front."""
+    writer = _Writer(Lines(constants))
+    writer.raw = {name: f"{name}_" for name in outer_names(struct)}
+    writer.lines.refuse_if(f"type(item) is not {class_name(struct.name)}")
+    writer.lines.add(f"return {writer.record('item', struct.fields)}")
+    return writer.lines.text
+
+
+_TYPES_IN_LINE = 6
+
+
+def batched(names: list[str]) -> list[list[str]]:
+    """As many names as a line has room for."""
+    return [names[i : i + _TYPES_IN_LINE] for i in range(0, len(names), _TYPES_IN_LINE)]
+
+
+@dataclass(slots=True)
+class _Bytes:
+    """Bytes that are being put together: what stands, and values that one `struct` is to write."""
+
+    pieces: list[str] = field(default_factory=list)
+    order: str = ""
+    codes: str = ""
+    values: list[str] = field(default_factory=list)
+    integers: list[str] = field(default_factory=list)
+    """Variables that have to be integers, and nothing that only looks like one."""
+
+
+class _Writer:
+    """Writes the body of one function."""
+
+    def __init__(self, lines: Lines) -> None:
+        self.lines = lines
+        self.raw: dict[str, str] = {}
+        """Raw values of the fields in front, by name."""
+        self._bytes = _Bytes()
+
+    def record(self, source: str, fields: tuple[Field, ...]) -> str:
+        """Check the fields of `source`; the expression of their bytes."""
+        self._fields(source, fields)
+        return self._joined()
+
+    def _fields(self, source: str, fields: tuple[Field, ...]) -> None:
+        outside = dict(self.raw)
+        for item in fields:
+            value = self.lines.local()
+            self.lines.add(f"{value} = {source}.{item.name}")
+            if isinstance(item.type, Integer):
+                self.raw[item.name] = value
+            self._value(value, item.type, item)
+            if item.const is not None:
+                self.lines.refuse_if(f"{value} != {constant(item)}")
+        self.raw = outside
+
+    def _joined(self) -> str:
+        """All bytes as one expression."""
+        self._flush()
+        pieces = self._bytes.pieces
+        if len(pieces) == 1:
+            return pieces[0]
+        return f'b"".join({tuple_of(pieces)})' if pieces else 'b""'
+
+    def _apart(self, value: str, type_: Type, item: Field | None) -> str:
+        """The bytes of a value that are put together by themselves."""
+        outside, self._bytes = self._bytes, _Bytes()
+        self._value(value, type_, item)
+        joined = self._joined()
+        self._bytes = outside
+        return joined
+
+    def _piece(self, expression: str) -> None:
+        self._flush()
+        self._bytes.pieces.append(expression)
+
+    def _put(self, type_: Type, expression: str) -> None:
+        """Let `struct` write a value together with its neighbours."""
+        code, order = code_of(type_), order_of(type_)
+        assert code is not None
+        if order and self._bytes.order and order != self._bytes.order:
+            self._flush()
+        self._bytes.order = self._bytes.order or order
+        self._bytes.codes += code
+        self._bytes.values.append(expression)
+
+    def _flush(self) -> None:
+        """Write the values that are due."""
+        due = self._bytes
+        if due.integers:
+            for some in batched(due.integers):
+                types = " is ".join(f"type({name})" for name in some)
+                several = len(some) > 1
+                self.lines.refuse_if(f"not ({types} is int)" if several else f"{types} is not int")
+        if due.codes:
+            layout = f'"{due.order or "<"}{due.codes}"'
+            pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
+            due.pieces.append(f"{pack}({', '.join(due.values)})")
+        self._bytes = _Bytes(due.pieces)
+
+    # --- values -----------------------------------------------------------------------------------
+
+    def _value(self, value: str, type_: Type, item: Field | None) -> None:
+        """Check a value and write it; `item` says what it may be."""
+        match type_:
+            case Integer():
+                self._integer(value, type_, item)
+            case Float():
+                self._float(value, type_, item)
+            case Text():
+                self._text(value, type_)
+            case Octets():
+                self._octets(value, type_)
+            case Struct():
+                self.lines.refuse_if(f"type({value}) is not {class_name(type_.name)}")
+                self._fields(value, type_.fields)
+            case Array():
+                self._array(value, type_, item)
+            case Switch():
+                self._switch(value, type_)
+
+    def _integer(self, value: str, type_: Integer, item: Field | None) -> None:
+        if type_.role == "bool":
+            self.lines.refuse_if(f"type({value}) is not bool")
+        elif is_named(type_):
+            self._named(value, type_)
+        else:
+            self._bytes.integers.append(value)
+        self._in_range(value, item)
+        self._put(type_, self._coded(value, type_))
+
+    def _named(self, value: str, type_: Integer) -> None:
+        named = type_.enum or type_.flags
+        assert named is not None
+        name = class_name(named.name)
+        self.lines.refuse_if(f"type({value}) is not {name} and type({value}) is not int")
+        if type_.enum is not None and type_.enum.closed:
+            members = self.lines.constants.named("VALUES", f"frozenset(map(int, {name}))")
+            self.lines.refuse_if(f"{value} not in {members}")
+
+    def _in_range(self, value: str, item: Field | None) -> None:
+        if item is None or not item.ranged or item.least is None or item.greatest is None:
+            return
+        allowed = f"not {number(item.least)} <= {value} <= {number(item.greatest)}"
+        if item.special:
+            special = tuple_of(str(named.value) for named in item.special)
+            allowed += f" and {value} not in {special}"
+        self.lines.refuse_if(allowed)
+
+    def _coded(self, value: str, type_: Integer) -> str:
+        """What `struct` is given for an integer."""
+        if is_native(type_) or type_.role == "bool":
+            return value
+        if is_pair(type_):
+            arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
+            return (
+                f"{self.lines.constants.named('CODES', f'_fast.PairCodes({arguments})')}[{value}]"
+            )
+        code = code_of(type_)
+        assert code is not None
+        if code.endswith("s"):
+            seven = type_.byte_bits == 7
+            arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
+            named = self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
+            return f"{named}.encode({value})"
+        self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
+        return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
+
+    def _float(self, value: str, type_: Float, item: Field | None) -> None:
+        self.lines.refuse_if(f"type({value}) is not float")
+        if type_.bits == 32:
+            self.lines.refuse_if(f"not -{_GREATEST_FLOAT32} <= {value} <= {_GREATEST_FLOAT32}")
+        self._in_range(value, item)
+        if type_.byte_bits == 7:
+            call = f'_fast.seven_bit_float({type_.bits}, "{type_.byte_order}")'
+            value = f"{self.lines.constants.named('FLOAT', call)}.encode({value})"
+        self._put(type_, value)
+
+    def _text(self, value: str, type_: Text) -> None:
+        data = self.lines.local()
+        self.lines.add(f'{data} = {value}.encode("ascii")')
+        if isinstance(type_.extent, Fixed):
+            padded = f'len({data}) > {type_.extent.count} or {data}.endswith(b"\\0")'
+            self.lines.refuse_if(padded)
+            self._put(type_, data)
+        else:
+            self._counted(data, type_.extent)
+            self._piece(data)
+
+    def _octets(self, value: str, type_: Octets) -> None:
+        self.lines.refuse_if(f"type({value}) is not bytes")
+        self._counted(value, type_.extent)
+        if type_.byte_bits == 7:
+            self.lines.refuse_if(f"not {value}.isascii()")
+        if isinstance(type_.extent, Fixed):
+            self._put(type_, value)
+        else:
+            self._piece(value)
+
+    def _counted(self, value: str, extent: Extent) -> None:
+        """Check a number of bytes or elements."""
+        match extent:
+            case Fixed():
+                self.lines.refuse_if(f"len({value}) != {extent.count}")
+            case Fill():
+                self.lines.refuse_if(f"len({value}) > {extent.greatest}")
+            case Counted():
+                self.lines.refuse_if(f"len({value}) != {self.raw[extent.field]}")
+                if extent.stated:
+                    self.lines.refuse_if(f"not {extent.least} <= len({value}) <= {extent.greatest}")
+
+    def _switch(self, value: str, switch: Switch) -> None:
+        self._flush()
+        data = self.lines.local("case")
+        selector = self.raw[switch.selector]
+        word = "if"
+        empty = [str(case.value) for case in switch.cases if is_empty(case.type)]
+        if empty:
+            with self.lines.block(f"{word} {selector} in {tuple_of(empty)}:"):
+                self.lines.refuse_if(f"{value} is not None")
+                self.lines.add(f'{data} = b""')
+            word = "elif"
+        for case in switch.cases:
+            if is_empty(case.type):
+                continue
+            with self.lines.block(f"{word} {selector} == {case.value}:"):
+                self.lines.add(f"{data} = {self._apart(value, case.type, None)}")
+            word = "elif"
+        with self.lines.block("else:"):
+            if switch.rest is None:
+                self.lines.add("raise _fast.Unclear")
+            else:
+                rest = Octets(extent=Fill(greatest=switch.rest), byte_bits=switch.byte_bits)
+                self.lines.add(f"{data} = {self._apart(value, rest, None)}")
+        self._piece(data)
+
+    # --- arrays -----------------------------------------------------------------------------------
+
+    def _array(self, value: str, array: Array, item: Field | None) -> None:
+        self.lines.refuse_if(f"type({value}) is not list")
+        self._counted(value, array.extent)
+        element = array.element
+        if isinstance(element, Struct):
+            outer = "".join(f", {self.raw[name]}" for name in outer_names(element))
+            self._piece(f'b"".join([_write_{element.name}(each{outer}) for each in {value}])')
+        elif is_pair(element) and isinstance(element, Integer) and not is_named(element):
+            self._all_in_range(value, item)
+            arguments = f'{element.bits}, {element.signed}, "{element.byte_order}"'
+            encode = f"_fast.PairLists({arguments}).encode"
+            self._piece(f"{self.lines.constants.named('PAIR_LIST', encode)}({value})")
+        elif array_code(array) is not None and isinstance(element, Integer):
+            self.lines.refuse_if(f"not set(map(type, {value})) <= _fast.INTEGERS")
+            self._all_in_range(value, item)
+            self._piece(self._packed(value, array))
+        else:
+            self._one_by_one(value, element, item)
+
+    def _all_in_range(self, value: str, item: Field | None) -> None:
+        if item is None or not item.ranged or item.least is None or item.greatest is None:
+            return
+        allowed = f"{number(item.least)} <= each <= {number(item.greatest)}"
+        if item.special:
+            allowed += f" or each in {tuple_of(str(named.value) for named in item.special)}"
+        self.lines.refuse_if(f"not all({allowed} for each in {value})")
+
+    def _packed(self, value: str, array: Array) -> str:
+        code, order = array_code(array), order_of(array.element) or "<"
+        if isinstance(array.extent, Fixed):
+            layout = f'"{order}{array.extent.count}{code}"'
+            pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
+            return f"{pack}(*{value})"
+        return f'_struct.pack(f"{order}{{len({value})}}{code}", *{value})'
+
+    def _one_by_one(self, value: str, element: Type, item: Field | None) -> None:
+        self._flush()
+        data, each = self.lines.local(), self.lines.local("each")
+        self.lines.add(f"{data}: list[bytes] = []")
+        with self.lines.block(f"for {each} in {value}:"):
+            self.lines.add(f"{data}.append({self._apart(each, element, item)})")
+        self._piece(f'b"".join({data})')
