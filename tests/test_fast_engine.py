@@ -6,15 +6,27 @@ it has to decide alike; and on what is in order it has to decide, or it would no
 
 from __future__ import annotations
 
-from functools import cache
+import struct
+from dataclasses import fields, replace
+from fractions import Fraction
+from functools import cache, partial
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import construct
 import pytest
-from compiled import module_at, name_of, senders
-from corpus import material_of, portions, single_bytes, stream_of
-from hypothesis import settings
+from compiled import DOCUMENTS, SCHEMAS, module_at, name_of, protocol_of, senders
+from corpus import known_frames, material_of, portions, single_bytes, stream_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from protogen.runtime import decoder as decoder_module
+from protogen.runtime.constructs import PayloadError
+from protogen.runtime.errors import ByteError, DecodeError, EncodeError
+from protogen.runtime.machine import Candidate
+from protogen.runtime.number import Number
+from protogen.runtime.pairs import PairCodes, PairLists, Pairs, Unclear
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(6, settings().max_examples // 10))
@@ -60,3 +72,241 @@ class TestEvents:
                 assert shown(fast.feed(piece)) == shown(reference.feed(piece))
                 assert fast.pending == reference.pending
             assert shown(fast.flush()) == shown(reference.flush())
+
+
+# --- that it is taken at all ----------------------------------------------------------------------
+
+
+def known(path: Path, sender: str) -> list[bytes]:
+    return list(known_frames(path, protocol_of(path).sender(sender)))
+
+
+@EVERY_SENDER
+def test_clean_frames_are_cut_without_the_reference(
+    path: Path, sender: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only the last frame may need it: some frames end where the next one starts."""
+    if module_at(path).PROTOCOL.sender(sender).cut is None:
+        assert (name_of(path), sender) in CUT_BY_THE_REFERENCE
+        return
+    frames = [frame for frame in known(path, sender) if len(frame) < 200][:40]
+    candidates: list[Any] = []
+
+    class Counted(Candidate):
+        def __init__(self, *given: Any, **named: Any) -> None:
+            super().__init__(*given, **named)
+            candidates.append(self)
+
+    monkeypatch.setattr(decoder_module, "Candidate", Counted)
+    decoder = module_at(path).Decoder(sender)
+    events = decoder.feed(b"".join(frames))
+    taken_one_by_one = len(candidates)
+    events += decoder.flush()
+    if [event.raw for event in events] == frames:  # Some frames are cut elsewhere, by any engine.
+        assert taken_one_by_one <= 1
+
+
+CUT_BY_THE_REFERENCE = {("checksum_only", "station")}
+"""Nothing marks where these frames start, so a frame may begin at every byte."""
+
+
+@EVERY_SENDER
+def test_messages_are_sent_without_the_reference(
+    path: Path, sender: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = module_at(path)
+    spec = module.PROTOCOL.sender(sender)
+    assert any(name == sender for _, name in module._ENCODERS)
+    sent = [(event.message, event.numbers) for event in decoded(path, sender)]
+    names = [part.name for part in spec.layout.values]
+    due = [
+        module.encode(message, sender, **dict(zip_values(spec, numbers, names)))
+        for message, numbers in sent
+    ]
+
+    def refuse(*_: Any, **__: Any) -> bytes:
+        raise AssertionError("the reference was asked")
+
+    monkeypatch.setattr(module.PROTOCOL, "encode", refuse)
+    for (message, numbers), frame in zip(sent, due, strict=True):
+        parts = dict(zip_values(spec, numbers, names))
+        assert module.encode(message, sender, **parts) == frame
+
+
+def decoded(path: Path, sender: str) -> list[Any]:
+    """Events of known messages that strict encoding takes back."""
+    events = []
+    for frame in known(path, sender):
+        found = events_of(path, sender, "construct", [frame])
+        if [event.kind for event in found] == ["message"]:
+            event = found[0]
+            if not any(violation.forbidden for violation in event.message.violations()):
+                events.append(event)
+    return events
+
+
+def zip_values(spec: Any, numbers: tuple[int, ...], names: list[str]) -> list[tuple[str, int]]:
+    shown = zip(spec.layout.shown, numbers, strict=True)
+    return [(name, value) for name, value in shown if name in names]
+
+
+# --- values that are not in order -----------------------------------------------------------------
+
+STRANGE: list[Any] = [
+    None, True, False, -1, 0, 1, 2**7, 2**15, 2**16, -(2**31), 2**64, 1.0, 0.5, float("nan"), 1e39,
+    "", "text", "\xff", "\u20ac", "nul\0", b"", b"\xff", b"bytes", bytearray(b"b"), [], [1], (1,),
+    [True], [2**70], [None], Fraction(1, 2), object(),
+]  # fmt: skip
+
+
+STRANGE_VALUES = st.sampled_from(STRANGE)
+
+
+def outcome(encode: Any, *given: Any, **named: Any) -> tuple[str, ...]:
+    try:
+        return ("frame", encode(*given, **named).hex())
+    except EncodeError as error:
+        return ("refused", error.path, error.problem)
+    except Exception as error:
+        return ("raised", type(error).__name__)
+
+
+@EVERY_SENDER
+def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
+    module = module_at(path)
+    spec = module.PROTOCOL.sender(sender)
+    names = [part.name for part in spec.layout.values]
+    by_message = {event.message.NAME: event for event in decoded(path, sender)}
+    for event in by_message.values():
+        parts = dict(zip_values(spec, event.numbers, names))
+        for field in fields(event.message):
+            for value in STRANGE:
+                item = replace(event.message, **{field.name: value})
+                due = outcome(module.encode, item, sender, engine="construct", **parts)
+                assert outcome(module.encode, item, sender, **parts) == due
+        for name in names:
+            for value in STRANGE:
+                given = {**parts, name: value}
+                due = outcome(module.encode, event.message, sender, engine="construct", **given)
+                assert outcome(module.encode, event.message, sender, **given) == due
+
+
+@EVERY_SENDER
+def test_a_single_frame_has_the_same_outcome(path: Path, sender: str) -> None:
+    """Whole, cut, with a byte more, with a bit turned, twice: the same message or error."""
+    module, random = module_at(path), Random(7)
+
+    def read(frame: bytes, engine: str) -> Any:
+        try:
+            return repr(module.decode(frame, sender, engine))
+        except DecodeError as error:
+            return (error.reason, error.offset, error.path, error.problem)
+
+    for frame in known(path, sender)[:30]:
+        turned = bytearray(frame)
+        turned[random.randrange(len(turned))] ^= 1 << random.randrange(8)
+        for data in (frame, frame[:-1], frame + b"\0", bytes(turned), frame + frame, b""):
+            assert read(data, "fast") == read(data, "construct")
+
+
+def test_another_engine() -> None:
+    module = module_at(DOCUMENTS[0])
+    sender = next(iter(module.PROTOCOL.senders))
+    for call in (module.Decoder, partial(module.decode, b"")):
+        with pytest.raises(ValueError, match="there is no engine 'slow'; there are: fast, constr"):
+            call(sender, "slow")
+
+
+# --- integers of two bytes of 7 bits --------------------------------------------------------------
+
+
+@given(
+    bits=st.integers(8, 14),
+    signed=st.booleans(),
+    order=st.sampled_from(["little", "big"]),
+    data=st.binary(max_size=40).map(lambda data: data[: len(data) // 2 * 2]),
+)
+def test_lists_of_pairs_are_read_as_their_numbers_are(
+    bits: int, signed: bool, order: Any, data: bytes
+) -> None:
+    number = Number(bits, signed, order, seven_bit=True)
+    lists, one = PairLists(bits, signed, order), Pairs(bits, signed, order)
+    try:
+        due = [number.decode(data[place : place + 2]) for place in range(0, len(data), 2)]
+    except ByteError:
+        with pytest.raises(Unclear):
+            lists.decode(data)
+        return
+    assert lists.decode(data) == due
+    assert [one[code] for code in unpack(("<" if order == "little" else ">"), data)] == due
+
+
+def unpack(order: str, data: bytes) -> tuple[int, ...]:
+    return struct.unpack(f"{order}{len(data) // 2}H", data)
+
+
+@given(
+    bits=st.integers(8, 14),
+    signed=st.booleans(),
+    order=st.sampled_from(["little", "big"]),
+    data=st.data(),
+)
+def test_lists_of_pairs_are_written_as_their_numbers_are(
+    bits: int, signed: bool, order: Any, data: Any
+) -> None:
+    number = Number(bits, signed, order, seven_bit=True)
+    lists, one = PairLists(bits, signed, order), PairCodes(bits, signed, order)
+    inside = st.integers(number.least, number.greatest)
+    values = data.draw(st.lists(inside, max_size=20))
+    due = b"".join(map(number.encode, values))
+    assert lists.encode(values) == due
+    assert tuple(one[value] for value in values) == unpack("<" if order == "little" else ">", due)
+    outside = data.draw(
+        st.integers().filter(lambda value: not number.least <= value <= number.greatest)
+    )
+    with pytest.raises((Unclear, struct.error)):
+        lists.encode([*values, outside])
+    with pytest.raises(ValueError, match="is not in"):
+        one[outside]
+
+
+# --- FORMAT ---------------------------------------------------------------------------------------
+
+
+def parsed(format: Any, parse: Any, data: bytes) -> Any:
+    try:
+        found = parse(format, data)
+    except PayloadError as error:
+        return (error.reason, error.path, error.offset, error.problem)
+    return repr({name: value for name, value in found.items() if name != "_io"})
+
+
+def built(format: Any, build: Any, values: Any) -> Any:
+    try:
+        return build(format, values)
+    except PayloadError as error:
+        return (error.reason, error.path, error.offset, error.problem)
+
+
+@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+@given(data=st.data())
+def test_a_format_gives_what_constructs_own_way_gives(path: Path, data: Any) -> None:
+    messages = [m for m in module_at(path).MESSAGES.values() if m.SIZES.fixed]
+    if not messages:
+        return
+    message = data.draw(st.sampled_from(messages))
+    size = message.SIZES.fixed
+    payload = data.draw(st.binary(min_size=size, max_size=size) | st.binary(max_size=size + 2))
+    masked = data.draw(st.sampled_from([payload, bytes(byte & 0x7F for byte in payload)]))
+    due = parsed(message.FORMAT, construct.Struct.parse, masked)
+    assert parsed(message.FORMAT, type(message.FORMAT).parse, masked) == due
+    if isinstance(due, tuple):
+        return
+    values = dict(message.FORMAT.parse(masked))
+    values.pop("_io", None)
+    changes = data.draw(
+        st.dictionaries(st.sampled_from([*values, "strange"]), STRANGE_VALUES, max_size=1)
+    )
+    for given_ in (values, {**values, **changes}, dict(list(values.items())[1:])):
+        due = built(message.FORMAT, construct.Struct.build, given_)
+        assert built(message.FORMAT, type(message.FORMAT).build, given_) == due

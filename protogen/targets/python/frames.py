@@ -102,10 +102,11 @@ def transparency(item: Transparency | None) -> str:
     if item is None:
         return "None"
     lenient = "True" if item.lenient else None
-    return _encoding(item.encoding, lenient)
+    return encoding(item.encoding, lenient)
 
 
-def _encoding(encoding: Encoding, lenient: str | None) -> str:
+def encoding(encoding: Encoding, lenient: str | None = None) -> str:
+    """What stuffs and unstuffs, strict unless it says otherwise."""
     match encoding:
         case Substitution():
             table = mapping({f"0x{key:02X}": octets(value) for key, value in encoding.table})

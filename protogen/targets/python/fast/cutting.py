@@ -235,24 +235,21 @@ class _Cutter:
             self.lines.add(f"content = {' + '.join(pieces)}")
 
     def _unstuffed(self) -> None:
-        transparency = tables.transparency(self.frame.sender.frame.transparency)
-        decode = f"{self.lines.constants.named('STUFFING', transparency)}.decode"
+        """Take the stuffing off, as an encoder would have put it on.
+
+        What only a lenient receiver takes is left to the reference.
+        """
+        transparency = self.frame.sender.frame.transparency
+        assert transparency is not None
+        strict = tables.encoding(transparency.encoding)
+        decode = f"{self.lines.constants.named('STUFFING', strict)}.decode"
         specials = self.frame.specials
         if specials is None:
-            self._strictly()
             self.lines.add(f"content = {decode}(content)")
             return
         found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
         with self.lines.block(f"if {found}:"):
-            if self.frame.lenient:
-                self.lines.add("return at")
-            else:
-                self.lines.add(f"content = {decode}(content)")
-
-    def _strictly(self) -> None:
-        """A lenient receiver may end a region elsewhere; only the reference knows."""
-        if self.frame.lenient:
-            self.lines.add("return at")
+            self.lines.add(f"content = {decode}(content)")
 
     def _payload(self) -> None:
         """Set `payload`, and check that there is room for it."""

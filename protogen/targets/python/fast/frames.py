@@ -178,12 +178,6 @@ class FastFrame:
             found -= set(self.start_bytes)
         return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
 
-    @property
-    def lenient(self) -> bool:
-        """Whether a receiver takes escapes that an encoder would not make."""
-        transparency = self.sender.frame.transparency
-        return transparency is not None and transparency.lenient
-
     # --- where parts lie --------------------------------------------------------------------------
 
     def offset(self, part: Part) -> int:

@@ -180,8 +180,9 @@ class _Framer:
             before = f"content[:{frame.before}] + " if frame.before else ""
             behind = f" + content[{-frame.behind}:]" if frame.behind else ""
             inner = frame.slice_of("content", frame.before, -frame.behind)
-            transparency = tables.transparency(frame.sender.frame.transparency)
-            encode = f"{self.lines.constants.named('STUFFING', transparency)}.encode"
+            assert frame.sender.frame.transparency is not None
+            stuffing = tables.encoding(frame.sender.frame.transparency.encoding)
+            encode = f"{self.lines.constants.named('STUFFING', stuffing)}.encode"
             wire = f"{before}{encode}({inner}){behind}"
         if frame.end:
             wire += f" + {literal(frame.end)}"

@@ -1,0 +1,97 @@
+"""Integers of two bytes of 7 bits each, by look-up and in bulk."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from protogen.runtime.number import ByteOrder, Number
+
+INTEGERS = frozenset((int,))
+"""What the types of all elements of an array of integers are."""
+
+
+class Unclear(Exception):  # noqa: N818 - it is no error: the reference decides
+    """These bytes or values are not plainly in order."""
+
+
+class Pairs(dict[int, int]):
+    """The integer for two bytes of 7 bits each, which `struct` reads as one of 16 bits."""
+
+    def __init__(self, bits: int, signed: bool, order: ByteOrder) -> None:
+        super().__init__()
+        self._number = Number(bits, signed, order, seven_bit=True)
+
+    def __missing__(self, code: int) -> int:
+        self[code] = value = self._number.decode(code.to_bytes(2, self._number.order))
+        return value
+
+
+class PairCodes(dict[int, int]):
+    """The other way: what `struct` writes as 16 bits for an integer."""
+
+    def __init__(self, bits: int, signed: bool, order: ByteOrder) -> None:
+        super().__init__()
+        self._number = Number(bits, signed, order, seven_bit=True)
+
+    def __missing__(self, value: int) -> int:
+        self[value] = code = int.from_bytes(self._number.encode(value), self._number.order)
+        return code
+
+
+@lru_cache(256)
+def _lanes(pattern: int, count: int) -> int:
+    """A pattern of 16 bits, `count` times."""
+    return int.from_bytes(pattern.to_bytes(2, "little") * count, "little")
+
+
+@dataclass(frozen=True, slots=True)
+class PairLists:
+    """Lists of such integers, all of them at once: each has 16 bits of one great integer."""
+
+    bits: int
+    signed: bool
+    order: ByteOrder
+
+    def decode(self, data: bytes) -> list[int]:
+        """The integers of an even number of bytes. Raises Unclear."""
+        count = len(data) // 2
+        great = self._in_order(data)
+        lanes = great & _lanes(0x007F, count) | great >> 1 & _lanes(0x3F80, count)
+        if great & _lanes(0x8080, count) or lanes & _lanes(0x3FFF >> self.bits << self.bits, count):
+            raise Unclear
+        if self.signed:
+            # The sign bit is copied into all bits above it.
+            sign = 1 << self.bits - 1
+            lanes += (lanes & _lanes(sign, count)) * ((0x10000 >> self.bits - 1) - 2)
+        plain = lanes.to_bytes(2 * count, "little")
+        return list(struct.unpack(f"<{count}{'h' if self.signed else 'H'}", plain))
+
+    def encode(self, values: Sequence[int]) -> bytes:
+        """The bytes of integers. Raises Unclear, or struct.error."""
+        if not set(map(type, values)) <= INTEGERS:
+            raise Unclear
+        count = len(values)
+        plain = struct.pack(f"<{count}{'h' if self.signed else 'H'}", *values)
+        lanes = int.from_bytes(plain, "little")
+        above = 0xFFFF >> self.bits << self.bits
+        if self.signed:
+            # All bits from the sign bit on are alike.
+            beside = (lanes ^ lanes << 1) & _lanes(above, count)
+            lanes &= _lanes(0xFFFF ^ above, count)
+        else:
+            beside = lanes & _lanes(above, count)
+        if beside:
+            raise Unclear
+        great = lanes & _lanes(0x007F, count) | (lanes & _lanes(0x3F80, count)) << 1
+        return self._in_order(great.to_bytes(2 * count, "little")).to_bytes(2 * count, "little")
+
+    def _in_order(self, data: bytes) -> int:
+        """The great integer whose lanes have the lower 7 bits in their lower byte; and back."""
+        if self.order == "little":
+            return int.from_bytes(data, "little")
+        swapped = bytearray(data)
+        swapped[0::2], swapped[1::2] = data[1::2], data[0::2]
+        return int.from_bytes(swapped, "little")
