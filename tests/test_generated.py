@@ -34,6 +34,11 @@ def test_the_schemas_are_clean():
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def test_the_schemas_are_in_the_canonical_layout():
+    result = protogen("fmt", "schemas", "--check")
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.stem)
 def test_examples_hold_and_nothing_is_reported(path):
     compilation = compile_file(path, examples=True)
