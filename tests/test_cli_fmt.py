@@ -75,6 +75,32 @@ def test_a_layout_that_says_something_else_is_a_bug_and_not_written(
     assert (folder / "wide.yaml").read_text() == WIDE
 
 
+class TestProject:
+    def test_without_schemas_those_of_the_project(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        (folder / "protogen.toml").write_text('schemas = ["boards/*.yaml"]\n')
+        (folder / "boards").mkdir()
+        (folder / "boards" / "wide.yaml").write_text(WIDE)
+        (folder / "other.yaml").write_text(WIDE)
+        monkeypatch.chdir(folder / "boards")
+        assert run("fmt", "--check").exit_code == 1
+        done = run("fmt")
+        assert (done.exit_code, done.output) == (0, "laid out ../boards/wide.yaml\n")
+        assert (folder / "other.yaml").read_text() == WIDE
+
+    def test_a_project_whose_schemas_are_not_there(self, folder: Path) -> None:
+        (folder / "protogen.toml").write_text('schemas = ["nix.yaml"]\n')
+        done = run("fmt")
+        assert done.exit_code == 2
+        assert "protogen.toml:1:12: error[PG033]: there is nothing at `nix.yaml`" in done.output
+
+    def test_without_a_project(self) -> None:
+        done = run("fmt")
+        assert done.exit_code == 2
+        assert "no schema is named, and there is no protogen.toml that names some" in done.output
+
+
 def test_no_such_file() -> None:
     done = run("fmt", "none.yaml")
     assert done.exit_code == 2

@@ -88,6 +88,28 @@ class TestFiles:
         assert "nowhere/motor.yaml: No such file or directory" in done.output
 
 
+class TestProject:
+    def test_says_what_to_write_where_there_is_none(self, folder: Path) -> None:
+        lines = run("init", "motor", "-o", "motor.yaml").output.splitlines()
+        last = "for a bare `protogen generate`, write to protogen.toml: "
+        assert lines[-1].startswith(last)
+        (folder / "protogen.toml").write_text(lines[-1].removeprefix(last) + "\n")
+        assert run("generate", "-q").exit_code == 0
+        assert (folder / "generated" / "python" / "motor.py").is_file()
+
+    def test_says_what_to_add_to_a_project(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        (folder / "protogen.toml").write_text('schemas = ["boards"]\n')
+        (folder / "boards").mkdir()
+        monkeypatch.chdir(folder / "boards")
+        assert "protogen generate" not in run("init", "motor").output
+        (folder / "lines").mkdir()
+        lines = run("init", "wheel", "-o", "../lines/wheel.yaml").output.splitlines()
+        added = 'add "lines/wheel.yaml" to `schemas` in ../protogen.toml'
+        assert lines[-1] == f"for a bare `protogen generate`, {added}"
+
+
 class TestChoices:
     def test_without_a_terminal_takes_defaults(self, folder: Path) -> None:
         assert run("init").exit_code == 0

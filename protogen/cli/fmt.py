@@ -9,7 +9,7 @@ import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet
-from protogen.cli.schemas import print_problems, schema_files
+from protogen.cli.schemas import own_schemas, print_problems, schema_files
 
 EXAMPLE = "Example: protogen fmt schemas --check"
 
@@ -20,8 +20,12 @@ class ChangedMeaningError(Exception):
 
 def fmt(
     schemas: Annotated[
-        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
-    ],
+        list[Path] | None,
+        typer.Argument(
+            metavar="[SCHEMA]",
+            help="Schema files, or folders of them. Default: the project's schemas.",
+        ),
+    ] = None,
     check: Annotated[
         bool,
         typer.Option("--check", help="Write nothing; exit with 1 if a file is laid out otherwise."),
@@ -35,7 +39,7 @@ def fmt(
     proved for each file before it is written. A file with errors is reported and left alone.
     """
     found = CLEAN
-    for file in schema_files(schemas):
+    for file in schema_files(schemas) if schemas else own_schemas():
         change = _change(file)
         if change is None:
             found = FINDINGS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
+from protogen.cli.plan import SCHEMAS
 from protogen.starter.framings import Framing
 
 EXAMPLE = "Example: protogen init motor --framing cobs"
@@ -45,7 +47,27 @@ def init(
     _write_schema(file, chosen_name, chosen_framing)
     _write_json_schema(file.parent)
     typer.echo(f"next: protogen check {file}")
+    _tell_of_project(file)
     return CLEAN
+
+
+def _tell_of_project(file: Path) -> None:
+    """Say what makes the schema one of the project's, where it is not."""
+    from protogen.cli.schemas import open_project
+    from protogen.project.find import OWN_FILE
+    from protogen.project.schemas import schemas_below
+
+    project = open_project()
+    if project is None and file.resolve().is_relative_to(SCHEMAS.resolve()):
+        return  # Where `generate` looks by itself.
+    if project is None:
+        line = f'schemas = ["{file.as_posix()}"]'
+        typer.echo(f"for a bare `protogen generate`, write to {OWN_FILE}: {line}")
+        return
+    known = (known.resolve() for known in schemas_below(project.folder, project.settings.schemas))
+    if file.resolve() not in known:
+        name = Path(os.path.relpath(file.resolve(), project.folder.resolve())).as_posix()
+        typer.echo(f'for a bare `protogen generate`, add "{name}" to `schemas` in {project.file}')
 
 
 def _ask_name() -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import glob
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +20,6 @@ SCHEMAS = Path("schemas")
 OUTPUT = Path("generated")
 _PYTHON = "python"
 _MARKDOWN = "markdown"
-_GLOB = frozenset("*?[")
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +145,9 @@ def _schemas(given: Given, project: Project | None, problems: Problems) -> tuple
     if given.schemas:
         return schema_files(given.schemas)
     if project is not None:
-        patterns = project.settings.schemas
-        return schema_files(_found(project, "schemas", patterns, problems))
+        from protogen.project.schemas import named_paths
+
+        return schema_files(named_paths(project, "schemas", project.settings.schemas, problems))
     if not SCHEMAS.is_dir():
         raise UsageError(
             f"no schema is named, and there is neither a protogen.toml nor a folder `{SCHEMAS}`",
@@ -159,7 +158,9 @@ def _schemas(given: Given, project: Project | None, problems: Problems) -> tuple
 
 
 def _pages(project: Project, problems: Problems) -> tuple[Path, ...]:
-    found = _found(project, "blocks", project.settings.blocks, problems)
+    from protogen.project.schemas import named_paths
+
+    found = named_paths(project, "blocks", project.settings.blocks, problems)
     return tuple(dict.fromkeys(path for path in found if not path.is_dir()))
 
 
@@ -167,24 +168,3 @@ def _is_complete(given: Given, project: Project | None) -> bool:
     if given.schemas:
         return project is None and all(path.is_dir() for path in given.schemas)
     return True
-
-
-def _found(
-    project: Project, key: str, patterns: Iterable[str], problems: Problems
-) -> Iterator[Path]:
-    """Yield the paths that a setting names; one that leads nowhere is reported."""
-    for pattern in patterns:
-        paths = list(_matches(project.folder, pattern))
-        if not paths:
-            place = project.place(key, value=pattern)
-            problems.add("PG033", place, f"there is nothing at `{pattern}`")
-        yield from paths
-
-
-def _matches(folder: Path, pattern: str) -> Iterator[Path]:
-    if (folder / pattern).exists():
-        yield folder / pattern
-    elif _GLOB.intersection(pattern):
-        # Unlike that of pathlib, this one passes hidden files over and takes any path.
-        names = glob.glob(pattern, root_dir=folder, recursive=True)  # noqa: PTH207
-        yield from (folder / name for name in sorted(names))

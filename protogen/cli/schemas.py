@@ -70,6 +70,28 @@ def open_project() -> Project | None:
     return project
 
 
+def own_schemas() -> tuple[Path, ...]:
+    """Return the schemas of the project around the working directory.
+
+    Raises UsageError where there is no project. With a setting that leads nowhere, prints the
+    problem and ends the command.
+    """
+    from protogen.problems import Problems, SourceMap
+    from protogen.project.schemas import named_paths
+
+    project = open_project()
+    if project is None:
+        message = "no schema is named, and there is no protogen.toml that names some"
+        raise UsageError(message, "name one, or a folder of them")
+    problems, sources = Problems(), SourceMap()
+    sources.add(str(project.file), project.text)
+    found = schema_files(named_paths(project, "schemas", project.settings.schemas, problems))
+    if problems.errors:
+        print_found(problems, sources)
+        raise typer.Exit(USAGE)
+    return found
+
+
 def print_problems(compilations: Iterable[Compilation]) -> None:
     """Print every problem to standard error, once, with its source line."""
     from protogen.cli.console import error_console
