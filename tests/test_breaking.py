@@ -1,9 +1,9 @@
 """Each rule has a folder in `breaking/`: two small schemas and what the step between them must do.
 
-`old.yaml` and `new.yaml` are whole schemas. A line of `expected.txt` is a finding: the rule, the
-place, who is hurt, and how. There may be these findings and no others. The frames that show a
-finding are read here with both versions' generated Python, past everything in
-`protogen.evolution`.
+`old.yaml` and `new.yaml` are whole schemas; without a `new.yaml` the schema is gone. A line of
+`expected.txt` is a finding: the rule, the place, who is hurt, and how. There may be these findings
+and no others. The frames that show a finding are read here with both versions' generated Python,
+past everything in `protogen.evolution`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import pytest
 from cli_support import run
 
 from protogen.compiler import compile_file
-from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Gate, findings
+from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Gate, findings, gone
 from protogen.evolution.observe import Reading
 from protogen.evolution.rules import BY_NAME, RULES
 from protogen.evolution.witness import Harm, Witness
@@ -28,6 +28,7 @@ from protogen.targets.python.live import module_of
 
 FOLDER = Path(__file__).parent / "breaking"
 NAMES = sorted(path.name for path in FOLDER.iterdir())
+STEPS = [name for name in NAMES if (FOLDER / name / "new.yaml").exists()]
 
 
 class Expected(NamedTuple):
@@ -59,7 +60,7 @@ def test_each_rule_has_a_folder() -> None:
     assert [name for name in NAMES if name not in BY_NAME] == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", STEPS)
 class TestRule:
     def test_finds_exactly_this(self, name: str) -> None:
         seen = [
@@ -100,6 +101,20 @@ class TestRule:
         rule = BY_NAME[name]
         only = {item.rule.name for item in findings(old, new, Gate(use=(name,)))[1]}
         assert only == (set() if rule.category.value == "NONE" else {name})
+
+
+def test_a_schema_that_is_gone() -> None:
+    old = protocol("schema-deleted", "old")
+    comparison, (item,) = gone(old, "demo.yaml")
+    seen = Expected(item.rule.name, item.change.place, item.hurt, item.harm)
+    assert [seen] == expected("schema-deleted")
+    assert item.change.text == "demo had reading, text"
+    (witness,) = item.witnesses
+    assert witness.message == module_of(old).decode(witness.frame, "board").NAME
+    assert witness.received.message is None
+    assert comparison.new.messages == ()
+    for gate in (Gate(except_=("schema-deleted",)), Gate(ignore={"*": ["demo.*"]})):
+        assert gone(old, "demo.yaml", gate)[1] == []
 
 
 # --- frames, read without the code under test -----------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -33,6 +34,7 @@ messages:
 GONE = OLD[: OLD.index("  ping:")]
 RESERVED = f"{GONE}reserved: {{identities: [{{from: board, id: 3}}]}}\n"
 TURNED = OLD.replace("type: uint16, unit: mm", "type: uint16, byte_order: big, unit: cm")
+SECOND = OLD.replace("protocol: demo", "protocol: second")
 TEMPORARY = Path(tempfile.gettempdir()).resolve()
 DIALECT = """\
 protocol: demo_two
@@ -226,16 +228,40 @@ class TestFolders:
         assert found == {"same.yaml": 0, "inner/edited.yaml": 1}
 
     def test_schemas_that_come_and_go(self, folder: Path) -> None:
-        for name in ("was", "is"):
-            (folder / name).mkdir()
-        (folder / "was" / "first.yaml").write_text(OLD, encoding="utf-8")
-        (folder / "is" / "second.yaml").write_text(OLD, encoding="utf-8")
+        for name, text in {"was/first": OLD, "is/second": SECOND}.items():
+            file = folder / f"{name}.yaml"
+            file.parent.mkdir()
+            file.write_text(text, encoding="utf-8")
         output = answer(folder, "diff", "was", "is", code=1)
         assert sorted(output.splitlines()) == ["first.yaml is gone", "second.yaml is new"]
         output = answer(folder, "diff", "was", "is", "--format", "json", code=1)
         texts = {report["schema"]: report["text"] for report in json.loads(output)}
         assert texts == {"first.yaml": "is gone", "second.yaml": "is new"}
-        assert answer(folder, "breaking", "was", "is", code=0) == "nothing is broken\n"
+        lines = answer(folder, "breaking", "was", "is", code=1).splitlines()
+        assert lines == [
+            "demo",
+            "  WIRE [schema-deleted] first.yaml: a schema is gone: demo had reading, ping",
+            "    hurts new receiver of old frames: rejected",
+            "    old board sends ping AA 03 00 68 2A; new finds no message in it: nobody listens",
+            "    mend: keep it until nobody speaks it any more",
+        ]
+        output = answer(folder, "breaking", "was", "is", "--format", "github", code=1)
+        assert output.startswith("::error title=schema-deleted::first.yaml: ")
+        ignored = ["--ignore", "schema-deleted=first.yaml"]
+        assert answer(folder, "breaking", "was", "is", *ignored, code=0) == "nothing is broken\n"
+
+    def test_a_schema_that_moved_is_the_same(self, folder: Path) -> None:
+        for name, text in {"was/first": OLD, "is/inner/second": GONE}.items():
+            file = folder / f"{name}.yaml"
+            file.parent.mkdir(parents=True)
+            file.write_text(text, encoding="utf-8")
+        output = answer(folder, "breaking", "was", "is", "--format", "json", code=1)
+        assert rules_in(output) == ["message-deleted"]
+
+    def test_a_folder_without_schemas(self, folder: Path) -> None:
+        (folder / "none").mkdir()
+        words = complaint(folder, "breaking", "old.yaml", "none")
+        assert "the folder `none` holds no schema" in words
 
 
 @pytest.fixture
@@ -301,6 +327,28 @@ class TestGit:
         assert before == sorted(path for path in repository.rglob("*") if ".git" not in path.parts)
         assert (repository / "schemas" / "demo.yaml").read_text(encoding="utf-8") == GONE
 
+    @pytest.mark.parametrize("new", ["schemas", "schemas/demo.yaml"])
+    def test_a_schema_that_is_gone_since(self, new: str, repository: Path) -> None:
+        for file in (repository / "schemas").rglob("*.yaml"):
+            file.unlink()
+        output = answer(
+            repository, "breaking", new, "--against", "git:HEAD", "--format", "json", code=1
+        )
+        found = {report["schema"]: report["protocol"] for report in json.loads(output)}
+        names = {"demo.yaml": "demo", "dialects/two.yaml": "demo_two"}
+        assert found == (names if new == "schemas" else {new: "demo"})
+        assert set(rules_in(output)) == {"schema-deleted"}
+
+    def test_a_schema_that_is_new_since(self, repository: Path) -> None:
+        (repository / "schemas" / "other.yaml").write_text(SECOND, encoding="utf-8")
+        for new in ("schemas", "schemas/other.yaml"):
+            command = ["breaking", new, "--against", "git:HEAD"]
+            assert answer(repository, *command, code=0) == "nothing is broken\n"
+
+    def test_a_schema_that_never_was(self, repository: Path) -> None:
+        words = complaint(repository, "breaking", "nix.yaml", "--against", "git:HEAD")
+        assert "there is no `HEAD:nix.yaml`" in words
+
     def test_no_such_revision(self, repository: Path) -> None:
         words = complaint(repository, "breaking", "schemas", "--against", "git:nowhere")
         assert "git: " in words
@@ -359,3 +407,144 @@ class TestMistakes:
 
     def test_three_versions_are_too_many(self, folder: Path) -> None:
         complaint(folder, "breaking", "old.yaml", "gone.yaml", "turned.yaml")
+
+
+# --- a project ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def project(repository: Path) -> Path:
+    """The repository as a project whose file names the schemas by a glob."""
+    text = 'schemas = ["schemas/*.yaml", "schemas/dialects"]\n'
+    (repository / "protogen.toml").write_text(text, encoding="utf-8")
+    return repository
+
+
+class TestProject:
+    def test_its_schemas_against_the_last_commit(self, project: Path) -> None:
+        assert answer(project, "breaking", code=0) == "nothing is broken since git:HEAD\n"
+        (project / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        for where in (project, project / "schemas" / "dialects"):
+            output = answer(where, "breaking", "--format", "json", code=1)
+            found = {report["schema"]: len(report["findings"]) for report in json.loads(output)}
+            assert found == {"schemas/demo.yaml": 1, "schemas/dialects/two.yaml": 1}
+            assert "message-deleted" in answer(where, "diff", code=1)
+
+    def test_a_glob_finds_what_is_gone(self, project: Path) -> None:
+        (project / "schemas" / "demo.yaml").unlink()
+        (project / "schemas" / "dialects" / "two.yaml").unlink()
+        output = answer(project, "breaking", code=1)
+        assert "WIRE [schema-deleted] schemas/demo.yaml" in output
+        assert "schemas/demo.yaml is gone" in answer(project, "diff", code=1)
+
+    def test_against_a_branch_a_lock_or_a_folder(self, project: Path, tmp_path: Path) -> None:
+        answer(project, "lock", "schemas", code=0)
+        was = tmp_path / "was"
+        shutil.copytree(project / "schemas", was / "schemas")
+        (was / ".git").touch()
+        versions = (["--against", "git:main"], ["--against-lock", "protogen.lock"])
+        for options in (*versions, ["--against", str(was)]):
+            since = options[-1] if options[0] == "--against" else "lock:protogen.lock"
+            output = answer(project, "breaking", *options, code=0)
+            assert output == f"nothing is broken since {since}\n"
+        (project / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        for options in (*versions, ["--against", str(was)]):
+            assert "[message-deleted]" in answer(project, "breaking", *options, code=1)
+
+    def test_no_such_folder(self, project: Path) -> None:
+        words = complaint(project, "breaking", "--against", "nix")
+        assert "there is no folder `nix`" in words
+
+    def test_before_the_first_commit(self, folder: Path) -> None:
+        git(folder, "init", "--quiet", "--initial-branch", "main")
+        (folder / "protogen.toml").write_text('schemas = ["old.yaml"]\n', encoding="utf-8")
+        assert answer(folder, "breaking", code=0) == "nothing is broken since git:HEAD\n"
+        assert answer(folder, "diff", code=1) == "old.yaml is new\n"
+
+    @pytest.mark.parametrize("command", ["diff", "breaking"])
+    def test_without_a_project_nothing_is_meant(self, command: str, folder: Path) -> None:
+        words = complaint(folder, command)
+        assert "give OLD and NEW, or NEW with --against" in words
+
+
+# --- places ---------------------------------------------------------------------------------------
+
+PLACES = """\
+protocol: demo
+endpoints: {board: Sensor board}
+byte_order: little
+frame:
+  start:   {literal: 0xAA}
+  kind:    {type: uint8, id: true}
+  payload: {}
+  crc:     {type: uint16, algorithm: CRC-16/KERMIT, covers: [kind, payload]}
+transparency:
+  covers: kind..crc
+  escape: {byte: 0xAB, of: [0xAA, 0xAB], transform: {xor: 0x20}}
+messages:
+  reading:
+    id: 1
+    from: board
+    fields:
+      mode:
+        type: uint8
+        values:
+          idle: 0
+          run: 1
+          stop: 2
+      state:
+        type: uint8
+        flags:
+          hot: 0
+          wet: 1
+      packed:
+        type: uint8
+        bits:
+          gear:
+            bits: 0..3
+            values: {low: 0, high: 1}
+          light: {bits: 4..4}
+      inner:
+        count: 2
+        fields:
+          x: uint8
+          y: {type: uint8, special: {absent: 255}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "rule", "place"),
+    [
+        ("          stop: 2\n", "", "enum-value-deleted", "new.yaml:17 (new), old.yaml:22 (old)"),
+        ("run: 1", "run: 7", "enum-value", "new.yaml:21 (new), old.yaml:21 (old)"),
+        ("wet: 1", "wet: 3", "flag-moved", "new.yaml:27 (new), old.yaml:27 (old)"),
+        ("high: 1", "high: 2", "enum-value", "new.yaml:33 (new), old.yaml:33 (old)"),
+        ("4..4", "4..5", "bits", "new.yaml:28 (new), old.yaml:28 (old)"),
+        ("absent: 255", "absent: 0", "field-special", "new.yaml:39 (new), old.yaml:39 (old)"),
+        ("x: uint8", "x: sint8", "field-sign", "new.yaml:38 (new), old.yaml:38 (old)"),
+        ("x: uint8", "z: sint8", "field-added", "new.yaml:38 (new), old.yaml:35 (old)"),
+        (
+            "protocol: demo\n",
+            "protocol: demo\n\nlink: {baud: 1200}\n",
+            "link",
+            "",
+        ),
+        (
+            "type: uint16, alg",
+            "type: uint16, byte_order: big, alg",
+            "frame-checksum-algorithm",
+            "new.yaml:8 (new), old.yaml:8 (old)",
+        ),
+        ("xor: 0x20", "xor: 0x40", "frame-transparency", "new.yaml:9 (new), old.yaml:9 (old)"),
+    ],
+    ids=lambda value: value.strip() if len(value) < 30 else "",
+)
+def test_places_are_those_of_what_changed(
+    old: str, new: str, rule: str, place: str, tmp_path: Path
+) -> None:
+    assert PLACES.count(old) == 1
+    (tmp_path / "old.yaml").write_text(PLACES, encoding="utf-8")
+    (tmp_path / "new.yaml").write_text(PLACES.replace(old, new), encoding="utf-8")
+    lines = answer(tmp_path, "diff", "old.yaml", "new.yaml", code=1).splitlines()
+    at = next(number for number, line in enumerate(lines) if f"[{rule}]" in line)
+    assert lines[at + 1].startswith(f"    at {place}" if place else "    mend: "), lines

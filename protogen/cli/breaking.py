@@ -9,11 +9,13 @@ import typer
 
 from protogen.cli.diff import print_findings
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.options import Against, Versions
 from protogen.cli.schemas import open_project
 
 if TYPE_CHECKING:
     from protogen.evolution.compare import Comparison
     from protogen.evolution.findings import Finding, Gate
+    from protogen.model.protocol import Protocol
     from protogen.project.read import Project
 
 EXAMPLE = "Example: protogen breaking schemas --against git:main"
@@ -28,17 +30,8 @@ class BreakingFormat(StrEnum):
 
 
 def breaking(
-    versions: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[OLD] NEW",
-            help="Schemas, folders of them, or git:REV:PATH. Default: the project's schemas.",
-        ),
-    ] = None,
-    against: Annotated[
-        str | None,
-        typer.Option(metavar="VERSION", help="What NEW is held against: git:REV, or a path."),
-    ] = None,
+    versions: Versions = None,
+    against: Against = None,
     against_lock: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="A lock that NEW is held against; see `protogen lock`."),
@@ -62,12 +55,14 @@ def breaking(
 
     Each finding has a rule, who is hurt and how, and a frame that shows it. Exits with 0 if nothing
     is broken, 1 if something is.
+
+    With nothing given, in a project: its schemas, against those of the last commit (git:HEAD); a
+    gate for pull requests names the branch that they go to, as in --against git:origin/main.
     """
     import json
 
     from protogen.cli.console import console
-    from protogen.cli.versions import both
-    from protogen.evolution.findings import findings
+    from protogen.cli.versions import LAST_COMMIT, compared
     from protogen.evolution.report import as_json
 
     project = open_project()
@@ -76,40 +71,32 @@ def breaking(
     stopped = False
     reports = []
     out = console()
-    for old, new in _pairs(versions or _own(project), held):
-        with both(old, new) as pairs:
-            for name, before, after in pairs:
-                if before is None or after is None:
-                    continue
-                comparison, found = findings(before, after, gate)
-                stopped = stopped or bool(found)
-                if format is BreakingFormat.JSON:
-                    reports.append({"schema": name} | as_json(comparison, found))
-                elif format is BreakingFormat.GITHUB:
-                    _print_github(comparison, found)
-                elif found:
-                    print_findings(out, comparison, found)
+    with compared(versions or (), held, project) as pairs:
+        for pair in pairs:
+            if pair.old is None:
+                continue
+            comparison, found = _judged(pair.name, pair.old, pair.new, gate)
+            stopped = stopped or bool(found)
+            if format is BreakingFormat.JSON:
+                reports.append({"schema": pair.name} | as_json(comparison, found))
+            elif format is BreakingFormat.GITHUB:
+                _print_github(comparison, found)
+            elif found:
+                print_findings(out, comparison, found)
     if format is BreakingFormat.JSON:
         typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
     elif format is BreakingFormat.TEXT and not stopped:
-        out.print("nothing is broken", style="bold")
+        since = "" if versions else f" since {held or LAST_COMMIT}"
+        out.print(f"nothing is broken{since}", style="bold")
     return FINDINGS if stopped else CLEAN
 
 
-def _own(project: Project | None) -> list[str]:
-    """The schemas that the project names."""
-    if project is None:
-        return []
-    return [str(project.folder / name) for name in project.settings.schemas]
+def _judged(
+    name: str, old: Protocol, new: Protocol | None, gate: Gate
+) -> tuple[Comparison, list[Finding]]:
+    from protogen.evolution.findings import findings, gone
 
-
-def _pairs(versions: list[str], against: str | None) -> list[tuple[str, str]]:
-    if against is not None:
-        return [(against, new) for new in versions]
-    if len(versions) != 2:
-        message = "give OLD and NEW, or NEW with --against"
-        raise UsageError(message, "protogen breaking schemas --against git:main")
-    return [(versions[0], versions[1])]
+    return gone(old, name, gate) if new is None else findings(old, new, gate)
 
 
 def _gate(project: Project | None, use: list[str], except_: list[str], ignore: list[str]) -> Gate:
@@ -137,14 +124,14 @@ def _gate(project: Project | None, use: list[str], except_: list[str], ignore: l
 
 
 def _print_github(comparison: Comparison, found: list[Finding]) -> None:
+    from protogen.evolution.places import places_of
     from protogen.evolution.report import title
 
-    new = {message.name: message for message in comparison.new.messages}
     for item in found:
-        name = item.change.message or ""
-        message = new.get(comparison.messages.get(name, name))
-        where = f" file={comparison.new.files[0]}"
-        if message is not None:
-            where = f" file={message.span.file},line={message.span.line}"
+        span = places_of(comparison, item.change).new
+        where = [f"file={file}" for file in comparison.new.files[:1]]
+        if span is not None:
+            where = [f"file={span.file}", f"line={span.line}"]
+        properties = ",".join([*where, f"title={item.rule.name}"])
         words = "%0A".join([title(item), *(witness.words for witness in item.witnesses)])
-        typer.echo(f"::error{where},title={item.rule.name}::{words}")
+        typer.echo(f"::error {properties}::{words}")

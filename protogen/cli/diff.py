@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import Against, Versions
+from protogen.cli.schemas import open_project
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -16,11 +18,6 @@ if TYPE_CHECKING:
     from protogen.evolution.findings import Finding
 
 EXAMPLE = "Example: protogen diff git:main:schemas/rn1.yaml schemas/rn1.yaml"
-
-Old = Annotated[
-    str, typer.Argument(metavar="OLD", help="A schema, a folder of them, or git:REV:PATH.")
-]
-New = Annotated[str, typer.Argument(metavar="NEW", help="The same, as it is now.")]
 
 
 class DiffFormat(StrEnum):
@@ -32,8 +29,8 @@ class DiffFormat(StrEnum):
 
 
 def diff(
-    old: Old,
-    new: New,
+    versions: Versions = None,
+    against: Against = None,
     format: Annotated[
         DiffFormat, typer.Option(help="For people, a changelog entry, or for programs.")
     ] = DiffFormat.TEXT,
@@ -42,18 +39,20 @@ def diff(
 
     Resolved protocols are compared, never text: comments and the order of keys are no change. Exits
     with 0 if nothing changed, 1 if something did.
+
+    With nothing given, in a project: its schemas, against those of the last commit (git:HEAD).
     """
     import json
 
     from protogen.cli.console import console
-    from protogen.cli.versions import both
+    from protogen.cli.versions import compared
     from protogen.evolution.findings import findings
     from protogen.evolution.report import as_json, markdown
 
     changed = False
     reports = []
     out = console()
-    with both(old, new) as pairs:
+    with compared(versions or (), against, open_project()) as pairs:
         for name, before, after in pairs:
             if before is None or after is None:
                 changed = True

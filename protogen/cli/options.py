@@ -22,4 +22,17 @@ HexText = Annotated[
     typer.Option("--hex", metavar="TEXT", help="The bytes in hex, instead of other input."),
 ]
 
+Versions = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[[OLD] NEW]",
+        help="Schemas, folders of them, or git:REV:PATH. Default: the project's schemas.",
+    ),
+]
+
+Against = Annotated[
+    str | None,
+    typer.Option(metavar="VERSION", help="What NEW is held against: git:REV, or a path."),
+]
+
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but what is wrong.")]

@@ -5,6 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Some bits of a field's raw value, as a frame has to have them to show a change."""
+
+    mask: int
+    bits: int
+
+    def on(self, raw: int) -> bool:
+        """Whether the raw value has these bits."""
+        return raw & self.mask == self.bits
+
+    def put(self, raw: int) -> int:
+        """The raw value with these bits."""
+        return raw & ~self.mask | self.bits
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
     """A difference that has one rule."""
@@ -23,6 +39,14 @@ class Change:
     """The field in the message: `encoders` or `limits.upper`."""
     now: str | None = None
     """The path in NEW of a field that has another name there."""
+    run: str | None = None
+    """The run of bits in the field."""
+    names: tuple[str | None, str | None] = (None, None)
+    """A value or a flag by its names in OLD and NEW; None where it has none."""
+    marks: tuple[Mark | None, Mark | None] = (None, None)
+    """What the field holds in frames of OLD and of NEW that show the change; None for anything."""
+    part: str | None = None
+    """The part of the frame, by its name in OLD where it has one."""
     old_part: str | None = None
     new_part: str | None = None
     """The names of a frame's part that has another one now."""

@@ -7,9 +7,17 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from protogen.evolution.change import Change, named
-from protogen.evolution.compare_types import TypeComparison
+from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.model.fields import Field
 from protogen.model.readings import decimal, type_name
+
+_CHANGES = {
+    "enum-value": "",
+    "enum-value-added": ", is new",
+    "enum-value-deleted": ", is gone",
+    "enum-value-renamed": "",
+}
+"""What is said of a special value that changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +74,16 @@ class FieldComparison:
             yield self._change("field-offset", path, words)
         if old.unit != new.unit:
             yield self._change("field-unit", path, named(old.unit or "none", new.unit or "none"))
+        yield from self._special(old, new, path)
+
+    def _special(self, old: Field, new: Field, path: str) -> Iterator[Change]:
         before = {item.name: item.value for item in old.special}
         after = {item.name: item.value for item in new.special}
-        if before != after:
-            words = named(_specials(before), _specials(after))
-            yield self._change("field-special", path, words)
+        for change in named_values(self._change, before, after, path):
+            renamed = change.rule == "enum-value-renamed"
+            rule = "field-special-renamed" if renamed else "field-special"
+            words = _CHANGES[change.rule]
+            yield replace(change, rule=rule, text=f"{change.text}{words}")
 
     def _range(self, old: Field, new: Field, path: str) -> Iterator[Change]:
         if (old.least, old.greatest) == (new.least, new.greatest):
@@ -139,10 +152,6 @@ def _joined(prefix: str, name: str) -> str:
 
 def _shown(value: object) -> str:
     return "none" if value is None else repr(value)
-
-
-def _specials(values: dict[str, int]) -> str:
-    return ", ".join(f"{name} {value}" for name, value in values.items()) or "none"
 
 
 def _bounds(field: Field) -> str:

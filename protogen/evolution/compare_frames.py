@@ -20,11 +20,12 @@ from protogen.model.frame import (
 from protogen.model.protocol import Sender
 from protogen.model.readings import type_name
 from protogen.model.types import Integer
+from protogen.passes.capacity import payload_range
 
 
 def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
     """Yield what changed around the payloads of a sender."""
-    yield from _Frames(old.name).compare(old.frame, new.frame)
+    yield from _Frames(old, new).compare(old.frame, new.frame)
     before, after = old.framing.greatest, new.framing.greatest
     if before != after:
         yield Change(
@@ -36,12 +37,13 @@ def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
 
 
 class _Frames:
-    def __init__(self, sender: str) -> None:
-        self._sender = sender
+    def __init__(self, old: Sender, new: Sender) -> None:
+        self._old, self._new = old, new
+        self._sender = old.name
 
     def _change(self, rule: str, part: str, text: str) -> Change:
         place = f"{self._sender} frame.{part}"
-        return Change(rule=rule, place=place, text=text, sender=self._sender)
+        return Change(rule=rule, place=place, text=text, sender=self._sender, part=part)
 
     def compare(self, old: Frame, new: Frame) -> Iterator[Change]:
         renamed = _renamed(old, new)
@@ -86,10 +88,7 @@ class _Frames:
             words = named(type_name(old.type), type_name(new.type))
             yield self._change("frame-part-type", old.name, words)
         elif (old.least, old.greatest) != (new.least, new.greatest):
-            is_length = isinstance(old, LengthPart)
-            words = named(f"{old.least}..{old.greatest}", f"{new.least}..{new.greatest}")
-            rule = "frame-length-range" if is_length else "frame-part-range"
-            yield self._change(rule, old.name, words)
+            yield self._range(old, new)
         if isinstance(old, LengthPart) and isinstance(new, LengthPart):
             counts = [renamed.get(name, name) for name in old.counts]
             if counts != list(new.counts):
@@ -98,6 +97,16 @@ class _Frames:
         before, after = _default(old), _default(new)
         if before != after:
             yield self._change("frame-part-default", old.name, named(str(before), str(after)))
+
+    def _range(self, old: NumberPart, new: NumberPart) -> Change:
+        """Receivers hold a length to its range, and take any other number as it comes."""
+        words = named(f"{old.least}..{old.greatest}", f"{new.least}..{new.greatest}")
+        if not isinstance(old, LengthPart):
+            return self._change("frame-part-range", old.name, words)
+        if _fits(self._old, self._new) and _fits(self._new, self._old):
+            words = f"{words}, and no message is so long"
+            return self._change("frame-part-range", old.name, words)
+        return self._change("frame-length-range", old.name, words)
 
     def _checksum(
         self, old: ChecksumPart, new: ChecksumPart, renamed: dict[str, str]
@@ -135,6 +144,14 @@ def _renamed(old: Frame, new: Frame) -> dict[str, str]:
         if one.name not in after and other.name not in before and type(one) is type(other):
             found[one.name] = other.name
     return found
+
+
+def _fits(sender: Sender, receiver: Sender) -> bool:
+    """Whether the receiver's length can say the sizes of the messages that both have."""
+    taken = payload_range(receiver.frame)
+    names = {message.name for message in receiver.messages}
+    sizes = [message.sizes for message in sender.messages if message.name in names]
+    return taken is None or all(taken.holds(item) for item in sizes)
 
 
 def _default(part: Part) -> int | None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from protogen.evolution.change import Change, named
+from protogen.evolution.change import Change, Mark, named
 from protogen.model.readings import type_name
 from protogen.model.types import (
     Array,
@@ -19,7 +20,6 @@ from protogen.model.types import (
     Float,
     Integer,
     NamedBit,
-    NamedValue,
     Octets,
     Struct,
     Switch,
@@ -78,7 +78,7 @@ class TypeComparison:
         yield from (self._report(rule, path, words) for rule in found)
         if not found and old.role != new.role:
             yield self._report("field-kind", path, words)
-        yield from self._enums(old.enum, new.enum, path)
+        yield from self._enums(self._report, old.enum, new.enum, path)
         yield from self._flags(old.flags, new.flags, path)
         yield from self._bits(old.bit_fields, new.bit_fields, path)
 
@@ -122,14 +122,23 @@ class TypeComparison:
 
     # --- named values ---------------------------------------------------------------------------
 
-    def _enums(self, old: Enum | None, new: Enum | None, path: str) -> Iterator[Change]:
-        before = () if old is None else old.values
-        after = () if new is None else new.values
-        yield from named_values(self._report, before, after, path)
+    def _enums(
+        self, report: Report, old: Enum | None, new: Enum | None, path: str
+    ) -> Iterator[Change]:
+        before: dict[str, int] = {} if old is None else {v.name: v.value for v in old.values}
+        after: dict[str, int] = {} if new is None else {v.name: v.value for v in new.values}
         was, is_ = old is not None and old.closed, new is not None and new.closed
+        for change in named_values(report, before, after, path):
+            mark = change.marks[0]
+            if change.rule == "enum-value-added" and was:
+                yield replace(change, rule="enum-closed-added")
+            elif change.rule == "enum-value-deleted" and is_ and mark not in _marks(after):
+                yield replace(change, rule="enum-closed-deleted")
+            else:
+                yield change
         if was != is_:
             words = "unnamed values are " + ("refused" if is_ else "taken")
-            yield self._report("enum-closed" if is_ else "enum-opened", path, words)
+            yield report("enum-closed" if is_ else "enum-opened", path, words)
 
     def _flags(self, old: Flags | None, new: Flags | None, path: str) -> Iterator[Change]:
         before: dict[str, NamedBit] = {} if old is None else {bit.name: bit for bit in old.bits}
@@ -137,18 +146,24 @@ class TypeComparison:
         numbers = {bit.bit: bit.name for bit in after.values()}
         taken = {bit.bit for bit in before.values()}
         for name, bit in before.items():
+            mark = _flag(bit.bit)
             if name in after:
                 if after[name].bit != bit.bit:
                     words = f"{name} {named(f'bit {bit.bit}', f'bit {after[name].bit}')}"
-                    yield self._report("flag-moved", path, words)
+                    found = self._report("flag-moved", path, words)
+                    marks = mark, _flag(after[name].bit)
+                    yield replace(found, names=(name, name), marks=marks)
             elif bit.bit in numbers and numbers[bit.bit] not in before:
                 words = f"bit {bit.bit} {named(name, numbers[bit.bit])}"
-                yield self._report("flag-renamed", path, words)
+                found = self._report("flag-renamed", path, words)
+                yield replace(found, names=(name, numbers[bit.bit]), marks=(mark, mark))
             else:
-                yield self._report("flag-deleted", path, f"{name}, bit {bit.bit}")
+                found = self._report("flag-deleted", path, f"{name}, bit {bit.bit}")
+                yield replace(found, names=(name, None), marks=(mark, mark))
         for name, bit in after.items():
             if name not in before and bit.bit not in taken:
-                yield self._report("flag-added", path, f"{name}, bit {bit.bit}")
+                found = self._report("flag-added", path, f"{name}, bit {bit.bit}")
+                yield replace(found, names=(None, name), marks=(_flag(bit.bit), _flag(bit.bit)))
 
     def _bits(
         self, old: Sequence[BitField], new: Sequence[BitField], path: str
@@ -158,29 +173,57 @@ class TypeComparison:
             yield self._report("bits", path, named(before or "none", after or "none"))
             return
         for one, other in zip(old, new, strict=True):
-            yield from self._enums(one.enum, other.enum, f"{path}.{one.name}")
+            for change in self._enums(self._run_report(one), one.enum, other.enum, path):
+                yield replace(
+                    change, marks=(_inside(change.marks[0], one), _inside(change.marks[1], one))
+                )
+
+    def _run_report(self, run: BitField) -> Report:
+        """Reports changes of a run of bits as at a place of its own, inside of the field."""
+
+        def report(rule: str, path: str, text: str) -> Change:
+            found = self._report(rule, f"{path}.{run.name}", text)
+            return replace(found, path=path, run=run.name)
+
+        return report
+
+
+def _marks(values: Mapping[str, int]) -> set[Mark]:
+    return {Mark(-1, value) for value in values.values()}
 
 
 def named_values(
-    report: Report, old: Sequence[NamedValue], new: Sequence[NamedValue], path: str
+    report: Report, old: Mapping[str, int], new: Mapping[str, int], path: str
 ) -> Iterator[Change]:
     """What changed between the names of a number's values."""
-    before = {item.name: item.value for item in old}
-    after = {item.name: item.value for item in new}
-    names = {value: name for name, value in after.items()}
-    for name, value in before.items():
-        if name in after:
-            if after[name] != value:
-                words = f"{name} {named(str(value), str(after[name]))}"
-                yield report("enum-value", path, words)
-        elif value in names and names[value] not in before:
-            yield report("enum-value-renamed", path, f"{value} {named(name, names[value])}")
+    names = {value: name for name, value in new.items()}
+    for name, value in old.items():
+        mark = Mark(-1, value)
+        if name in new:
+            if new[name] != value:
+                words = f"{name} {named(str(value), str(new[name]))}"
+                found = report("enum-value", path, words)
+                yield replace(found, names=(name, name), marks=(mark, Mark(-1, new[name])))
+        elif value in names and names[value] not in old:
+            found = report("enum-value-renamed", path, f"{value} {named(name, names[value])}")
+            yield replace(found, names=(name, names[value]), marks=(mark, mark))
         else:
-            yield report("enum-value-deleted", path, f"{name}, {value}")
-    taken = set(before.values())
-    for name, value in after.items():
-        if name not in before and value not in taken:
-            yield report("enum-value-added", path, f"{name}, {value}")
+            found = report("enum-value-deleted", path, f"{name}, {value}")
+            yield replace(found, names=(name, None), marks=(mark, mark))
+    taken = set(old.values())
+    for name, value in new.items():
+        if name not in old and value not in taken:
+            found = report("enum-value-added", path, f"{name}, {value}")
+            yield replace(found, names=(None, name), marks=(Mark(-1, value), Mark(-1, value)))
+
+
+def _inside(mark: Mark | None, run: BitField) -> Mark | None:
+    """The mark of a value of a run, in the whole number."""
+    return None if mark is None else Mark(run.mask, mark.bits << run.low)
+
+
+def _flag(bit: int) -> Mark:
+    return Mark(1 << bit, 1 << bit)
 
 
 def _runs(fields: Sequence[BitField]) -> str:

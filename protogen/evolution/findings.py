@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 
 from protogen.evolution.change import Change
@@ -14,6 +14,10 @@ from protogen.model.protocol import Protocol
 
 SHOWN_BY_FRAMES = (Category.WIRE, Category.VALUE)
 """The categories whose findings have a witness."""
+
+
+_MOST_MESSAGES = 3
+"""Messages of a protocol that is gone that are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +92,22 @@ def findings(
     found = [_finding(change, witnesses) for change in kept]
     found.sort(key=lambda item: ORDER[item.category])
     return comparison, found
+
+
+def gone(old: Protocol, place: str, gate: Gate | None = None) -> tuple[Comparison, list[Finding]]:
+    """What becomes of a protocol whose schema is gone: nobody reads its frames any more.
+
+    `place` is the path of the schema.
+    """
+    nothing = replace(old, senders=(), messages=(), files=(), spec_hash="")
+    names = [message.name for message in old.messages[:_MOST_MESSAGES]]
+    more = " ..." if len(names) < len(old.messages) else ""
+    words = f"{old.name} had {', '.join(names)}{more}"
+    change = Change(rule="schema-deleted", place=place, text=words)
+    comparison = Comparison(old, nothing, {}, {}, (change,))
+    if gate is not None and not gate.stops(change):
+        return comparison, []
+    return comparison, [_finding(change, Witnesses(comparison))]
 
 
 def _finding(change: Change, witnesses: Witnesses) -> Finding:

@@ -31,6 +31,8 @@ class Reading:
     """Why there is none."""
     values: Mapping[str, str] = field(default_factory=dict)
     """Each number and text by its path, in words: `1280 (50.75 deg)`."""
+    raw: Mapping[str, int] = field(default_factory=dict)
+    """The integers among them, as they are on the wire."""
 
 
 class Side:
@@ -63,16 +65,17 @@ class Side:
             return Reading(None, _why(events))
         event = found[0]
         name = event.message.NAME
-        values = readings_of(self.protocol.message(name), event.payload)
+        rows = _rows(self.protocol.message(name), event.payload)
+        values = {row.path: _words(row) for row in rows}
         parts = {f"frame.{part}": str(value) for part, value in asdict(event.parts).items()}
-        return Reading(name, "", ChainMap(values, parts))
+        raw = {row.path: row.value for row in rows if isinstance(row.value, int)}
+        return Reading(name, "", ChainMap(values, parts), raw)
 
 
-def readings_of(message: Message, payload: bytes) -> dict[str, str]:
-    """The values of a payload by their paths, in words."""
+def _rows(message: Message, payload: bytes) -> list[Row]:
+    """The values of a payload."""
     units = tuple(Unit(byte, bytes((byte,))) for byte in payload)
-    rows = dissect(message.fields, Cursor(units, 0))
-    return {row.path: _words(row) for row in rows if row.value_type is not None}
+    return [row for row in dissect(message.fields, Cursor(units, 0)) if row.value_type is not None]
 
 
 def _words(row: Row) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 from protogen.evolution.compare import Comparison
 from protogen.evolution.findings import Finding
+from protogen.evolution.places import places_of
 
 _MOST_PLACES = 3
 """Other places of the same change that are named."""
@@ -23,14 +24,10 @@ def title(finding: Finding) -> str:
 
 
 def place(comparison: Comparison, finding: Finding) -> str:
-    """The lines of the message in NEW and in OLD, as far as it is there."""
-    name = finding.change.message
-    if name is None:
-        return ""
-    new = {message.name: message for message in comparison.new.messages}
-    old = {message.name: message for message in comparison.old.messages}
-    sides = {"new": new.get(comparison.messages.get(name, name)), "old": old.get(name)}
-    found = {side: item.span for side, item in sides.items() if item is not None}
+    """The lines in NEW and in OLD, as far as it is there."""
+    old, new = places_of(comparison, finding.change)
+    sides = {"new": new, "old": old}
+    found = {side: span for side, span in sides.items() if span is not None}
     return ", ".join(f"{Path(s.file).name}:{s.line} ({side})" for side, s in found.items())
 
 
@@ -60,17 +57,19 @@ def as_json(comparison: Comparison, found: Sequence[Finding]) -> dict[str, Any]:
         "protocol": comparison.new.name,
         "old": comparison.old.spec_hash,
         "new": comparison.new.spec_hash,
-        "findings": [_finding(item) for item in found],
+        "findings": [_finding(comparison, item) for item in found],
     }
 
 
-def _finding(item: Finding) -> dict[str, Any]:
+def _finding(comparison: Comparison, item: Finding) -> dict[str, Any]:
     change = item.change
+    places = places_of(comparison, change)._asdict()
     return {
         "rule": item.rule.name,
         "category": item.category.value,
         "place": change.place,
         "places": list(change.places),
+        "lines": {side: None if s is None else s.line for side, s in places.items()},
         "message": change.message,
         "text": change.text,
         "hurt": item.hurt,

@@ -46,10 +46,12 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-part-kind", _W, "a part of the frame has another job", _TOGETHER),
     Rule("frame-part-type", _W, "a number of the frame is encoded another way", _TOGETHER),
     Rule("frame-part-renamed", _S, "a part of the frame has another name", _RENAME),
-    Rule("frame-part-range", _S, "senders may use other values of a part", "check both ends"),
+    Rule(
+        "frame-part-range", _S, "senders may use other values of a part", "check what receivers do"
+    ),
     Rule("frame-part-default", _S, "a part has another default", "check the senders"),
     Rule("frame-length-rule", _W, "the length counts other parts", _TOGETHER),
-    Rule("frame-length-range", _S, "other lengths are allowed", "rebuild the receivers first"),
+    Rule("frame-length-range", _W, "receivers take other lengths", "rebuild the receivers first"),
     Rule("frame-checksum-algorithm", _W, "the checksum is worked out another way", _TOGETHER),
     Rule("frame-checksum-coverage", _W, "the checksum covers other bytes", _TOGETHER),
     Rule("frame-transparency", _W, "bytes are stuffed another way", _TOGETHER),
@@ -86,11 +88,14 @@ RULES: tuple[Rule, ...] = (
     Rule("field-offset", _V, "the same number means another quantity", _BOTH),
     Rule("field-unit", _V, "the same number has another unit", _BOTH),
     Rule("field-special", _V, "a special value is new, gone or another", _BOTH),
+    Rule("field-special-renamed", _S, "a special value has another name", _RENAME),
     # named values
     Rule("enum-value", _V, "a name stands for another number", "give the new meaning a new number"),
     Rule("enum-value-added", _N, "an enum has one value more", "old receivers show its number"),
     Rule("enum-value-deleted", _V, "an enum has one value less", "keep or reserve it"),
     Rule("enum-value-renamed", _S, "a value has another name", _RENAME),
+    Rule("enum-closed-added", _W, "receivers refused this value", "rebuild the receivers first"),
+    Rule("enum-closed-deleted", _W, "receivers refuse a value now", "keep it, or leave it open"),
     Rule("enum-closed", _W, "unnamed values are refused now", "leave it open"),
     Rule("enum-opened", _W, "unnamed values are taken now", "check what old receivers do"),
     Rule("flag-moved", _V, "a flag is another bit", "give the new meaning a new bit"),
@@ -99,6 +104,7 @@ RULES: tuple[Rule, ...] = (
     Rule("flag-renamed", _S, "a bit has another name", _RENAME),
     Rule("bits", _V, "runs of bits in a number are others", _BOTH),
     # the whole
+    Rule("schema-deleted", _W, "a schema is gone", "keep it until nobody speaks it any more"),
     Rule("protocol-renamed", _S, "the protocol has another name", _RENAME),
     Rule("endpoint-renamed", _S, "an endpoint has another name", _RENAME),
     Rule("link", _S, "the line is set another way", "set both ends alike"),

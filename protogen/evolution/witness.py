@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import islice
 from random import Random
+from typing import Any
 
-from protogen.evolution.change import Change
+from protogen.evolution.change import Change, Mark
 from protogen.evolution.compare import Comparison
 from protogen.evolution.observe import Reading, Side
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
@@ -20,7 +21,13 @@ ROUNDS = 64
 """Samples with boundaries, at most."""
 RANDOM = 60
 """Random samples behind these."""
+MARKED = 40
+"""Samples in which a value is looked at that has a name in one version."""
 _INDEX = re.compile(r"\[\d+\]")
+
+
+_OF_FRAMES = frozenset({"noise", "truncated", "length", "checksum", "stuffing", "encoding"})
+"""Why a frame is lost whatever message it has."""
 
 
 class Harm(StrEnum):
@@ -91,24 +98,40 @@ class Witnesses:
         """The best witness of each direction that has one, OLD's frames first."""
         found = []
         for old_sends in (True, False):
-            seen = [
-                witness
-                for sender, message in self._sendings(change, old_sends)
-                for witness in self.differing(old_sends, sender, message)
-            ]
-            fitting = [witness for witness in seen if self._shows(witness, change)]
-            best = min(fitting or seen, key=_rank, default=None)
+            best = self._best(change, old_sends)
             if best is not None:
-                found.append(_pointed(best, change))
+                found.append(best)
         return found
 
-    def _shows(self, witness: Witness, change: Change) -> bool:
+    def _best(self, change: Change, old_sends: bool) -> Witness | None:
+        seen = [
+            witness
+            for sender, message in self._sendings(change, old_sends)
+            for witness in self._seen(change, old_sends, sender, message)
+        ]
+        if change.rule == "frame-length-range":
+            seen = [witness for witness in seen if witness.received.why == "length"]
         if change.message is None:
-            return not self._has_changed(witness)
-        if change.path is None or witness.harm is Harm.REJECTED:
-            return True
-        paths = {change.path, change.now or change.path}
-        return any(_is_inside(item.path, paths) for item in witness.differences)
+            untouched = [witness for witness in seen if not self._has_changed(witness)]
+            return min(untouched, key=_rank, default=min(seen, key=_rank_of_frames, default=None))
+        fitting = (_fitted(witness, change) for witness in seen)
+        return min((item for item in fitting if item is not None), key=_rank, default=None)
+
+    def _seen(
+        self, change: Change, old_sends: bool, sender: Sender, message: Message
+    ) -> list[Witness]:
+        """Frames of a message that differ; if the change is of one value, those that hold it."""
+        mark = change.marks[0 if old_sends else 1]
+        if mark is None or change.path is None:
+            return self.differing(old_sends, sender, message)
+        path = change.path if old_sends else change.now or change.path
+        drawn = islice(self._samples(old_sends, sender, message), MARKED)
+        samples = [(_marked(values, path.split("."), mark), parts) for values, parts in drawn]
+        return [
+            witness
+            for witness in self._look(old_sends, sender, message, samples)
+            if _holds(witness.sent, path, mark)
+        ]
 
     def _has_changed(self, witness: Witness) -> bool:
         """Whether the message has changes of its own, which the witness may show."""
@@ -116,7 +139,7 @@ class Witnesses:
         name = witness.message
         if not witness.old_sends:
             name = _key_of(names.messages, name)
-        return any(change.message == name for change in names.changes)
+        return any(name in _messages_of(change) for change in names.changes)
 
     # --- what is sent -----------------------------------------------------------------------------
 
@@ -137,16 +160,23 @@ class Witnesses:
         """Frames of a message that the other side reads differently."""
         key = old_sends, sender.name, message.name
         if key not in self._found:
-            self._found[key] = list(self._look(old_sends, sender, message))
+            samples = self._samples(old_sends, sender, message)
+            self._found[key] = list(self._look(old_sends, sender, message, samples))
         return self._found[key]
 
-    def _look(self, old_sends: bool, sender: Sender, message: Message) -> Iterator[Witness]:
+    def _look(
+        self,
+        old_sends: bool,
+        sender: Sender,
+        message: Message,
+        samples: Iterable[tuple[Values, Values]],
+    ) -> Iterator[Witness]:
         names = self._comparison
         one, other = (self._old, self._new) if old_sends else (self._new, self._old)
         endpoints = names.endpoints if old_sends else _swapped(names.endpoints)
         theirs = endpoints.get(sender.name, sender.name)
         listens = any(item.name == theirs for item in other.protocol.senders)
-        for values, parts in self._samples(old_sends, sender, message):
+        for values, parts in samples:
             frame = one.frame(sender.name, message.name, values, parts)
             if frame is None:
                 continue
@@ -254,19 +284,52 @@ def _is_inside(path: str, places: set[str]) -> bool:
     return any(bare == place or bare.startswith(f"{place}.") for place in places)
 
 
-def _pointed(witness: Witness, change: Change) -> Witness:
-    """The witness with what the change is about in front."""
-    if change.path is None:
+def _fitted(witness: Witness, change: Change) -> Witness | None:
+    """The witness with no more than what the change does; None where that is nothing."""
+    if change.path is None or not witness.differences:
         return witness
     paths = {change.path, change.now or change.path}
-    ordered = sorted(witness.differences, key=lambda item: not _is_inside(item.path, paths))
-    return replace(witness, differences=tuple(ordered))
+    inside = tuple(item for item in witness.differences if _is_inside(item.path, paths))
+    if not inside:
+        return None
+    is_misread = any(item.received is not None for item in inside)
+    return replace(witness, differences=inside, harm=Harm.MISREAD if is_misread else Harm.LOST)
+
+
+def _messages_of(change: Change) -> set[str | None]:
+    """The messages that a change is in, by their names in OLD."""
+    return {change.message, *(place.partition(".")[0] for place in change.places)}
+
+
+# --- values that have to be looked at -------------------------------------------------------------
+
+
+def _marked(value: Any, steps: Sequence[str], mark: Mark) -> Any:
+    """The values with those at a path as the mark has them; the same where nothing is there."""
+    if isinstance(value, list):
+        return [_marked(item, steps, mark) for item in value]
+    if not steps:
+        return mark.put(value) if isinstance(value, int) else value
+    if not isinstance(value, dict) or steps[0] not in value:
+        return value
+    return {**value, steps[0]: _marked(value[steps[0]], steps[1:], mark)}
+
+
+def _holds(reading: Reading, path: str, mark: Mark) -> bool:
+    """Whether a value at the path is as the mark has it."""
+    found = (raw for place, raw in reading.raw.items() if _INDEX.sub("", place) == path)
+    return any(mark.on(raw) for raw in found)
 
 
 def _rank(witness: Witness) -> tuple[int, int]:
     """The most telling first: a wrong value before a lost frame, and short frames."""
     order = [Harm.MISREAD, Harm.REJECTED, Harm.LOST]
     return order.index(witness.harm), len(witness.frame)
+
+
+def _rank_of_frames(witness: Witness) -> tuple[bool, int]:
+    """A frame that is lost before anybody looks inside shows most of what frames are about."""
+    return witness.received.why not in _OF_FRAMES, len(witness.frame)
 
 
 def _swapped(names: dict[str, str]) -> dict[str, str]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from protogen.problems.span import Span
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +26,8 @@ class About:
 
     doc: str = ""
     source: Source | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+    """Where it stands in a schema. Two things that differ in nothing else are equal."""
 
 
 NOTHING = About()

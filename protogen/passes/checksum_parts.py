@@ -42,7 +42,7 @@ class ChecksumReader:
             covers=covers,
             over_wire=item.over == "wire",
             when_payload=item.when is not None,
-            about=about(item.doc, item.source),
+            about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
         )
 
     def _error(self, code: str, name: str, key: str, text: str, hint: str | None = None) -> None:

@@ -113,8 +113,8 @@ def source_of(syntax: SourceSyntax | None) -> Source | None:
     return None if syntax is None else Source(**dict(syntax))
 
 
-def about(doc: str | None, source: SourceSyntax | None) -> About:
-    """What people read about a thing."""
-    if doc is None and source is None:
+def about(doc: str | None, source: SourceSyntax | None, span: Span | None = None) -> About:
+    """What people read about a thing, and where it stands."""
+    if doc is None and source is None and span is None:
         return NOTHING
-    return About(doc=(doc or "").strip(), source=source_of(source))
+    return About(doc=(doc or "").strip(), source=source_of(source), span=span)

@@ -117,7 +117,7 @@ class FrameBuilder:
         role = self._role(name, item)
         if role is None:
             return None
-        text = about(item.doc, item.source)
+        text = about(item.doc, item.source, self._context.find_key((*self._loc, name)))
         if role == PAYLOAD:
             return PayloadPart(name=name, about=text)
         if role == "literal":
@@ -188,7 +188,7 @@ class FrameBuilder:
             name=name,
             bytes=item.literal or b"\0",
             unprotected=item.unprotected,
-            about=about(item.doc, item.source),
+            about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
         )
 
     def _type(self, name: str, item: PartSyntax) -> Integer | None:

@@ -36,7 +36,7 @@ def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
         unit=syntax.unit,
         special=check.special(),
         unknown=syntax.unknown,
-        about=about(syntax.doc, syntax.source),
+        about=about(syntax.doc, syntax.source, context.find_key(item.chain[0][1])),
     )
 
 
@@ -107,14 +107,13 @@ class _Check:
         for name, entry in self._item.special.items():
             here = (*self._field.at("special"), name)
             if not self._element.holds(entry.value):
-                text = f"{name} = {entry.value} does not fit {self._item.type}"
-                self._context.error("PG114", here, text)
+                words = f"{name} = {entry.value} does not fit {self._item.type}"
+                self._context.error("PG114", here, words)
             if entry.value in values:
-                text = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
-                self._context.error("PG120", here, text)
-            values[entry.value] = NamedValue(
-                name=name, value=entry.value, about=about(entry.doc, entry.source)
-            )
+                words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
+                self._context.error("PG120", here, words)
+            text = about(entry.doc, entry.source, self._context.find_key(here))
+            values[entry.value] = NamedValue(name=name, value=entry.value, about=text)
         return tuple(values.values())
 
     def _error(self, code: str, key: str, text: str) -> None:

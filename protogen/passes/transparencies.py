@@ -53,7 +53,7 @@ class _Reader:
             encoding=encoding,
             preset=item.preset or item.encoding,
             lenient=item.lenient,
-            about=about(item.doc, item.source),
+            about=about(item.doc, item.source, self._context.find_key(self._loc)),
         )
 
     def _region(self, parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:

@@ -24,15 +24,15 @@ def _values(
     values: dict[int, NamedValue] = {}
     for name, entry in entries.items():
         if not type_.holds(entry.value):
-            text = f"{name} = {entry.value} does not fit: {type_.least} to {type_.greatest}"
-            context.error("PG114", (*loc, name), text)
+            words = f"{name} = {entry.value} does not fit: {type_.least} to {type_.greatest}"
+            context.error("PG114", (*loc, name), words)
         if entry.value in values:
-            text = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
-            context.error("PG120", (*loc, name), text)
+            words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
+            context.error("PG120", (*loc, name), words)
             continue
-        values[entry.value] = NamedValue(
-            name=name, value=entry.value, about=about(entry.doc, entry.source)
-        )
+        where = context.find_key((*loc, name))
+        text = about(entry.doc, entry.source, where)
+        values[entry.value] = NamedValue(name=name, value=entry.value, about=text)
     return tuple(values.values())
 
 
@@ -42,12 +42,13 @@ def flags_of(context: Context, type_: Integer, item: Effective) -> Flags:
     for name, entry in (item.syntax.flags or {}).items():
         here = (*item.at("flags"), name)
         if entry.bit >= type_.bits:
-            text = f"bit {entry.bit} is beyond the {type_.bits} bits of {item.syntax.type}"
-            context.error("PG113", here, text)
+            words = f"bit {entry.bit} is beyond the {type_.bits} bits of {item.syntax.type}"
+            context.error("PG113", here, words)
         if entry.bit in bits:
-            text = f"`{name}` and `{bits[entry.bit].name}` are both bit {entry.bit}"
-            context.error("PG120", here, text)
-        named = NamedBit(name=name, bit=entry.bit, about=about(entry.doc, entry.source))
+            words = f"`{name}` and `{bits[entry.bit].name}` are both bit {entry.bit}"
+            context.error("PG120", here, words)
+        text = about(entry.doc, entry.source, context.find_key(here))
+        named = NamedBit(name=name, bit=entry.bit, about=text)
         bits.setdefault(entry.bit, named)
     doc = about(item.origin.doc, item.origin.source)
     return Flags(name=item.owner, bits=tuple(bits.values()), about=doc)
@@ -80,7 +81,7 @@ def _is_run(context: Context, type_: Integer, entry: NamedBits, loc: Loc) -> boo
 
 def _bit_field(context: Context, type_name: str, name: str, entry: NamedBits, loc: Loc) -> BitField:
     low, high = entry.bits
-    text = about(entry.doc, entry.source)
+    text = about(entry.doc, entry.source, context.find_key(loc))
     enum = None
     if entry.values is not None:
         values = _values(context, Integer(bits=high - low + 1), entry.values, (*loc, "values"))
