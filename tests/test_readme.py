@@ -5,8 +5,8 @@
     python    statements, run in order; a section shares its names. The comment behind an
               expression, or below it, is its value; `Error: message` is what it raises.
     text      what the Python in front of it prints
-    c         `/* NAME.c */` in the first line: a program, built with the C of `rover.yaml`; it
-              exits with 0
+    c         `/* NAME.c */` in the first line: a program, built with the C of the headers that it
+              includes; it exits with 0
     cpp       `// NAME.ino` in the first line: an Arduino sketch
     console   `$ command` lines, each with what it prints
     sh        `make` commands
@@ -125,7 +125,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     program.parent.mkdir()
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m protogen "$@"\n')
     program.chmod(0o755)
-    made = start("generate", "schemas", "rover.yaml", "--quiet", cwd=folder)
+    made = start("generate", "schemas", "rover.yaml", "rover_hello.yaml", "--quiet", cwd=folder)
     assert made.returncode == 0, made.stderr.decode()
     return folder
 
@@ -331,7 +331,8 @@ class TestC:
                 name = re.match(r"/\* (\w+\.c) \*/", block.text)[1]  # type: ignore[index]
                 (workspace / name).write_text(block.text)
                 flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Igenerated/c"]
-                sources = [name, "generated/c/rover.c"]
+                used = re.findall(r'#include "(\w+)\.h"', block.text)
+                sources = [name, *(f"generated/c/{header}.c" for header in used)]
                 done = run([compiler, *flags, *sources, "-o", "program"], workspace)
                 assert done.returncode == 0, done.stdout
                 assert run(["./program"], workspace).returncode == 0
