@@ -68,7 +68,8 @@ class TestCommands:
 class Scratch:
     """A repository with schemas that takes our hooks from a clone, as a user's does."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, python: str) -> None:
+        self._python = python
         self.hooks, self.user, self._bin = (folder / name for name in ("hooks", "user", "bin"))
         self._environment = {
             **os.environ,
@@ -78,7 +79,7 @@ class Scratch:
             "GIT_CONFIG_GLOBAL": os.devnull,
         }
         for path in (self.hooks, self.user, self._bin):
-            path.mkdir()
+            path.mkdir(parents=True)
         program = self._bin / "protogen"
         program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m protogen "$@"\n')
         program.chmod(0o755)
@@ -99,7 +100,7 @@ class Scratch:
 
     def pre_commit(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         self.git(self.user, "add", "--all")
-        command = [sys.executable, "-m", "pre_commit", *arguments]
+        command = [self._python, "-m", "pre_commit", *arguments]
         return self._run(command, self.user, check=False)
 
     def _run(
@@ -121,7 +122,12 @@ class Scratch:
 @pytest.fixture
 def scratch(tmp_path: Path) -> Scratch:
     require_module("pre_commit")
-    made = Scratch(tmp_path)
+    return prepared(tmp_path)
+
+
+def prepared(folder: Path, python: str = sys.executable) -> Scratch:
+    """A repository with a schema that nothing is wrong with; `python` has pre-commit."""
+    made = Scratch(folder, python)
     made.git(made.hooks, "init", "--quiet")
     text = (ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8")
     (made.hooks / ".pre-commit-hooks.yaml").write_text(text)

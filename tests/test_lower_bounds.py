@@ -10,6 +10,7 @@ import venv
 from pathlib import Path
 
 import pytest
+from test_ci import IDS, prepared
 from tooling import unavailable
 
 from protogen.api import load
@@ -17,20 +18,26 @@ from protogen.api import load
 ROOT = Path(__file__).parent.parent
 
 
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+
+
 def oldest() -> list[str]:
     """Each dependency at its lower bound."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    return [requirement.replace(">=", "==") for requirement in project["dependencies"]]
+    return [requirement.replace(">=", "==") for requirement in PROJECT["dependencies"]]
 
 
 @pytest.fixture(scope="module")
 def python(tmp_path_factory):
     """An environment with only the oldest dependencies."""
-    folder = tmp_path_factory.mktemp("oldest")
+    return environment(tmp_path_factory.mktemp("oldest"), oldest())
+
+
+def environment(folder: Path, requirements: list[str]) -> Path:
+    """The Python of a new environment with these packages."""
     venv.create(folder, with_pip=True)
     python = folder / "bin" / "python"
     installed = subprocess.run(
-        [python, "-m", "pip", "install", "--quiet", *oldest()],
+        [python, "-m", "pip", "install", "--quiet", *requirements],
         capture_output=True,
         text=True,
         check=False,
@@ -71,6 +78,17 @@ def test_every_dependency_has_a_lower_bound():
 def test_the_oldest_versions_do_the_work(python, arguments):
     result = run(python, *arguments)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_the_oldest_pre_commit_runs_the_hooks(tmp_path):
+    (bound,) = [item for item in PROJECT["optional-dependencies"]["dev"] if "pre-commit" in item]
+    python = environment(tmp_path / "oldest", [bound.replace(">=", "==")])
+    scratch = prepared(tmp_path / "work", str(python))
+    done = scratch.pre_commit("run", "--all-files")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("Passed") == len(IDS)
+    scratch.schema.write_text(scratch.schema.read_text().replace("scale: 1/100", "scale: 1/10"))
+    assert scratch.pre_commit("run", "protogen-generate-check").returncode == 1
 
 
 def test_the_newest_versions_do_the_work():
