@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
+from protogen.evolution.quantities import meaning_of
 from protogen.model.fields import Field
 from protogen.model.readings import decimal, type_name
 
@@ -66,6 +67,14 @@ class FieldComparison:
             yield self._change("field-default", path, words)
         if old.type == new.type or old.ranged or new.ranged:
             yield from self._range(old, new, path)
+        yield from self._quantity(old, new, path)
+        yield from self._special(old, new, path)
+
+    def _quantity(self, old: Field, new: Field, path: str) -> Iterator[Change]:
+        if old.unit != new.unit and meaning_of(old) == meaning_of(new):
+            words = named(f"{decimal(old.scale)} {old.unit}", f"{decimal(new.scale)} {new.unit}")
+            yield self._change("field-rescaled", path, words)
+            return
         if old.scale != new.scale:
             words = named(decimal(old.scale), decimal(new.scale))
             yield self._change("field-scale", path, words)
@@ -74,7 +83,6 @@ class FieldComparison:
             yield self._change("field-offset", path, words)
         if old.unit != new.unit:
             yield self._change("field-unit", path, named(old.unit or "none", new.unit or "none"))
-        yield from self._special(old, new, path)
 
     def _special(self, old: Field, new: Field, path: str) -> Iterator[Change]:
         before = {item.name: item.value for item in old.special}
@@ -82,8 +90,9 @@ class FieldComparison:
         for change in named_values(self._change, before, after, path):
             renamed = change.rule == "enum-value-renamed"
             rule = "field-special-renamed" if renamed else "field-special"
-            words = _CHANGES[change.rule]
-            yield replace(change, rule=rule, text=f"{change.text}{words}")
+            words = f"{change.text}{_CHANGES[change.rule]}"
+            # A special value that is gone is a number like any other.
+            yield replace(change, rule=rule, text=words, is_lost=False)
 
     def _range(self, old: Field, new: Field, path: str) -> Iterator[Change]:
         if (old.least, old.greatest) == (new.least, new.greatest):

@@ -9,11 +9,14 @@ from protogen.evolution.change import Change, named
 from protogen.model.frame import (
     ChecksumPart,
     CounterPart,
+    Encoding,
+    Escape,
     Frame,
     LengthPart,
     LiteralPart,
     NumberPart,
     Part,
+    Substitution,
     Transparency,
     ValuePart,
 )
@@ -189,4 +192,16 @@ def _essence(item: Transparency | None, renamed: dict[str, str]) -> object:
 def _stuffing(item: Transparency | None) -> str:
     if item is None:
         return "none"
-    return f"{type(item.encoding).__name__.lower()} over {item.first}..{item.last}"
+    return f"{_encoding(item.encoding)} over {item.first}..{item.last}"
+
+
+def _encoding(item: Encoding) -> str:
+    match item:
+        case Escape():
+            return (
+                f"escape {item.byte:02X} of {bytes(item.of).hex(' ').upper()}, xor {item.xor:02X}"
+            )
+        case Substitution():
+            pairs = (f"{byte:02X} as {other.hex(' ').upper()}" for byte, other in item.table)
+            return f"{', '.join(pairs)}"
+    return type(item).__name__.lower()

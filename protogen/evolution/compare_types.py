@@ -53,6 +53,8 @@ class TypeComparison:
                 yield from self._strings(old, new, path)
             case Octets(), Octets():
                 yield from self._strings(old, new, path)
+            case _ if type(old) is not type(new) and _bytes(old) == _bytes(new) is not None:
+                yield self._report("field-kind", path, named(type_name(old), type_name(new)))
             case Array(), Array():
                 yield from self._extents(old.extent, new.extent, path)
                 yield from self.compare(old.element, new.element, path)
@@ -65,12 +67,12 @@ class TypeComparison:
 
     def _integers(self, old: Integer, new: Integer, path: str) -> Iterator[Change]:
         words = named(type_name(old), type_name(new))
+        is_bool = [kind.role == "bool" for kind in (old, new)]
         tests = {
-            "field-width": old.bits != new.bits,
+            "field-width": old.bits != new.bits and (old.size != new.size or not any(is_bool)),
             "field-sign": old.signed != new.signed,
             "field-byte-order": old.byte_order != new.byte_order,
-            "field-encoding": old.byte_bits != new.byte_bits
-            or (old.role == "bool") != (new.role == "bool"),
+            "field-encoding": old.byte_bits != new.byte_bits or is_bool[0] != is_bool[1],
         }
         found = [rule for rule, differs in tests.items() if differs]
         if old.size != new.size or old.size == 1:
@@ -159,7 +161,8 @@ class TypeComparison:
                 yield replace(found, names=(name, numbers[bit.bit]), marks=(mark, mark))
             else:
                 found = self._report("flag-deleted", path, f"{name}, bit {bit.bit}")
-                yield replace(found, names=(name, None), marks=(mark, mark))
+                is_lost = bit.bit not in numbers
+                yield replace(found, names=(name, None), marks=(mark, mark), is_lost=is_lost)
         for name, bit in after.items():
             if name not in before and bit.bit not in taken:
                 found = self._report("flag-added", path, f"{name}, bit {bit.bit}")
@@ -209,7 +212,8 @@ def named_values(
             yield replace(found, names=(name, names[value]), marks=(mark, mark))
         else:
             found = report("enum-value-deleted", path, f"{name}, {value}")
-            yield replace(found, names=(name, None), marks=(mark, mark))
+            is_lost = value not in names
+            yield replace(found, names=(name, None), marks=(mark, mark), is_lost=is_lost)
     taken = set(old.values())
     for name, value in new.items():
         if name not in old and value not in taken:
@@ -228,6 +232,18 @@ def _flag(bit: int) -> Mark:
 
 def _runs(fields: Sequence[BitField]) -> str:
     return ", ".join(f"{item.name} {item.low}..{item.high}" for item in fields)
+
+
+def _bytes(kind: Type) -> tuple[Extent, int] | None:
+    """How many bytes of how many bits a value is, if it is nothing but bytes."""
+    match kind:
+        case Text() | Octets():
+            return kind.extent, kind.byte_bits
+        case Array(element=Integer() as element, extent=extent):
+            width = element.byte_bits
+            plain = Integer(bits=width, byte_bits=width, role=element.role)
+            return (extent, width) if element == plain and plain.role != "bool" else None
+    return None
 
 
 def _amount(extent: Extent) -> str:

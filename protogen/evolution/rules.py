@@ -77,7 +77,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-sign", _W, "a number has a sign now, or none any more", _BOTH),
     Rule("field-byte-order", _W, "a number's bytes stand in another order", _BOTH),
     Rule("field-encoding", _W, "a field is encoded another way", _BOTH),
-    Rule("field-kind", _S, "a number is shown another way", "check the code that uses it"),
+    Rule("field-kind", _S, "the same bytes are shown another way", "check the code that uses it"),
     Rule("field-count", _W, "a field has another number of elements or bytes", _BOTH),
     Rule("field-cases", _W, "a switch has other cases", _BOTH),
     Rule("field-constant", _W, "a constant has another value", _BOTH),
@@ -87,6 +87,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-scale", _V, "the same number means another quantity", _BOTH),
     Rule("field-offset", _V, "the same number means another quantity", _BOTH),
     Rule("field-unit", _V, "the same number has another unit", _BOTH),
+    Rule("field-rescaled", _S, "the same quantity has another unit", "check the code that uses it"),
     Rule("field-special", _V, "a special value is new, gone or another", _BOTH),
     Rule("field-special-renamed", _S, "a special value has another name", _RENAME),
     # named values

@@ -21,8 +21,11 @@ ROUNDS = 64
 """Samples with boundaries, at most."""
 RANDOM = 60
 """Random samples behind these."""
+_LONGEST = 48
+"""Characters of a value that are shown."""
 MARKED = 40
 """Samples in which a value is looked at that has a name in one version."""
+_DULL = re.compile(r"[-0. ]*(\(.*\))?", re.DOTALL)
 _INDEX = re.compile(r"\[\d+\]")
 
 
@@ -122,6 +125,8 @@ class Witnesses:
     ) -> list[Witness]:
         """Frames of a message that differ; if the change is of one value, those that hold it."""
         mark = change.marks[0 if old_sends else 1]
+        if change.is_lost and not old_sends:
+            return []  # Nobody sends what has no name any more.
         if mark is None or change.path is None:
             return self.differing(old_sends, sender, message)
         path = change.path if old_sends else change.now or change.path
@@ -240,15 +245,16 @@ class Witnesses:
             if change.old_part is not None
         }
         names = {**renamed, **parts}
-        known = dict(sent.values)
-        theirs = dict(received.values)
+        theirs = dict(received.meanings)
         mapping = names if old_sends else _swapped(names)
-        for path, value in known.items():
-            there = theirs.pop(_translated(path, mapping), None)
-            if there != value:
-                yield Difference(path, value, there)
-        for path, value in theirs.items():
-            yield Difference(path, None, value)
+        for path, meaning in sent.meanings.items():
+            place = _translated(path, mapping)
+            if place not in theirs:
+                yield Difference(path, sent.values[path], None)
+            elif theirs.pop(place) != meaning:
+                yield Difference(path, sent.values[path], received.values[place])
+        for path in theirs:
+            yield Difference(path, None, received.values[path])
 
 
 def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
@@ -258,7 +264,11 @@ def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
 
 
 def _shown(value: str | None) -> str:
-    return value or "nothing"
+    if not value:
+        return "nothing"
+    if len(value) <= _LONGEST:
+        return value
+    return f"{value[: _LONGEST - 4]} ... ({len(value)} characters)"
 
 
 def _names(message: Message) -> list[str]:
@@ -292,7 +302,7 @@ def _fitted(witness: Witness, change: Change) -> Witness | None:
     inside = tuple(item for item in witness.differences if _is_inside(item.path, paths))
     if not inside:
         return None
-    is_misread = any(item.received is not None for item in inside)
+    is_misread = any(item.received is not None for item in inside) and not change.is_lost
     return replace(witness, differences=inside, harm=Harm.MISREAD if is_misread else Harm.LOST)
 
 
@@ -321,10 +331,12 @@ def _holds(reading: Reading, path: str, mark: Mark) -> bool:
     return any(mark.on(raw) for raw in found)
 
 
-def _rank(witness: Witness) -> tuple[int, int]:
-    """The most telling first: a wrong value before a lost frame, and short frames."""
+def _rank(witness: Witness) -> tuple[int, bool, int]:
+    """The most telling first: a wrong value before a lost frame, no zeros, and short frames."""
     order = [Harm.MISREAD, Harm.REJECTED, Harm.LOST]
-    return order.index(witness.harm), len(witness.frame)
+    shown = witness.differences[0] if witness.differences else None
+    value = (shown.sent or shown.received or "") if shown is not None else "-"
+    return order.index(witness.harm), _DULL.fullmatch(value) is not None, len(witness.frame)
 
 
 def _rank_of_frames(witness: Witness) -> tuple[bool, int]:

@@ -1,0 +1,254 @@
+"""What findings say of who is hurt and how, held against what codecs do with the frames."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from cli_support import run
+
+from protogen.compiler import compile_file
+from protogen.evolution.findings import Finding, findings
+from protogen.evolution.quantities import meaning_of
+from protogen.model.fields import Field
+from protogen.model.protocol import Protocol
+from protogen.model.types import Integer
+from protogen.runtime.errors import DecodeError
+from protogen.targets.python.live import module_of
+
+SCHEMA = """\
+protocol: demo
+endpoints: {host: Computer, board: Sensor board}
+byte_order: little
+frame:
+  start:   {literal: 0xAA}
+  length:  {type: uint8, counts: payload, range: [0, 40]}
+  kind:    {type: uint8, id: true}
+  number:  {type: uint8, counter: true}
+  payload: {}
+  crc:     {type: uint16, algorithm: CRC-16/KERMIT, covers: [kind, number, payload]}
+transparency:
+  covers: length..crc
+  escape: {byte: 0xAB, of: [0xAA, 0xAB], transform: {xor: 0x20}}
+types:
+  mode: {type: uint8, values: {idle: 0, run: 1, stop: 2, wait: 3}}
+  gate: {type: uint8, values: {shut: 0, open: 1}, closed: true}
+messages:
+  state:
+    id: 1
+    from: board
+    fields:
+      x: uint8
+      is_on: bool
+      text: {type: ascii, size: 4}
+      raw: {type: bytes, size: 4}
+      mode: mode
+      gate: gate
+      lamps: {type: uint8, flags: {hot: 0, wet: 1}}
+      gear: {type: uint8, bits: {step: {bits: 0..2, values: {low: 1, high: 5}}, rest: {bits: 3..7}}}
+      way: {type: uint16, unit: mm, special: {unseen: 0xFFFF}}
+      speed: {type: float32, unit: m/s}
+  order: {id: 2, from: host, fields: {mode: mode}}
+"""
+
+
+def compiled(path: Path, text: str) -> Protocol:
+    path.write_text(text, encoding="utf-8")
+    compilation = compile_file(path)
+    assert compilation.protocol is not None, compilation.problems
+    return compilation.protocol
+
+
+def after(tmp_path: Path, *edits: tuple[str, str]) -> tuple[Protocol, Protocol, list[Finding]]:
+    text = SCHEMA
+    for before, now in edits:
+        assert text.count(before) == 1, before
+        text = text.replace(before, now)
+    old = compiled(tmp_path / "old.yaml", SCHEMA)
+    new = compiled(tmp_path / "new.yaml", text)
+    return old, new, findings(old, new)[1]
+
+
+def said(found: list[Finding]) -> list[tuple[str, str, str, str]]:
+    return [(f.category.value, f.rule.name, f.hurt, f.harm) for f in found]
+
+
+class TestNames:
+    def test_each_name_has_a_frame_that_holds_it(self, tmp_path: Path) -> None:
+        edit = "{idle: 0, run: 1, stop: 2, wait: 3}", "{idle: 0, run: 7}"
+        old, new, found = after(tmp_path, edit)
+        modules = {True: module_of(old), False: module_of(new)}
+        seen = {}
+        for item in found:
+            for witness in item.witnesses:
+                sender = witness.sender
+                read = modules[witness.old_sends].decode(witness.frame, sender)
+                seen[item.change.text, witness.old_sends] = int(read.mode)
+        assert seen == {
+            ("run from 1 to 7", True): 1,
+            ("run from 1 to 7", False): 7,
+            ("stop, 2", True): 2,
+            ("wait, 3", True): 3,
+        }
+
+    def test_a_name_that_is_gone_loses_meaning_and_misleads_nobody(self, tmp_path: Path) -> None:
+        edits = [
+            ("stop: 2, wait: 3", "stop: 2"),
+            ("{hot: 0, wet: 1}", "{hot: 0}"),
+            ("{low: 1, high: 5}", "{low: 1}"),
+        ]
+        for edit in edits:
+            _, _, (item,) = after(tmp_path, edit)
+            assert (item.hurt, item.harm) == ("new receiver of old frames", "lost")
+
+    def test_a_number_that_another_name_takes_over_misleads(self, tmp_path: Path) -> None:
+        _, _, found = after(tmp_path, ("stop: 2, wait: 3", "wait: 2"))
+        gone = next(item for item in found if item.rule.name == "enum-value-deleted")
+        assert (gone.hurt, gone.harm) == ("both", "misread")
+        assert "reads mode 2 (wait) where 2 (stop) was meant" in gone.witnesses[0].words
+
+    def test_a_run_of_bits_is_looked_at_by_its_own_values(self, tmp_path: Path) -> None:
+        old, new, (item,) = after(tmp_path, ("{low: 1, high: 5}", "{low: 1, high: 6}"))
+        assert (item.rule.name, item.change.place) == ("enum-value", "state.gear.step")
+        modules = {True: module_of(old), False: module_of(new)}
+        for witness in item.witnesses:
+            gear = modules[witness.old_sends].decode(witness.frame, "board").to_dict()["gear"]
+            raw = gear if isinstance(gear, int) else gear["step"]
+            assert raw & 7 == (5 if witness.old_sends else 6)
+
+    def test_a_closed_enum_that_grows_loses_frames(self, tmp_path: Path) -> None:
+        old, new, (item,) = after(tmp_path, ("open: 1}", "open: 1, stuck: 2}"))
+        assert said([item]) == [
+            ("WIRE", "enum-closed-added", "old receiver of new frames", "rejected")
+        ]
+        (witness,) = item.witnesses
+        assert int(module_of(new).decode(witness.frame, "board").gate) == 2
+        with pytest.raises(DecodeError, match="value"):
+            module_of(old).decode(witness.frame, "board")
+
+    def test_a_closed_enum_that_renames_by_moving_still_takes_the_number(
+        self, tmp_path: Path
+    ) -> None:
+        _, _, found = after(tmp_path, ("{shut: 0, open: 1}", "{open: 0}"))
+        assert {f.rule.name for f in found} == {"enum-value", "enum-value-deleted"}
+
+
+class TestQuantities:
+    @pytest.mark.parametrize(
+        ("unit", "scale"), [("m", "1/1000"), ("cm", "1/10"), ("um", "1000"), ("km", "1/1000000")]
+    )
+    def test_the_same_quantity_in_another_unit_hurts_nobody(
+        self, unit: str, scale: str, tmp_path: Path
+    ) -> None:
+        edit = "uint16, unit: mm", f"uint16, scale: {scale}, unit: {unit}"
+        _, _, found = after(tmp_path, edit)
+        assert said(found) == [("SOURCE", "field-rescaled", "code", "recompile")]
+
+    @pytest.mark.parametrize("unit", ["cm", "m", "s", "inch", "mV"])
+    def test_another_unit_is_shown_by_a_number_that_is_not_zero(
+        self, unit: str, tmp_path: Path
+    ) -> None:
+        _, _, (item,) = after(tmp_path, ("uint16, unit: mm", f"uint16, unit: {unit}"))
+        assert said([item]) == [("VALUE", "field-unit", "both", "misread")]
+        for witness in item.witnesses:
+            assert not witness.differences[0].sent.startswith("0 ")  # type: ignore[union-attr]
+
+    @pytest.mark.parametrize("unit", ["min", "mm/s", "percent", "deg/s", "cd", "mol", "ms/m"])
+    def test_letters_that_are_no_prefix_stay(self, unit: str) -> None:
+        field = Field(name="f", type=Integer(bits=8), position=0, unit=unit)
+        known = {"mm/s": "m/s", "ms/m": "s/m"}
+        assert meaning_of(field).unit == known.get(unit, unit)
+
+    def test_special_values_have_no_quantity(self, tmp_path: Path) -> None:
+        _, _, (item,) = after(tmp_path, ("unseen: 0xFFFF", "unseen: 0xFFFE"))
+        assert (item.hurt, item.harm) == ("both", "misread")
+        old, new = item.witnesses
+        assert "where 65535 (unseen) was meant" in old.words
+        assert "where 65534 (unseen) was meant" in new.words
+
+
+class TestOtherForms:
+    @pytest.mark.parametrize(
+        "edit",
+        [
+            ("raw: {type: bytes, size: 4}", "raw: {type: ascii, size: 4}"),
+            ("raw: {type: bytes, size: 4}", "raw: {type: uint8, count: 4}"),
+            ("text: {type: ascii, size: 4}", "text: {type: bytes, size: 4}"),
+            ("x: uint8", "x: char"),
+        ],
+    )
+    def test_the_same_bytes_in_another_form_hurt_code_only(
+        self, edit: tuple[str, str], tmp_path: Path
+    ) -> None:
+        _, _, found = after(tmp_path, edit)
+        assert said(found) == [("SOURCE", "field-kind", "code", "recompile")]
+
+    def test_a_bool_refuses_what_a_number_may_be(self, tmp_path: Path) -> None:
+        _, _, found = after(tmp_path, ("x: uint8", "x: bool"))
+        assert said(found) == [("WIRE", "field-encoding", "new receiver of old frames", "rejected")]
+
+    def test_a_number_that_was_a_bool(self, tmp_path: Path) -> None:
+        _, _, found = after(tmp_path, ("is_on: bool", "is_on: uint8"))
+        assert said(found) == [("WIRE", "field-encoding", "old receiver of new frames", "rejected")]
+
+
+class TestFrames:
+    def test_a_length_that_nobody_sends_is_no_harm(self, tmp_path: Path) -> None:
+        _, _, found = after(tmp_path, ("range: [0, 40]", "range: [0, 60]"))
+        ranges = [f for f in found if f.change.part == "length"]
+        assert {f.rule.name for f in ranges} == {"frame-part-range"}
+        assert all("no message is so long" in f.change.text for f in ranges)
+
+    def test_receivers_refuse_a_length_beyond_theirs(self, tmp_path: Path) -> None:
+        edits = ("range: [0, 40]", "range: [0, 60]"), ("raw: {type: bytes, size: 4}", LONG)
+        old, _, found = after(tmp_path, *edits)
+        item = next(f for f in found if f.rule.name == "frame-length-range")
+        assert said([item]) == [
+            ("WIRE", "frame-length-range", "old receiver of new frames", "rejected")
+        ]
+        (witness,) = item.witnesses
+        with pytest.raises(DecodeError, match="length"):
+            module_of(old).decode(witness.frame, "board")
+
+    def test_receivers_take_any_value_of_another_part(self, tmp_path: Path) -> None:
+        edit = "counter: true}", "counter: true, range: [0, 9]}"
+        old, new, found = after(tmp_path, edit)
+        rules = {f.rule.name for f in found if f.change.part is not None}
+        assert rules == {"frame-part-range"}
+        module = module_of(old)
+        frame = module.encode(module.Order(mode=module.Mode.RUN), number=77)
+        assert module_of(new).decode(frame, "host").mode == 1
+
+    def test_what_no_frame_shows_is_refused_as_well(self, tmp_path: Path) -> None:
+        """A counter that is no counter any more looks the same on the wire."""
+        _, _, found = after(tmp_path, ("counter: true", "default: 0"))
+        assert {f.rule.name for f in found} == {"frame-part-kind"}
+        assert {f.category.value for f in found} == {"SOURCE"}
+        assert {f.rule.category.value for f in found} == {"WIRE"}
+        done = run("breaking", str(tmp_path / "old.yaml"), str(tmp_path / "new.yaml"))
+        assert done.exit_code == 1
+        assert "SOURCE [frame-part-kind]" in done.output
+
+    def test_a_change_of_all_is_not_shown_by_one_of_a_message(self, tmp_path: Path) -> None:
+        """Both messages changed; the frames still show what the checksum does."""
+        edits = (
+            ("algorithm: CRC-16/KERMIT", "algorithm: CRC-16/XMODEM"),
+            ("{idle: 0, run: 1, stop: 2, wait: 3}", "{idle: 1, run: 0, stop: 2, wait: 3}"),
+        )
+        _, _, found = after(tmp_path, *edits)
+        for item in found:
+            if item.rule.name == "frame-checksum-algorithm":
+                assert (item.hurt, item.harm) == ("both", "rejected")
+                assert {witness.received.why for witness in item.witnesses} == {"checksum"}
+
+
+LONG = "raw: {type: bytes, size: 35}"
+
+
+def test_the_words_of_a_stuffing_say_what_changed(tmp_path: Path) -> None:
+    _, _, found = after(tmp_path, ("xor: 0x20", "xor: 0x40"))
+    texts = {item.change.text for item in found}
+    assert texts == {
+        "from escape AB of AA AB, xor 20 over length..crc "
+        "to escape AB of AA AB, xor 40 over length..crc"
+    }
