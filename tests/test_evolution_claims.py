@@ -192,6 +192,32 @@ class TestOtherForms:
         assert said(found) == [("WIRE", "field-encoding", "old receiver of new frames", "rejected")]
 
 
+class TestCases:
+    def test_each_case_has_a_frame_that_selects_it(self, tmp_path: Path) -> None:
+        old = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        fields = SWITCH_FIELDS.replace("CASES", "{1: uint16, 2: uint16, 3: uint32}")
+        base = compiled(tmp_path / "base.yaml", SCHEMA.replace(old, fields))
+        less = fields.replace("{1: uint16, 2: uint16, 3: uint32}", "{1: uint16}")
+        new = compiled(tmp_path / "less.yaml", SCHEMA.replace(old, less))
+        module = module_of(base)
+        seen = {}
+        for item in findings(base, new)[1]:
+            for witness in item.witnesses:
+                if witness.old_sends and item.rule.name == "field-cases":
+                    seen[item.change.text] = int(module.decode(witness.frame, "host").kind)
+        assert seen == {"no case 2 any more": 2, "no case 3 any more": 3}
+
+
+SWITCH_FIELDS = """\
+  order:
+    id: 2
+    from: host
+    fields:
+      kind: uint8
+      value: {switch: kind, cases: CASES}
+"""
+
+
 class TestFrames:
     def test_a_length_that_nobody_sends_is_no_harm(self, tmp_path: Path) -> None:
         _, _, found = after(tmp_path, ("range: [0, 40]", "range: [0, 60]"))

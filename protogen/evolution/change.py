@@ -45,6 +45,8 @@ class Change:
     """A value or a flag by its names in OLD and NEW; None where it has none."""
     marks: tuple[Mark | None, Mark | None] = (None, None)
     """What the field holds in frames of OLD and of NEW that show the change; None for anything."""
+    selector: str | None = None
+    """The field, beside or around this one, that holds what the marks are of."""
     is_lost: bool = False
     """Whether what has the marks is only not known by its name any more."""
     part: str | None = None

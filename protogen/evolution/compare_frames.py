@@ -34,7 +34,7 @@ def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
         yield Change(
             rule="frame-size-limit",
             place=f"{old.name} frame",
-            text=named(f"{before} bytes", f"{after}"),
+            text=f"{named(str(before), str(after))} bytes",
             sender=old.name,
         )
 

@@ -111,10 +111,11 @@ class TypeComparison:
         before = {case.value: case for case in old.cases}
         after = {case.value: case for case in new.cases}
         for value in sorted(before.keys() | after.keys()):
-            if value not in after:
-                yield self._report("field-cases", path, f"no case {value} any more")
-            elif value not in before:
-                yield self._report("field-cases", path, f"a case {value}")
+            if (value in before) != (value in after):
+                words = f"a case {value}" if value in after else f"no case {value} any more"
+                found = self._report("field-cases", path, words)
+                marks = Mark(-1, value), Mark(-1, value)
+                yield replace(found, marks=marks, selector=new.selector)
             else:
                 case = before[value]
                 yield from self.compare(case.type, after[value].type, path)

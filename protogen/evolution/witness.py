@@ -130,6 +130,10 @@ class Witnesses:
         if mark is None or change.path is None:
             return self.differing(old_sends, sender, message)
         path = change.path if old_sends else change.now or change.path
+        if change.selector is not None:
+            seen = self.differing(old_sends, sender, message)
+            paths = _around(path, change.selector)
+            return [item for item in seen if any(_holds(item.sent, at, mark) for at in paths)]
         drawn = islice(self._samples(old_sends, sender, message), MARKED)
         samples = [(_marked(values, path.split("."), mark), parts) for values, parts in drawn]
         return [
@@ -323,6 +327,12 @@ def _marked(value: Any, steps: Sequence[str], mark: Mark) -> Any:
     if not isinstance(value, dict) or steps[0] not in value:
         return value
     return {**value, steps[0]: _marked(value[steps[0]], steps[1:], mark)}
+
+
+def _around(path: str, name: str) -> list[str]:
+    """Where a field may be that something at a path depends on: beside it, or further out."""
+    steps = path.split(".")[:-1]
+    return [".".join([*steps[:count], name]) for count in range(len(steps) + 1)]
 
 
 def _holds(reading: Reading, path: str, mark: Mark) -> bool:
