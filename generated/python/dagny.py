@@ -409,10 +409,10 @@ HOST_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
-_UNPACK_0 = _struct.Struct("<B").unpack_from
-_PACK_0 = _struct.Struct("<B").pack
+_MessageEvent = _rt.MessageEvent
+_UNPACK_0 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _fast.Members(PowerCode)
-_CHECKSUM_0 = _checksum.Xor8().compute
+_PACK_0 = _struct.Struct("<B").pack
 
 
 def _read_sonar(data: bytes) -> Sonar:
@@ -429,18 +429,6 @@ def _read_sonar(data: bytes) -> Sonar:
     return item
 
 
-def _write_sonar(item: Sonar) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
@@ -453,18 +441,6 @@ def _read_gps(data: bytes) -> Gps:
     if at != len(data):
         raise _fast.Unclear
     return item
-
-
-def _write_gps(item: Gps) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
 
 
 def _read_bump(data: bytes) -> Bump:
@@ -481,18 +457,6 @@ def _read_bump(data: bytes) -> Bump:
     return item
 
 
-def _write_bump(item: Bump) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_odometry(data: bytes) -> Odometry:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
@@ -505,18 +469,6 @@ def _read_odometry(data: bytes) -> Odometry:
     if at != len(data):
         raise _fast.Unclear
     return item
-
-
-def _write_odometry(item: Odometry) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
 
 
 def _read_speed(data: bytes) -> Speed:
@@ -533,18 +485,6 @@ def _read_speed(data: bytes) -> Speed:
     return item
 
 
-def _write_speed(item: Speed) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_wheel_slip(data: bytes) -> WheelSlip:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
@@ -557,18 +497,6 @@ def _read_wheel_slip(data: bytes) -> WheelSlip:
     if at != len(data):
         raise _fast.Unclear
     return item
-
-
-def _write_wheel_slip(item: WheelSlip) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
 
 
 def _read_battery(data: bytes) -> Battery:
@@ -585,18 +513,6 @@ def _read_battery(data: bytes) -> Battery:
     return item
 
 
-def _write_battery(item: Battery) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_reflex_settings(data: bytes) -> ReflexSettings:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
@@ -609,18 +525,6 @@ def _read_reflex_settings(data: bytes) -> ReflexSettings:
     if at != len(data):
         raise _fast.Unclear
     return item
-
-
-def _write_reflex_settings(item: ReflexSettings) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
 
 
 def _read_hardware_status(data: bytes) -> HardwareStatus:
@@ -637,104 +541,45 @@ def _read_hardware_status(data: bytes) -> HardwareStatus:
     return item
 
 
-def _write_hardware_status(item: HardwareStatus) -> bytes:
-    v1 = item.data
-    if type(v1) is not bytes:
-        raise _fast.Unclear
-    if len(v1) > 128:
-        raise _fast.Unclear
-    payload = v1
-    if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_motor(data: bytes) -> Motor:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Motor)
-    item.s = data[0]
+    (item.s,) = _UNPACK_0(data)
     return item
-
-
-def _write_motor(item: Motor) -> bytes:
-    v1 = item.s
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_steering(data: bytes) -> Steering:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Steering)
-    item.s = data[0]
+    (item.s,) = _UNPACK_0(data)
     return item
-
-
-def _write_steering(item: Steering) -> bytes:
-    v1 = item.s
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_reflex(data: bytes) -> Reflex:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Reflex)
-    item.reflex = data[0]
+    (item.reflex,) = _UNPACK_0(data)
     return item
 
 
-def _write_reflex(item: Reflex) -> bytes:
-    v1 = item.reflex
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
-
-
 def _read_power_down(data: bytes) -> PowerDown:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(PowerDown)
-    v1 = data[0]
+    (v1,) = _UNPACK_0(data)
     item.code = _MEMBERS_0[v1]
     if item.code != 3:
         raise _fast.Unclear
     return item
 
 
-def _write_power_down(item: PowerDown) -> bytes:
-    v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
-        raise _fast.Unclear
-    if v1 != 3:
-        raise _fast.Unclear
-    return _PACK_0(v1)
-
-
 def _read_power(data: bytes) -> Power:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Power)
-    v1 = data[0]
+    (v1,) = _UNPACK_0(data)
     item.code = _MEMBERS_0[v1]
     return item
-
-
-def _write_power(item: Power) -> bytes:
-    v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_laser(data: bytes) -> Laser:
     if not 0 <= len(data) <= 512:
         raise _fast.Unclear
     item = _new(Laser)
-    n1, left2 = divmod(len(data) - (0), 1)
+    n1, left2 = divmod(len(data) - 0, 1)
     if left2 or n1 > 512:
         raise _fast.Unclear
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
@@ -743,20 +588,6 @@ def _read_laser(data: bytes) -> Laser:
     if at != len(data):
         raise _fast.Unclear
     return item
-
-
-def _write_laser(item: Laser) -> bytes:
-    v1 = item.readings
-    if type(v1) is not list:
-        raise _fast.Unclear
-    if len(v1) > 512:
-        raise _fast.Unclear
-    if not set(map(type, v1)) <= _fast.INTEGERS:
-        raise _fast.Unclear
-    payload = _struct.pack(f"<{len(v1)}B", *v1)
-    if not 0 <= len(payload) <= 512:
-        raise _fast.Unclear
-    return payload
 
 
 def _read_command(data: bytes) -> Command:
@@ -773,7 +604,145 @@ def _read_command(data: bytes) -> Command:
     return item
 
 
-def _write_command(item: Command) -> bytes:
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    add = events.append
+    try:
+        while True:
+            payload_size, read, numbers = _HOST_KINDS[data[at]]
+            if payload_size < 0:
+                end = data.find(b"\x0a", at + 1)
+                if end < 0:
+                    return at
+                end += 1
+            elif payload_size:
+                end = at + 3 + payload_size
+            else:
+                end = at + 2
+            if end > size:
+                return at
+            raw = data[at:end]
+            if len(raw) > 515:
+                return at
+            if not raw.endswith(b"\x0a"):
+                return at
+            content = raw[:-1]
+            if len(content) <= 2:
+                if len(content) != 1:
+                    return at
+                payload = b""
+            else:
+                payload = content[1:-1]
+            if payload:
+                if content[-1] != _checksum.xor_of(content[:-1]):
+                    return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x4D: (1, _read_motor, (77,)),
+    0x53: (1, _read_steering, (83,)),
+    0x52: (1, _read_reflex, (82,)),
+    0x50: (1, _read_power, (80,)),
+    0x4C: (-1, _read_laser, (76,)),
+    0x43: (-1, _read_command, (67,)),
+}
+
+def _frame_host(payload: bytes, id_: int | None) -> bytes:
+    if payload:
+        content = _PACK_0(id_) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(id_) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
+
+
+def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    add = events.append
+    try:
+        while True:
+            payload_size, read, numbers = _ROBOT_KINDS[data[at]]
+            if payload_size < 0:
+                end = data.find(b"\x0a", at + 1)
+                if end < 0:
+                    return at
+                end += 1
+            elif payload_size:
+                end = at + 3 + payload_size
+            else:
+                end = at + 2
+            if end > size:
+                return at
+            raw = data[at:end]
+            if len(raw) > 515:
+                return at
+            if not raw.endswith(b"\x0a"):
+                return at
+            content = raw[:-1]
+            if len(content) <= 2:
+                if len(content) != 1:
+                    return at
+                payload = b""
+            else:
+                payload = content[1:-1]
+            if payload:
+                if content[-1] != _checksum.xor_of(content[:-1]):
+                    return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = ROBOT_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x53: (-1, _read_sonar, (83,)),
+    0x47: (-1, _read_gps, (71,)),
+    0x42: (-1, _read_bump, (66,)),
+    0x4F: (-1, _read_odometry, (79,)),
+    0x57: (-1, _read_wheel_slip, (87,)),
+    0x62: (-1, _read_battery, (98,)),
+    0x52: (-1, _read_reflex_settings, (82,)),
+    0x48: (-1, _read_hardware_status, (72,)),
+    0x4C: (-1, _read_laser, (76,)),
+    0x43: (-1, _read_command, (67,)),
+}
+
+def _frame_robot(payload: bytes, id_: int | None) -> bytes:
+    if payload:
+        content = _PACK_0(id_) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(id_) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
+
+
+def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
         raise _fast.Unclear
@@ -782,191 +751,225 @@ def _write_command(item: Command) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return payload
+    return _frame_robot(payload, 83)
 
 
-def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    try:
-        while True:
-            payload_size, read = _HOST_KINDS[data[at]]
-            if payload_size < 0:
-                end = data.find(b"\x0a", at + 1)
-                if end < 0:
-                    return at
-                end += 1
-            elif payload_size:
-                end = at + 3 + payload_size
-            else:
-                end = at + 2
-            if end > size:
-                return at
-            raw = data[at:end]
-            if len(raw) > 515:
-                return at
-            if not raw.endswith(b"\x0a"):
-                return at
-            content = raw[:-1]
-            if len(content) <= 2:
-                if len(content) != 1:
-                    return at
-                payload = b""
-            else:
-                payload = content[1:-1]
-            if payload:
-                if content[-1] != _CHECKSUM_0(content[:-1]):
-                    return at
-            numbers = (content[0],)
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = HOST_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x4D: (1, _read_motor),
-    0x53: (1, _read_steering),
-    0x52: (1, _read_reflex),
-    0x50: (1, _read_power),
-    0x4C: (-1, _read_laser),
-    0x43: (-1, _read_command),
-}
-
-def _frame_host(payload: bytes, id_: int | None) -> bytes:
-    events: list[_typing.Any] = []
-    if payload:
-        content = _PACK_0(id_) + payload
-        content += _BYTES[_CHECKSUM_0(content)]
-        wire = content + b"\x0a"
-        end = _cut_host(wire, 0, 0, events)
-        if end != len(wire) or [event.payload for event in events] != [payload]:
-            raise _fast.Unclear
-        return wire
-    content = _PACK_0(id_) + payload
-    wire = content + b"\x0a"
-    end = _cut_host(wire, 0, 0, events)
-    if end != len(wire) or [event.payload for event in events] != [payload]:
+def _encode_gps(item: Gps, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
         raise _fast.Unclear
-    return wire
-
-
-def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    try:
-        while True:
-            payload_size, read = _ROBOT_KINDS[data[at]]
-            if payload_size < 0:
-                end = data.find(b"\x0a", at + 1)
-                if end < 0:
-                    return at
-                end += 1
-            elif payload_size:
-                end = at + 3 + payload_size
-            else:
-                end = at + 2
-            if end > size:
-                return at
-            raw = data[at:end]
-            if len(raw) > 515:
-                return at
-            if not raw.endswith(b"\x0a"):
-                return at
-            content = raw[:-1]
-            if len(content) <= 2:
-                if len(content) != 1:
-                    return at
-                payload = b""
-            else:
-                payload = content[1:-1]
-            if payload:
-                if content[-1] != _CHECKSUM_0(content[:-1]):
-                    return at
-            numbers = (content[0],)
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = ROBOT_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x53: (-1, _read_sonar),
-    0x47: (-1, _read_gps),
-    0x42: (-1, _read_bump),
-    0x4F: (-1, _read_odometry),
-    0x57: (-1, _read_wheel_slip),
-    0x62: (-1, _read_battery),
-    0x52: (-1, _read_reflex_settings),
-    0x48: (-1, _read_hardware_status),
-    0x4C: (-1, _read_laser),
-    0x43: (-1, _read_command),
-}
-
-def _frame_robot(payload: bytes, id_: int | None) -> bytes:
-    events: list[_typing.Any] = []
-    if payload:
-        content = _PACK_0(id_) + payload
-        content += _BYTES[_CHECKSUM_0(content)]
-        wire = content + b"\x0a"
-        end = _cut_robot(wire, 0, 0, events)
-        if end != len(wire) or [event.payload for event in events] != [payload]:
-            raise _fast.Unclear
-        return wire
-    content = _PACK_0(id_) + payload
-    wire = content + b"\x0a"
-    end = _cut_robot(wire, 0, 0, events)
-    if end != len(wire) or [event.payload for event in events] != [payload]:
+    v1 = item.data
+    if type(v1) is not bytes:
         raise _fast.Unclear
-    return wire
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 71)
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "host",
-        _frame_host,
-        {
-            Motor: _write_motor,
-            Steering: _write_steering,
-            Reflex: _write_reflex,
-            PowerDown: _write_power_down,
-            Power: _write_power,
-            Laser: _write_laser,
-            Command: _write_command,
-        },
-    ),
-    _fast.SenderWriters(
-        "robot",
-        _frame_robot,
-        {
-            Sonar: _write_sonar,
-            Gps: _write_gps,
-            Bump: _write_bump,
-            Odometry: _write_odometry,
-            Speed: _write_speed,
-            WheelSlip: _write_wheel_slip,
-            Battery: _write_battery,
-            ReflexSettings: _write_reflex_settings,
-            HardwareStatus: _write_hardware_status,
-            Laser: _write_laser,
-            Command: _write_command,
-        },
-    ),
-)
+def _encode_bump(item: Bump, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 66)
+
+
+def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 79)
+
+
+def _encode_speed(item: Speed, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 79)
+
+
+def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 87)
+
+
+def _encode_battery(item: Battery, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 98)
+
+
+def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 82)
+
+
+def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    return _frame_robot(payload, 72)
+
+
+def _encode_motor(item: Motor, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.s
+    if type(v1) is not int:
+        raise _fast.Unclear
+    payload = _PACK_0(v1)
+    return _frame_host(payload, 77)
+
+
+def _encode_steering(item: Steering, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.s
+    if type(v1) is not int:
+        raise _fast.Unclear
+    payload = _PACK_0(v1)
+    return _frame_host(payload, 83)
+
+
+def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.reflex
+    if type(v1) is not int:
+        raise _fast.Unclear
+    payload = _PACK_0(v1)
+    return _frame_host(payload, 82)
+
+
+def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    if v1 != 3:
+        raise _fast.Unclear
+    payload = _PACK_0(v1)
+    return _frame_host(payload, 80)
+
+
+def _encode_power(item: Power, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    payload = _PACK_0(v1)
+    return _frame_host(payload, 80)
+
+
+def _encode_laser(item: Laser, sender: str | None) -> bytes:
+    v1 = item.readings
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) > 512:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    payload = _struct.pack(f"<{len(v1)}B", *v1)
+    if not 0 <= len(payload) <= 512:
+        raise _fast.Unclear
+    if sender == "host":
+        return _frame_host(payload, 76)
+    if sender == "robot":
+        return _frame_robot(payload, 76)
+    raise _fast.Unclear
+
+
+def _encode_command(item: Command, sender: str | None) -> bytes:
+    v1 = item.data
+    if type(v1) is not bytes:
+        raise _fast.Unclear
+    if len(v1) > 128:
+        raise _fast.Unclear
+    payload = v1
+    if not 0 <= len(payload) <= 128:
+        raise _fast.Unclear
+    if sender == "host":
+        return _frame_host(payload, 67)
+    if sender == "robot":
+        return _frame_robot(payload, 67)
+    raise _fast.Unclear
+
+
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    Sonar: _encode_sonar,
+    Gps: _encode_gps,
+    Bump: _encode_bump,
+    Odometry: _encode_odometry,
+    Speed: _encode_speed,
+    WheelSlip: _encode_wheel_slip,
+    Battery: _encode_battery,
+    ReflexSettings: _encode_reflex_settings,
+    HardwareStatus: _encode_hardware_status,
+    Motor: _encode_motor,
+    Steering: _encode_steering,
+    Reflex: _encode_reflex,
+    PowerDown: _encode_power_down,
+    Power: _encode_power,
+    Laser: _encode_laser,
+    Command: _encode_command,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -1060,8 +1063,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity)
+            return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

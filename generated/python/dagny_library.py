@@ -448,26 +448,28 @@ HOST_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
+_MessageEvent = _rt.MessageEvent
 _UNPACK_0 = _struct.Struct("<5B").unpack_from
-_PACK_0 = _struct.Struct("<5B").pack
-_UNPACK_1 = _struct.Struct("<HHHhhhb").unpack_from
-_PACK_1 = _struct.Struct("<HHHhhhb").pack
-_UNPACK_2 = _struct.Struct("<BBi").unpack_from
-_PACK_2 = _struct.Struct("<BBi").pack
-_UNPACK_3 = _struct.Struct("<hh").unpack_from
-_PACK_3 = _struct.Struct("<hh").pack
-_UNPACK_4 = _struct.Struct("<b").unpack_from
-_PACK_4 = _struct.Struct("<b").pack
-_UNPACK_5 = _struct.Struct("<bB").unpack_from
-_PACK_5 = _struct.Struct("<bB").pack
-_UNPACK_6 = _struct.Struct("<B").unpack_from
-_PACK_6 = _struct.Struct("<B").pack
+_UNPACK_1 = _struct.Struct("<HHHhhhb").unpack
+_UNPACK_2 = _struct.Struct("<BBi").unpack
+_UNPACK_3 = _struct.Struct("<hh").unpack
+_UNPACK_4 = _struct.Struct("<b").unpack
+_UNPACK_5 = _struct.Struct("<bB").unpack
+_UNPACK_6 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _fast.Members(PowerCode)
-_UNPACK_7 = _struct.Struct("<ii").unpack_from
-_PACK_7 = _struct.Struct("<ii").pack
-_UNPACK_8 = _struct.Struct("<7s").unpack_from
-_PACK_8 = _struct.Struct("<7s").pack
+_UNPACK_7 = _struct.Struct("<ii").unpack
+_UNPACK_8 = _struct.Struct("<7s").unpack
 _STUFFING_0 = _transparency.Escape(0x1B, frozenset({0x0D, 0x1B}), 0x1B)
+_PACK_0 = _struct.Struct("<B").pack
+_PACK_1 = _struct.Struct("<5B").pack
+_PACK_2 = _struct.Struct("<BHHHhhhb").pack
+_PACK_3 = _struct.Struct("<BBBi").pack
+_PACK_4 = _struct.Struct("<Bhh").pack
+_PACK_5 = _struct.Struct("<Bb").pack
+_PACK_6 = _struct.Struct("<BbB").pack
+_PACK_7 = _struct.Struct("<BB").pack
+_PACK_8 = _struct.Struct("<Bii").pack
+_PACK_9 = _struct.Struct("<7s").pack
 
 
 def _read_sonar(data: bytes) -> Sonar:
@@ -476,17 +478,6 @@ def _read_sonar(data: bytes) -> Sonar:
     item = _new(Sonar)
     item.distances = list(_UNPACK_0(data, 0))
     return item
-
-
-def _write_sonar(item: Sonar) -> bytes:
-    v1 = item.distances
-    if type(v1) is not list:
-        raise _fast.Unclear
-    if len(v1) != 5:
-        raise _fast.Unclear
-    if not set(map(type, v1)) <= _fast.INTEGERS:
-        raise _fast.Unclear
-    return _PACK_0(*v1)
 
 
 def _read_gps(data: bytes) -> Gps:
@@ -503,20 +494,7 @@ def _read_gps(data: bytes) -> Gps:
     return item
 
 
-def _write_gps(item: Gps) -> bytes:
-    v1 = item.nmea
-    v2 = v1.encode("ascii")
-    if len(v2) > 126:
-        raise _fast.Unclear
-    payload = v2
-    if not 0 <= len(payload) <= 126:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_odometry(data: bytes) -> Odometry:
-    if len(data) != 13:
-        raise _fast.Unclear
     item = _new(Odometry)
     (
         item.right_count,
@@ -526,141 +504,58 @@ def _read_odometry(data: bytes) -> Odometry:
         item.left_speed,
         item.quad_speed,
         item.steer,
-    ) = _UNPACK_1(data, 0)
+    ) = _UNPACK_1(data)
     return item
-
-
-def _write_odometry(item: Odometry) -> bytes:
-    v1 = item.right_count
-    v2 = item.left_count
-    v3 = item.quad_count
-    v4 = item.right_speed
-    v5 = item.left_speed
-    v6 = item.quad_speed
-    v7 = item.steer
-    if not (type(v1) is type(v2) is type(v3) is type(v4) is type(v5) is type(v6) is int):
-        raise _fast.Unclear
-    if type(v7) is not int:
-        raise _fast.Unclear
-    return _PACK_1(v1, v2, v3, v4, v5, v6, v7)
 
 
 def _read_battery(data: bytes) -> Battery:
-    if len(data) != 6:
-        raise _fast.Unclear
     item = _new(Battery)
-    item.main_battery, item.motor_battery, item.idle = _UNPACK_2(data, 0)
+    item.main_battery, item.motor_battery, item.idle = _UNPACK_2(data)
     return item
-
-
-def _write_battery(item: Battery) -> bytes:
-    v1 = item.main_battery
-    v2 = item.motor_battery
-    v3 = item.idle
-    if not (type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
-    return _PACK_2(v1, v2, v3)
 
 
 def _read_compass(data: bytes) -> Compass:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(Compass)
-    item.x, item.y = _UNPACK_3(data, 0)
+    item.x, item.y = _UNPACK_3(data)
     return item
-
-
-def _write_compass(item: Compass) -> bytes:
-    v1 = item.x
-    v2 = item.y
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_3(v1, v2)
 
 
 def _read_motor(data: bytes) -> Motor:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Motor)
-    (item.speed,) = _UNPACK_4(data, 0)
+    (item.speed,) = _UNPACK_4(data)
     return item
-
-
-def _write_motor(item: Motor) -> bytes:
-    v1 = item.speed
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_4(v1)
 
 
 def _read_drive(data: bytes) -> Drive:
-    if len(data) != 2:
-        raise _fast.Unclear
     item = _new(Drive)
-    item.speed, item.steer = _UNPACK_5(data, 0)
+    item.speed, item.steer = _UNPACK_5(data)
     return item
-
-
-def _write_drive(item: Drive) -> bytes:
-    v1 = item.speed
-    v2 = item.steer
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_5(v1, v2)
 
 
 def _read_steering(data: bytes) -> Steering:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Steering)
-    item.position = data[0]
+    (item.position,) = _UNPACK_6(data)
     return item
 
 
-def _write_steering(item: Steering) -> bytes:
-    v1 = item.position
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_6(v1)
-
-
 def _read_power(data: bytes) -> Power:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Power)
-    v1 = data[0]
+    (v1,) = _UNPACK_6(data)
     item.code = _MEMBERS_0[v1]
     return item
 
 
-def _write_power(item: Power) -> bytes:
-    v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_6(v1)
-
-
 def _read_gps_position(data: bytes) -> GpsPosition:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(GpsPosition)
-    item.latitude, item.longitude = _UNPACK_7(data, 0)
+    item.latitude, item.longitude = _UNPACK_7(data)
     return item
-
-
-def _write_gps_position(item: GpsPosition) -> bytes:
-    v1 = item.latitude
-    v2 = item.longitude
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_7(v1, v2)
 
 
 def _read_laser(data: bytes) -> Laser:
     if not 0 <= len(data) <= 512:
         raise _fast.Unclear
     item = _new(Laser)
-    n1, left2 = divmod(len(data) - (0), 1)
+    n1, left2 = divmod(len(data) - 0, 1)
     if left2 or n1 > 512:
         raise _fast.Unclear
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
@@ -671,39 +566,13 @@ def _read_laser(data: bytes) -> Laser:
     return item
 
 
-def _write_laser(item: Laser) -> bytes:
-    v1 = item.readings
-    if type(v1) is not list:
-        raise _fast.Unclear
-    if len(v1) > 512:
-        raise _fast.Unclear
-    if not set(map(type, v1)) <= _fast.INTEGERS:
-        raise _fast.Unclear
-    payload = _struct.pack(f"<{len(v1)}B", *v1)
-    if not 0 <= len(payload) <= 512:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_shutdown(data: bytes) -> Shutdown:
-    if len(data) != 7:
-        raise _fast.Unclear
     item = _new(Shutdown)
-    (v1,) = _UNPACK_8(data, 0)
+    (v1,) = _UNPACK_8(data)
     item.confirmation = v1.rstrip(b"\0").decode("latin-1")
     if item.confirmation != "ZZZZZZZ":
         raise _fast.Unclear
     return item
-
-
-def _write_shutdown(item: Shutdown) -> bytes:
-    v1 = item.confirmation
-    v2 = v1.encode("ascii")
-    if len(v2) > 7 or v2.endswith(b"\0"):
-        raise _fast.Unclear
-    if v1 != "ZZZZZZZ":
-        raise _fast.Unclear
-    return _PACK_8(v2)
 
 
 def _read_host_77(data: bytes) -> Motor | Drive:
@@ -715,6 +584,7 @@ def _read_host_77(data: bytes) -> Motor | Drive:
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
     try:
         while True:
             end = data.find(b"\x0d", at)
@@ -734,14 +604,14 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             payload_size, read = _HOST_KINDS[content[0]]
             if 0 <= payload_size != len(payload):
                 return at
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = HOST_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -758,11 +628,14 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
 }
 
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
-    content = _PACK_6(id_) + payload
-    return _STUFFING_0.encode(content) + b"\x0d"
+    content = _PACK_0(id_) + payload
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
 
 
 def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
     try:
         while True:
             end = data.find(b"\x0d", at)
@@ -782,14 +655,14 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             payload_size, read = _ROBOT_KINDS[content[0]]
             if 0 <= payload_size != len(payload):
                 return at
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = ROBOT_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -807,38 +680,197 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
 }
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
-    content = _PACK_6(id_) + payload
-    return _STUFFING_0.encode(content) + b"\x0d"
+    content = _PACK_0(id_) + payload
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "host",
-        _frame_host,
-        {
-            Motor: _write_motor,
-            Drive: _write_drive,
-            Steering: _write_steering,
-            Power: _write_power,
-            GpsPosition: _write_gps_position,
-            Laser: _write_laser,
-            Shutdown: _write_shutdown,
-        },
-    ),
-    _fast.SenderWriters(
-        "robot",
-        _frame_robot,
-        {
-            Sonar: _write_sonar,
-            Gps: _write_gps,
-            Odometry: _write_odometry,
-            Battery: _write_battery,
-            Compass: _write_compass,
-            Laser: _write_laser,
-            Shutdown: _write_shutdown,
-        },
-    ),
-)
+def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.distances
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) != 5:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    content = b"".join((_PACK_0(83), _PACK_1(*v1)))
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_gps(item: Gps, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.nmea
+    v2 = v1.encode("ascii")
+    if len(v2) > 126:
+        raise _fast.Unclear
+    payload = v2
+    if not 0 <= len(payload) <= 126:
+        raise _fast.Unclear
+    return _frame_robot(payload, 71)
+
+
+def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.right_count
+    v2 = item.left_count
+    v3 = item.quad_count
+    v4 = item.right_speed
+    v5 = item.left_speed
+    v6 = item.quad_speed
+    v7 = item.steer
+    if not (type(v1) is type(v2) is type(v3) is type(v4) is type(v5) is type(v6) is int):
+        raise _fast.Unclear
+    if type(v7) is not int:
+        raise _fast.Unclear
+    content = _PACK_2(79, v1, v2, v3, v4, v5, v6, v7)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_battery(item: Battery, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.main_battery
+    v2 = item.motor_battery
+    v3 = item.idle
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    content = _PACK_3(98, v1, v2, v3)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_compass(item: Compass, sender: str | None) -> bytes:
+    if sender is not None and sender != "robot":
+        raise _fast.Unclear
+    v1 = item.x
+    v2 = item.y
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_4(67, v1, v2)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_motor(item: Motor, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.speed
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_5(77, v1)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_drive(item: Drive, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.speed
+    v2 = item.steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_6(77, v1, v2)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_steering(item: Steering, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.position
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_7(83, v1)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_power(item: Power, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.code
+    if type(v1) is not PowerCode and type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_7(80, v1)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_gps_position(item: GpsPosition, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.latitude
+    v2 = item.longitude
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_8(71, v1, v2)
+    if 0x0D in content or 0x1B in content:
+        content = _STUFFING_0.encode(content)
+    return content + b"\x0d"
+
+
+def _encode_laser(item: Laser, sender: str | None) -> bytes:
+    v1 = item.readings
+    if type(v1) is not list:
+        raise _fast.Unclear
+    if len(v1) > 512:
+        raise _fast.Unclear
+    if not set(map(type, v1)) <= _fast.INTEGERS:
+        raise _fast.Unclear
+    payload = _struct.pack(f"<{len(v1)}B", *v1)
+    if not 0 <= len(payload) <= 512:
+        raise _fast.Unclear
+    if sender == "host":
+        return _frame_host(payload, 76)
+    if sender == "robot":
+        return _frame_robot(payload, 76)
+    raise _fast.Unclear
+
+
+def _encode_shutdown(item: Shutdown, sender: str | None) -> bytes:
+    v1 = item.confirmation
+    v2 = v1.encode("ascii")
+    if len(v2) > 7 or v2.endswith(b"\0"):
+        raise _fast.Unclear
+    if v1 != "ZZZZZZZ":
+        raise _fast.Unclear
+    payload = _PACK_9(v2)
+    if sender == "host":
+        return _frame_host(payload, 90)
+    if sender == "robot":
+        return _frame_robot(payload, 90)
+    raise _fast.Unclear
+
+
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    Sonar: _encode_sonar,
+    Gps: _encode_gps,
+    Odometry: _encode_odometry,
+    Battery: _encode_battery,
+    Compass: _encode_compass,
+    Motor: _encode_motor,
+    Drive: _encode_drive,
+    Steering: _encode_steering,
+    Power: _encode_power,
+    GpsPosition: _encode_gps_position,
+    Laser: _encode_laser,
+    Shutdown: _encode_shutdown,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -903,8 +935,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity)
+            return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

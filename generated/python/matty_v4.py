@@ -475,41 +475,33 @@ PC_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
-_UNPACK_0 = _struct.Struct("<B").unpack_from
+_MessageEvent = _rt.MessageEvent
+_UNPACK_0 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _fast.Members(StopMode)
-_PACK_0 = _struct.Struct("<B").pack
 _MEMBERS_1 = _fast.Members(RobotMode)
-_UNPACK_1 = _struct.Struct("<hh").unpack_from
-_PACK_1 = _struct.Struct("<hh").pack
-_UNPACK_2 = _struct.Struct("<HH").unpack_from
-_PACK_2 = _struct.Struct("<HH").pack
+_UNPACK_1 = _struct.Struct("<hh").unpack
+_UNPACK_2 = _struct.Struct("<HH").unpack
 _MEMBERS_2 = _fast.Members(GpsModeMode)
-_UNPACK_3 = _struct.Struct("<B3s").unpack_from
+_UNPACK_3 = _struct.Struct("<B3s").unpack
 _NUMBER_0 = _rt.Number(24, False, "little", False)
-_PACK_3 = _struct.Struct("<B3s").pack
-_UNPACK_4 = _struct.Struct("<BBHHhhHHHHhhh").unpack_from
+_UNPACK_4 = _struct.Struct("<BBHHhhHHHHhhh").unpack
 _MEMBERS_3 = _fast.Members(StatusStatus)
-_PACK_4 = _struct.Struct("<BBHHhhHHHHhhh").pack
-_UNPACK_5 = _struct.Struct("<BB").unpack_from
-_PACK_5 = _struct.Struct("<BB").pack
+_UNPACK_5 = _struct.Struct("<BB").unpack
 _STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
-_PACK_6 = _struct.Struct("<BBBB").pack
+_PACK_0 = _struct.Struct("<BBB").pack
+_PACK_1 = _struct.Struct("<BBBB").pack
+_PACK_2 = _struct.Struct("<BBBhh").pack
+_PACK_3 = _struct.Struct("<BBBHH").pack
+_PACK_4 = _struct.Struct("<BBBB3s").pack
+_PACK_5 = _struct.Struct("<BBBBBHHhhHHHHhhh").pack
+_PACK_6 = _struct.Struct("<BBBBB").pack
 
 
 def _read_stop(data: bytes) -> Stop:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Stop)
-    v1 = data[0]
+    (v1,) = _UNPACK_0(data)
     item.mode = _MEMBERS_0[v1]
     return item
-
-
-def _write_stop(item: Stop) -> bytes:
-    v1 = item.mode
-    if type(v1) is not StopMode and type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_reset(data: bytes) -> Reset:
@@ -519,88 +511,36 @@ def _read_reset(data: bytes) -> Reset:
     return item
 
 
-def _write_reset(item: Reset) -> bytes:
-    return b""
-
-
 def _read_mode(data: bytes) -> Mode:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Mode)
-    v1 = data[0]
+    (v1,) = _UNPACK_0(data)
     item.mode = _MEMBERS_1[v1]
     return item
 
 
-def _write_mode(item: Mode) -> bytes:
-    v1 = item.mode
-    if type(v1) is not RobotMode and type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
-
-
 def _read_go(data: bytes) -> Go:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(Go)
-    item.speed, item.steer = _UNPACK_1(data, 0)
+    item.speed, item.steer = _UNPACK_1(data)
     return item
-
-
-def _write_go(item: Go) -> bytes:
-    v1 = item.speed
-    v2 = item.steer
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_1(v1, v2)
 
 
 def _read_limits(data: bytes) -> Limits:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(Limits)
-    item.max_speed, item.max_steer = _UNPACK_1(data, 0)
+    item.max_speed, item.max_steer = _UNPACK_1(data)
     return item
-
-
-def _write_limits(item: Limits) -> bytes:
-    v1 = item.max_speed
-    v2 = item.max_steer
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_1(v1, v2)
 
 
 def _read_timing(data: bytes) -> Timing:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(Timing)
-    item.period, item.timeout = _UNPACK_2(data, 0)
+    item.period, item.timeout = _UNPACK_2(data)
     return item
-
-
-def _write_timing(item: Timing) -> bytes:
-    v1 = item.period
-    v2 = item.timeout
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_2(v1, v2)
 
 
 def _read_gps_mode(data: bytes) -> GpsMode:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(GpsMode)
-    v1 = data[0]
+    (v1,) = _UNPACK_0(data)
     item.mode = _MEMBERS_2[v1]
     return item
-
-
-def _write_gps_mode(item: GpsMode) -> bytes:
-    v1 = item.mode
-    if type(v1) is not GpsModeMode and type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_version_query(data: bytes) -> VersionQuery:
@@ -610,25 +550,11 @@ def _read_version_query(data: bytes) -> VersionQuery:
     return item
 
 
-def _write_version_query(item: VersionQuery) -> bytes:
-    return b""
-
-
 def _read_led(data: bytes) -> Led:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(Led)
-    item.index, v1 = _UNPACK_3(data, 0)
+    item.index, v1 = _UNPACK_3(data)
     item.rgb = _NUMBER_0.decode(v1)
     return item
-
-
-def _write_led(item: Led) -> bytes:
-    v1 = item.index
-    v2 = item.rgb
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_3(v1, _NUMBER_0.encode(v2))
 
 
 def _read_ack(data: bytes) -> Ack:
@@ -638,10 +564,6 @@ def _read_ack(data: bytes) -> Ack:
     return item
 
 
-def _write_ack(item: Ack) -> bytes:
-    return b""
-
-
 def _read_nack(data: bytes) -> Nack:
     if len(data) != 0:
         raise _fast.Unclear
@@ -649,13 +571,7 @@ def _read_nack(data: bytes) -> Nack:
     return item
 
 
-def _write_nack(item: Nack) -> bytes:
-    return b""
-
-
 def _read_status(data: bytes) -> Status:
-    if len(data) != 24:
-        raise _fast.Unclear
     item = _new(Status)
     (
         v1,
@@ -671,35 +587,10 @@ def _read_status(data: bytes) -> Status:
         item.roll,
         item.pitch,
         item.yaw,
-    ) = _UNPACK_4(data, 0)
+    ) = _UNPACK_4(data)
     item.status = _MEMBERS_3[v1]
     item.mode = _MEMBERS_1[v2]
     return item
-
-
-def _write_status(item: Status) -> bytes:
-    v1 = item.status
-    if type(v1) is not StatusStatus and type(v1) is not int:
-        raise _fast.Unclear
-    v2 = item.mode
-    if type(v2) is not RobotMode and type(v2) is not int:
-        raise _fast.Unclear
-    v3 = item.voltage
-    v4 = item.current
-    v5 = item.speed
-    v6 = item.angle
-    v7 = item.encoder0
-    v8 = item.encoder1
-    v9 = item.encoder2
-    v10 = item.encoder3
-    v11 = item.roll
-    v12 = item.pitch
-    v13 = item.yaw
-    if not (type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is type(v8) is int):
-        raise _fast.Unclear
-    if not (type(v9) is type(v10) is type(v11) is type(v12) is type(v13) is int):
-        raise _fast.Unclear
-    return _PACK_4(v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13)
 
 
 def _read_gps(data: bytes) -> Gps:
@@ -716,70 +607,53 @@ def _read_gps(data: bytes) -> Gps:
     return item
 
 
-def _write_gps(item: Gps) -> bytes:
-    v1 = item.nmea
-    v2 = v1.encode("ascii")
-    if len(v2) > 121:
-        raise _fast.Unclear
-    payload = v2
-    if not 0 <= len(payload) <= 121:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_version(data: bytes) -> Version:
-    if len(data) != 2:
-        raise _fast.Unclear
     item = _new(Version)
-    item.serial_number, item.version = _UNPACK_5(data, 0)
+    item.serial_number, item.version = _UNPACK_5(data)
     return item
 
 
-def _write_version(item: Version) -> bytes:
-    v1 = item.serial_number
-    v2 = item.version
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_5(v1, v2)
-
-
 def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        if data[at] != 0x55:
+            return at
+    except IndexError:
+        return at
     try:
         while True:
-            if data[at] != 0x55:
-                return at
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                return at
+                end = len(data)
             raw = data[at:end]
             if len(raw) > 252:
                 return at
             content = raw[1:]
             if 0x56 in content:
                 content = _STUFFING_0.decode(content)
-            if len(content) < 4:
+            if len(content) < 1:
+                return at
+            if len(content) != content[0] + 2:
+                return at
+            if not 2 <= content[0] <= 124:
                 return at
             payload = content[3:-1]
-            if len(payload) > 122:
-                return at
-            if content[0] != len(payload) + 2:
-                return at
             if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
                 return at
             numbers = (content[1], content[2])
             read = _PC_KINDS.get(content[2])
             if read is None:
-                events.append(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = PC_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -801,48 +675,54 @@ _PC_KINDS: dict[_typing.Any, _typing.Any] = {
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     if type(counter_) is not int or not 0 <= counter_ <= 255:
         raise _fast.Unclear
-    content = _PACK_6(0x55, len(payload) + 2, counter_, command_) + payload
-    content += _BYTES[(-_adler32(content[1:], 0) & 0xFF)]
-    return content[:1] + _STUFFING_0.encode(content[1:])
+    content = _PACK_0(len(payload) + 2, counter_, command_) + payload
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
 
 
 def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        if data[at] != 0x55:
+            return at
+    except IndexError:
+        return at
     try:
         while True:
-            if data[at] != 0x55:
-                return at
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                return at
+                end = len(data)
             raw = data[at:end]
             if len(raw) > 252:
                 return at
             content = raw[1:]
             if 0x56 in content:
                 content = _STUFFING_0.decode(content)
-            if len(content) < 4:
+            if len(content) < 1:
+                return at
+            if len(content) != content[0] + 2:
+                return at
+            if not 2 <= content[0] <= 124:
                 return at
             payload = content[3:-1]
-            if len(payload) > 122:
-                return at
-            if content[0] != len(payload) + 2:
-                return at
             if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
                 return at
             numbers = (content[1], content[2])
             read = _ESP_KINDS.get(content[2])
             if read is None:
-                events.append(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = ESP_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -860,39 +740,248 @@ _ESP_KINDS: dict[_typing.Any, _typing.Any] = {
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     if type(counter_) is not int or not 0 <= counter_ <= 255:
         raise _fast.Unclear
-    content = _PACK_6(0x55, len(payload) + 2, counter_, command_) + payload
-    content += _BYTES[(-_adler32(content[1:], 0) & 0xFF)]
-    return content[:1] + _STUFFING_0.encode(content[1:])
+    content = _PACK_0(len(payload) + 2, counter_, command_) + payload
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "pc",
-        _frame_pc,
-        {
-            Stop: _write_stop,
-            Reset: _write_reset,
-            Mode: _write_mode,
-            Go: _write_go,
-            Limits: _write_limits,
-            Timing: _write_timing,
-            GpsMode: _write_gps_mode,
-            VersionQuery: _write_version_query,
-            Led: _write_led,
-        },
-    ),
-    _fast.SenderWriters(
-        "esp",
-        _frame_esp,
-        {
-            Ack: _write_ack,
-            Nack: _write_nack,
-            Status: _write_status,
-            Gps: _write_gps,
-            Version: _write_version,
-        },
-    ),
-)
+def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.mode
+    if type(v1) is not StopMode and type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(3, counter_, 83, v1)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_0(2, counter_, 82)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.mode
+    if type(v1) is not RobotMode and type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(3, counter_, 77, v1)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.speed
+    v2 = item.steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(6, counter_, 71, v1, v2)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.max_speed
+    v2 = item.max_steer
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(6, counter_, 76, v1, v2)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.period
+    v2 = item.timeout
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_3(6, counter_, 84, v1, v2)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.mode
+    if type(v1) is not GpsModeMode and type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(3, counter_, 80, v1)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_0(2, counter_, 86)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "pc":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.index
+    v2 = item.rgb
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_4(6, counter_, 68, v1, _NUMBER_0.encode(v2))
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "esp":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_0(2, counter_, 65)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "esp":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_0(2, counter_, 78)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_status(item: Status, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "esp":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.status
+    if type(v1) is not StatusStatus and type(v1) is not int:
+        raise _fast.Unclear
+    v2 = item.mode
+    if type(v2) is not RobotMode and type(v2) is not int:
+        raise _fast.Unclear
+    v3 = item.voltage
+    v4 = item.current
+    v5 = item.speed
+    v6 = item.angle
+    v7 = item.encoder0
+    v8 = item.encoder1
+    v9 = item.encoder2
+    v10 = item.encoder3
+    v11 = item.roll
+    v12 = item.pitch
+    v13 = item.yaw
+    if not (type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is type(v8) is int):
+        raise _fast.Unclear
+    if not (type(v9) is type(v10) is type(v11) is type(v12) is type(v13) is int):
+        raise _fast.Unclear
+    content = _PACK_5(26, counter_, 73, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "esp":
+        raise _fast.Unclear
+    v1 = item.nmea
+    v2 = v1.encode("ascii")
+    if len(v2) > 121:
+        raise _fast.Unclear
+    payload = v2
+    if not 0 <= len(payload) <= 121:
+        raise _fast.Unclear
+    return _frame_esp(payload, 80, counter_)
+
+
+def _encode_version(item: Version, sender: str | None, counter_: int | None) -> bytes:
+    if sender is not None and sender != "esp":
+        raise _fast.Unclear
+    if type(counter_) is not int or not 0 <= counter_ <= 255:
+        raise _fast.Unclear
+    v1 = item.serial_number
+    v2 = item.version
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_6(4, counter_, 86, v1, v2)
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x55" + content
+
+
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    Stop: _encode_stop,
+    Reset: _encode_reset,
+    Mode: _encode_mode,
+    Go: _encode_go,
+    Limits: _encode_limits,
+    Timing: _encode_timing,
+    GpsMode: _encode_gps_mode,
+    VersionQuery: _encode_version_query,
+    Led: _encode_led,
+    Ack: _encode_ack,
+    Nack: _encode_nack,
+    Status: _encode_status,
+    Gps: _encode_gps,
+    Version: _encode_version,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -960,8 +1049,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity, counter)
+            return _ENCODERS[type(message)](message, sender, counter)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, counter=counter)

@@ -751,40 +751,43 @@ FLEX_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
+_MessageEvent = _rt.MessageEvent
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
-_UNPACK_1 = _struct.Struct(">IIB").unpack_from
+_UNPACK_1 = _struct.Struct(">IIB").unpack
 _MEMBERS_0 = _fast.Members(SystemStatusBrake)
-_PACK_1 = _struct.Struct(">IIB").pack
-_UNPACK_2 = _struct.Struct("<B").unpack_from
-_PACK_2 = _struct.Struct("<B").pack
-_UNPACK_3 = _struct.Struct(">BIIIB").unpack_from
+_UNPACK_2 = _struct.Struct("<B").unpack
+_UNPACK_3 = _struct.Struct(">BIIIB").unpack
 _MEMBERS_1 = _fast.Members(Axis)
 _MEMBERS_2 = _fast.Members(MotorCommandDirection)
-_PACK_3 = _struct.Struct(">BIIIB").pack
-_UNPACK_4 = _struct.Struct(">II").unpack_from
-_PACK_4 = _struct.Struct(">II").pack
-_UNPACK_5 = _struct.Struct(">IIBiiii").unpack_from
-_PACK_5 = _struct.Struct(">IIBiiii").pack
+_UNPACK_4 = _struct.Struct(">II").unpack
+_UNPACK_5 = _struct.Struct(">IIBiiii").unpack
 _MEMBERS_3 = _fast.Members(StartStopMotorPacketsStartStop)
-_UNPACK_6 = _struct.Struct(">IiiB").unpack_from
+_UNPACK_6 = _struct.Struct(">IiiB").unpack
 _MEMBERS_4 = _fast.Members(JoystickDataButtons)
-_PACK_6 = _struct.Struct(">IiiB").pack
-_UNPACK_7 = _struct.Struct(">IIBI").unpack_from
+_UNPACK_7 = _struct.Struct(">IIBI").unpack
 _MEMBERS_5 = _fast.Members(StartStopSonarPacketsStartStop)
-_PACK_7 = _struct.Struct(">IIBI").pack
-_UNPACK_8 = _struct.Struct(">I").unpack_from
-_PACK_8 = _struct.Struct(">I").pack
-_UNPACK_9 = _struct.Struct(">IBH").unpack_from
+_UNPACK_8 = _struct.Struct(">II").unpack_from
+_ITERATE_0 = _struct.Struct(">BH").iter_unpack
+_UNPACK_9 = _struct.Struct(">I").unpack
+_UNPACK_10 = _struct.Struct(">IBH").unpack
 _MEMBERS_6 = _fast.Members(IoValue)
-_PACK_9 = _struct.Struct(">IBH").pack
-_UNPACK_10 = _struct.Struct(">III").unpack_from
-_PACK_10 = _struct.Struct(">III").pack
+_UNPACK_11 = _struct.Struct(">III").unpack
 _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
-_CHECKSUM_0 = _checksum.Xor8().compute
-_PACK_11 = _struct.Struct("<BBBB").pack
+_PACK_1 = _struct.Struct("<BBBB").pack
+_PACK_2 = _struct.Struct(">BBBBIIB").pack
+_PACK_3 = _struct.Struct("<BBBBB").pack
+_PACK_4 = _struct.Struct(">BBBBBIIIB").pack
+_PACK_5 = _struct.Struct(">BBBBII").pack
+_PACK_6 = _struct.Struct(">BBBBIIBiiii").pack
+_PACK_7 = _struct.Struct(">BBBBIiiB").pack
+_PACK_8 = _struct.Struct(">BBBBIIBI").pack
+_PACK_9 = _struct.Struct(">II").pack
+_PACK_10 = _struct.Struct(">BBBBI").pack
+_PACK_11 = _struct.Struct(">BBBBIBH").pack
+_PACK_12 = _struct.Struct(">BBBBIII").pack
 
 
 def _read_sonar_data_readings(data: bytes, at: int) -> SonarDataReadings:
@@ -810,88 +813,32 @@ def _read_request_system_status(data: bytes) -> RequestSystemStatus:
     return item
 
 
-def _write_request_system_status(item: RequestSystemStatus) -> bytes:
-    return b""
-
-
 def _read_system_status(data: bytes) -> SystemStatus:
-    if len(data) != 9:
-        raise _fast.Unclear
     item = _new(SystemStatus)
-    item.timestamp, item.battery_voltage, v1 = _UNPACK_1(data, 0)
+    item.timestamp, item.battery_voltage, v1 = _UNPACK_1(data)
     item.brake = _MEMBERS_0[v1]
     return item
 
 
-def _write_system_status(item: SystemStatus) -> bytes:
-    v1 = item.timestamp
-    v2 = item.battery_voltage
-    v3 = item.brake
-    if type(v3) is not SystemStatusBrake and type(v3) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_1(v1, v2, v3)
-
-
 def _read_motor_00(data: bytes) -> Motor00:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(Motor00)
-    item.unknown = data[0]
+    (item.unknown,) = _UNPACK_2(data)
     return item
 
 
-def _write_motor_00(item: Motor00) -> bytes:
-    v1 = item.unknown
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_2(v1)
-
-
 def _read_motor_command(data: bytes) -> MotorCommand:
-    if len(data) != 14:
-        raise _fast.Unclear
     item = _new(MotorCommand)
-    v1, item.velocity, item.acceleration, item.torque, v2 = _UNPACK_3(data, 0)
+    v1, item.velocity, item.acceleration, item.torque, v2 = _UNPACK_3(data)
     item.axis = _MEMBERS_1[v1]
     item.direction = _MEMBERS_2[v2]
     return item
 
 
-def _write_motor_command(item: MotorCommand) -> bytes:
-    v1 = item.axis
-    if type(v1) is not Axis and type(v1) is not int:
-        raise _fast.Unclear
-    v2 = item.velocity
-    v3 = item.acceleration
-    v4 = item.torque
-    v5 = item.direction
-    if type(v5) is not MotorCommandDirection and type(v5) is not int:
-        raise _fast.Unclear
-    if not (type(v2) is type(v3) is type(v4) is int):
-        raise _fast.Unclear
-    return _PACK_3(v1, v2, v3, v4, v5)
-
-
 def _read_confirm_motor_command(data: bytes) -> ConfirmMotorCommand:
-    if len(data) != 9:
-        raise _fast.Unclear
     item = _new(ConfirmMotorCommand)
-    item.unknown, item.timestamp, v1 = _UNPACK_1(data, 0)
+    item.unknown, item.timestamp, v1 = _UNPACK_1(data)
     item.axis = _MEMBERS_1[v1]
     return item
-
-
-def _write_confirm_motor_command(item: ConfirmMotorCommand) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_1(v1, v2, v3)
 
 
 def _read_motor_0a(data: bytes) -> Motor0a:
@@ -901,10 +848,6 @@ def _read_motor_0a(data: bytes) -> Motor0a:
     return item
 
 
-def _write_motor_0a(item: Motor0a) -> bytes:
-    return b""
-
-
 def _read_motor_0c(data: bytes) -> Motor0c:
     if len(data) != 0:
         raise _fast.Unclear
@@ -912,29 +855,13 @@ def _read_motor_0c(data: bytes) -> Motor0c:
     return item
 
 
-def _write_motor_0c(item: Motor0c) -> bytes:
-    return b""
-
-
 def _read_motor_0c_answer(data: bytes) -> Motor0cAnswer:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(Motor0cAnswer)
-    item.unknown, item.timestamp = _UNPACK_4(data, 0)
+    item.unknown, item.timestamp = _UNPACK_4(data)
     return item
 
 
-def _write_motor_0c_answer(item: Motor0cAnswer) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_4(v1, v2)
-
-
 def _read_read_motor(data: bytes) -> ReadMotor:
-    if len(data) != 25:
-        raise _fast.Unclear
     item = _new(ReadMotor)
     (
         item.unknown,
@@ -944,59 +871,22 @@ def _read_read_motor(data: bytes) -> ReadMotor:
         item.velocity,
         item.acceleration,
         item.torque,
-    ) = _UNPACK_5(data, 0)
+    ) = _UNPACK_5(data)
     item.axis = _MEMBERS_1[v1]
     return item
 
 
-def _write_read_motor(item: ReadMotor) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
-        raise _fast.Unclear
-    v4 = item.position
-    v5 = item.velocity
-    v6 = item.acceleration
-    v7 = item.torque
-    if not (type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is type(v7) is int):
-        raise _fast.Unclear
-    return _PACK_5(v1, v2, v3, v4, v5, v6, v7)
-
-
 def _read_start_stop_motor_packets(data: bytes) -> StartStopMotorPackets:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(StartStopMotorPackets)
-    item.timestamp, v1 = _UNPACK_4(data, 0)
+    item.timestamp, v1 = _UNPACK_4(data)
     item.start_stop = _MEMBERS_3[v1]
     return item
 
 
-def _write_start_stop_motor_packets(item: StartStopMotorPackets) -> bytes:
-    v1 = item.timestamp
-    v2 = item.start_stop
-    if type(v2) is not StartStopMotorPacketsStartStop and type(v2) is not int:
-        raise _fast.Unclear
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_4(v1, v2)
-
-
 def _read_confirm_start_stop_motor_packets(data: bytes) -> ConfirmStartStopMotorPackets:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(ConfirmStartStopMotorPackets)
-    item.unknown, item.timestamp = _UNPACK_4(data, 0)
+    item.unknown, item.timestamp = _UNPACK_4(data)
     return item
-
-
-def _write_confirm_start_stop_motor_packets(item: ConfirmStartStopMotorPackets) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_4(v1, v2)
 
 
 def _read_request_joystick_data(data: bytes) -> RequestJoystickData:
@@ -1006,206 +896,91 @@ def _read_request_joystick_data(data: bytes) -> RequestJoystickData:
     return item
 
 
-def _write_request_joystick_data(item: RequestJoystickData) -> bytes:
-    return b""
-
-
 def _read_joystick_data(data: bytes) -> JoystickData:
-    if len(data) != 13:
-        raise _fast.Unclear
     item = _new(JoystickData)
-    item.timestamp, item.horizontal, item.vertical, v1 = _UNPACK_6(data, 0)
+    item.timestamp, item.horizontal, item.vertical, v1 = _UNPACK_6(data)
     item.buttons = _MEMBERS_4[v1]
     return item
 
 
-def _write_joystick_data(item: JoystickData) -> bytes:
-    v1 = item.timestamp
-    v2 = item.horizontal
-    v3 = item.vertical
-    v4 = item.buttons
-    if type(v4) is not JoystickDataButtons and type(v4) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
-    return _PACK_6(v1, v2, v3, v4)
-
-
 def _read_start_stop_sonar_packets(data: bytes) -> StartStopSonarPackets:
-    if len(data) != 13:
-        raise _fast.Unclear
     item = _new(StartStopSonarPackets)
-    item.frequency, item.unknown_1, item.unknown_2, v1 = _UNPACK_7(data, 0)
+    item.frequency, item.unknown_1, item.unknown_2, v1 = _UNPACK_7(data)
     item.start_stop = _MEMBERS_5[v1]
     return item
 
 
-def _write_start_stop_sonar_packets(item: StartStopSonarPackets) -> bytes:
-    v1 = item.frequency
-    v2 = item.unknown_1
-    v3 = item.unknown_2
-    v4 = item.start_stop
-    if type(v4) is not StartStopSonarPacketsStartStop and type(v4) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
-    return _PACK_7(v1, v2, v3, v4)
-
-
 def _read_confirm_start_stop_sonar_packets(data: bytes) -> ConfirmStartStopSonarPackets:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(ConfirmStartStopSonarPackets)
-    item.unknown, item.timestamp = _UNPACK_4(data, 0)
+    item.unknown, item.timestamp = _UNPACK_4(data)
     return item
-
-
-def _write_confirm_start_stop_sonar_packets(item: ConfirmStartStopSonarPackets) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_4(v1, v2)
 
 
 def _read_sonar_data(data: bytes) -> SonarData:
     if not 8 <= len(data) <= 254 or (len(data) - 8) % 3:
         raise _fast.Unclear
     item = _new(SonarData)
-    item.unknown, item.timestamp = _UNPACK_4(data, 0)
-    n1, left2 = divmod(len(data) - (8), 3)
+    item.unknown, item.timestamp = _UNPACK_8(data, 0)
+    n1, left2 = divmod(len(data) - 8, 3)
     if left2 or n1 > 82:
         raise _fast.Unclear
-    v3 = [_read_sonar_data_readings(data, place) for place in range(8, 8 + 3 * n1, 3)]
+    data5 = data[8 : 8 + 3 * n1]
+    if len(data5) != 3 * n1:
+        raise _fast.Unclear
+    v3: list[_typing.Any] = []
+    for v6, v7 in _ITERATE_0(data5):
+        s4 = _new(SonarDataReadings)
+        s4.cluster = v6
+        s4.distance = v7
+        v3.append(s4)
+    v8 = v3
     at = 8 + 3 * n1
-    item.readings = v3
+    item.readings = v8
     if at != len(data):
         raise _fast.Unclear
     return item
 
 
-def _write_sonar_data(item: SonarData) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    v3 = item.readings
-    if type(v3) is not list:
-        raise _fast.Unclear
-    if len(v3) > 82:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    payload = b"".join(
-        (_PACK_4(v1, v2), b"".join([_write_sonar_data_readings(each) for each in v3])),
-    )
-    if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
-        raise _fast.Unclear
-    return payload
-
-
 def _read_initialize_digital_io(data: bytes) -> InitializeDigitalIo:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(InitializeDigitalIo)
-    (item.unknown,) = _UNPACK_8(data, 0)
+    (item.unknown,) = _UNPACK_9(data)
     return item
-
-
-def _write_initialize_digital_io(item: InitializeDigitalIo) -> bytes:
-    v1 = item.unknown
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_8(v1)
 
 
 def _read_confirm_initialize_digital_io(data: bytes) -> ConfirmInitializeDigitalIo:
-    if len(data) != 8:
-        raise _fast.Unclear
     item = _new(ConfirmInitializeDigitalIo)
-    item.unknown, item.timestamp = _UNPACK_4(data, 0)
+    item.unknown, item.timestamp = _UNPACK_4(data)
     return item
-
-
-def _write_confirm_initialize_digital_io(item: ConfirmInitializeDigitalIo) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_4(v1, v2)
 
 
 def _read_changed_bumpers(data: bytes) -> ChangedBumpers:
-    if len(data) != 7:
-        raise _fast.Unclear
     item = _new(ChangedBumpers)
-    item.timestamp, item.position, v1 = _UNPACK_9(data, 0)
+    item.timestamp, item.position, v1 = _UNPACK_10(data)
     item.value = _MEMBERS_6[v1]
     return item
-
-
-def _write_changed_bumpers(item: ChangedBumpers) -> bytes:
-    v1 = item.timestamp
-    v2 = item.position
-    v3 = item.value
-    if type(v3) is not IoValue and type(v3) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_9(v1, v2, v3)
 
 
 def _read_check_io_changed(data: bytes) -> CheckIoChanged:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(CheckIoChanged)
-    (item.timestamp,) = _UNPACK_8(data, 0)
+    (item.timestamp,) = _UNPACK_9(data)
     return item
-
-
-def _write_check_io_changed(item: CheckIoChanged) -> bytes:
-    v1 = item.timestamp
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_8(v1)
 
 
 def _read_check_io_changed_answer(data: bytes) -> CheckIoChangedAnswer:
-    if len(data) != 12:
-        raise _fast.Unclear
     item = _new(CheckIoChangedAnswer)
-    item.unknown, item.timestamp, item.package_count = _UNPACK_10(data, 0)
+    item.unknown, item.timestamp, item.package_count = _UNPACK_11(data)
     return item
 
 
-def _write_check_io_changed_answer(item: CheckIoChangedAnswer) -> bytes:
-    v1 = item.unknown
-    v2 = item.timestamp
-    v3 = item.package_count
-    if not (type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
-    return _PACK_10(v1, v2, v3)
-
-
 def _read_changed_byte(data: bytes) -> ChangedByte:
-    if len(data) != 7:
-        raise _fast.Unclear
     item = _new(ChangedByte)
-    item.timestamp, item.position, v1 = _UNPACK_9(data, 0)
+    item.timestamp, item.position, v1 = _UNPACK_10(data)
     item.value = _MEMBERS_6[v1]
     return item
 
 
-def _write_changed_byte(item: ChangedByte) -> bytes:
-    v1 = item.timestamp
-    v2 = item.position
-    v3 = item.value
-    if type(v3) is not IoValue and type(v3) is not int:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_9(v1, v2, v3)
-
-
 def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
     try:
         while True:
             if not data.startswith(b"\x1b\x02", at):
@@ -1222,29 +997,27 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 content = _STUFFING_0.decode(content)
-            if len(content) < 5:
+            if len(content) < 4:
+                return at
+            if len(content) != content[3] + 5:
                 return at
             payload = content[4:-1]
-            if len(payload) > 255:
-                return at
-            if content[3] != len(payload):
-                return at
-            if content[-1] != _CHECKSUM_0(content[4:-1]):
+            if content[-1] != _checksum.xor_of(content[4:-1]):
                 return at
             numbers = (content[0], content[1], content[2])
             read = _LINUX_KINDS.get((content[0], content[2]))
             if read is None:
-                events.append(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = LINUX_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -1271,12 +1044,15 @@ def _frame_linux(
         number_ = 255
     if type(number_) is not int or not 0 <= number_ <= 255:
         raise _fast.Unclear
-    content = b"\x1b\x02" + _PACK_11(class_id_, number_, subclass_, len(payload)) + payload
-    content += _BYTES[_CHECKSUM_0(content[6:])]
-    return content[:2] + _STUFFING_0.encode(content[2:]) + b"\x1b\x03"
+    content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
     try:
         while True:
             if not data.startswith(b"\x1b\x02", at):
@@ -1293,29 +1069,27 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 content = _STUFFING_0.decode(content)
-            if len(content) < 5:
+            if len(content) < 4:
+                return at
+            if len(content) != content[3] + 5:
                 return at
             payload = content[4:-1]
-            if len(payload) > 255:
-                return at
-            if content[3] != len(payload):
-                return at
-            if content[-1] != _CHECKSUM_0(content[4:-1]):
+            if content[-1] != _checksum.xor_of(content[4:-1]):
                 return at
             numbers = (content[0], content[1], content[2])
             read = _FLEX_KINDS.get((content[0], content[2]))
             if read is None:
-                events.append(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_rt.MessageEvent)
+            event = _new(_MessageEvent)
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
             event.payload = payload
             event.codec = FLEX_SENDER
-            events.append(event)
+            add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
         return at
@@ -1344,47 +1118,475 @@ def _frame_flex(
         number_ = 255
     if type(number_) is not int or not 0 <= number_ <= 255:
         raise _fast.Unclear
-    content = b"\x1b\x02" + _PACK_11(class_id_, number_, subclass_, len(payload)) + payload
-    content += _BYTES[_CHECKSUM_0(content[6:])]
-    return content[:2] + _STUFFING_0.encode(content[2:]) + b"\x1b\x03"
+    content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "linux",
-        _frame_linux,
-        {
-            RequestSystemStatus: _write_request_system_status,
-            Motor00: _write_motor_00,
-            MotorCommand: _write_motor_command,
-            Motor0a: _write_motor_0a,
-            Motor0c: _write_motor_0c,
-            StartStopMotorPackets: _write_start_stop_motor_packets,
-            RequestJoystickData: _write_request_joystick_data,
-            StartStopSonarPackets: _write_start_stop_sonar_packets,
-            InitializeDigitalIo: _write_initialize_digital_io,
-            CheckIoChanged: _write_check_io_changed,
-        },
-    ),
-    _fast.SenderWriters(
-        "flex",
-        _frame_flex,
-        {
-            SystemStatus: _write_system_status,
-            ConfirmMotorCommand: _write_confirm_motor_command,
-            Motor0cAnswer: _write_motor_0c_answer,
-            ReadMotor: _write_read_motor,
-            ConfirmStartStopMotorPackets: _write_confirm_start_stop_motor_packets,
-            JoystickData: _write_joystick_data,
-            ConfirmStartStopSonarPackets: _write_confirm_start_stop_sonar_packets,
-            SonarData: _write_sonar_data,
-            ConfirmInitializeDigitalIo: _write_confirm_initialize_digital_io,
-            ChangedBumpers: _write_changed_bumpers,
-            CheckIoChangedAnswer: _write_check_io_changed_answer,
-            ChangedByte: _write_changed_byte,
-        },
-    ),
-)
+def _encode_request_system_status(
+    item: RequestSystemStatus, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_1(1, number_, 1, 0)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_system_status(item: SystemStatus, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    v2 = item.battery_voltage
+    v3 = item.brake
+    if type(v3) is not SystemStatusBrake and type(v3) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_3(2, number_, 0, 1, v1)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.axis
+    if type(v1) is not Axis and type(v1) is not int:
+        raise _fast.Unclear
+    v2 = item.velocity
+    v3 = item.acceleration
+    v4 = item.torque
+    v5 = item.direction
+    if type(v5) is not MotorCommandDirection and type(v5) is not int:
+        raise _fast.Unclear
+    if not (type(v2) is type(v3) is type(v4) is int):
+        raise _fast.Unclear
+    content = _PACK_4(2, number_, 7, 14, v1, v2, v3, v4, v5)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_confirm_motor_command(
+    item: ConfirmMotorCommand, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    v3 = item.axis
+    if type(v3) is not Axis and type(v3) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_1(2, number_, 10, 0)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_1(2, number_, 12, 0)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_5(2, number_, 12, 8, v1, v2)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    v3 = item.axis
+    if type(v3) is not Axis and type(v3) is not int:
+        raise _fast.Unclear
+    v4 = item.position
+    v5 = item.velocity
+    v6 = item.acceleration
+    v7 = item.torque
+    if not (type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is type(v7) is int):
+        raise _fast.Unclear
+    content = _PACK_6(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_start_stop_motor_packets(
+    item: StartStopMotorPackets, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    v2 = item.start_stop
+    if type(v2) is not StartStopMotorPacketsStartStop and type(v2) is not int:
+        raise _fast.Unclear
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_5(2, number_, 34, 8, v1, v2)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_confirm_start_stop_motor_packets(
+    item: ConfirmStartStopMotorPackets, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_5(2, number_, 34, 8, v1, v2)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_request_joystick_data(
+    item: RequestJoystickData, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    content = _PACK_1(3, number_, 0, 0)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    v2 = item.horizontal
+    v3 = item.vertical
+    v4 = item.buttons
+    if type(v4) is not JoystickDataButtons and type(v4) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    content = _PACK_7(3, number_, 0, 13, v1, v2, v3, v4)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_start_stop_sonar_packets(
+    item: StartStopSonarPackets, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.frequency
+    v2 = item.unknown_1
+    v3 = item.unknown_2
+    v4 = item.start_stop
+    if type(v4) is not StartStopSonarPacketsStartStop and type(v4) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    content = _PACK_8(4, number_, 0, 13, v1, v2, v3, v4)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_confirm_start_stop_sonar_packets(
+    item: ConfirmStartStopSonarPackets, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_5(4, number_, 0, 8, v1, v2)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    v3 = item.readings
+    if type(v3) is not list:
+        raise _fast.Unclear
+    if len(v3) > 82:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    payload = b"".join(
+        (_PACK_9(v1, v2), b"".join([_write_sonar_data_readings(each) for each in v3])),
+    )
+    if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
+        raise _fast.Unclear
+    return _frame_flex(payload, 4, 2, number_)
+
+
+def _encode_initialize_digital_io(
+    item: InitializeDigitalIo, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_10(5, number_, 0, 4, v1)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_confirm_initialize_digital_io(
+    item: ConfirmInitializeDigitalIo, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_5(5, number_, 0, 8, v1, v2)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    v2 = item.position
+    v3 = item.value
+    if type(v3) is not IoValue and type(v3) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_11(5, number_, 1, 7, v1, v2, v3)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_check_io_changed(
+    item: CheckIoChanged, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "linux":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_10(5, number_, 2, 4, v1)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_check_io_changed_answer(
+    item: CheckIoChangedAnswer, sender: str | None, number_: int | None
+) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.unknown
+    v2 = item.timestamp
+    v3 = item.package_count
+    if not (type(v1) is type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    content = _PACK_12(5, number_, 2, 12, v1, v2, v3)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | None) -> bytes:
+    if sender is not None and sender != "flex":
+        raise _fast.Unclear
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int or not 0 <= number_ <= 255:
+        raise _fast.Unclear
+    v1 = item.timestamp
+    v2 = item.position
+    v3 = item.value
+    if type(v3) is not IoValue and type(v3) is not int:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_11(5, number_, 3, 7, v1, v2, v3)
+    content += _BYTES[_checksum.xor_of(content[4:])]
+    if 0x1B in content or 0x7C in content:
+        content = _STUFFING_0.encode(content)
+    return b"\x1b\x02" + content + b"\x1b\x03"
+
+
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    RequestSystemStatus: _encode_request_system_status,
+    SystemStatus: _encode_system_status,
+    Motor00: _encode_motor_00,
+    MotorCommand: _encode_motor_command,
+    ConfirmMotorCommand: _encode_confirm_motor_command,
+    Motor0a: _encode_motor_0a,
+    Motor0c: _encode_motor_0c,
+    Motor0cAnswer: _encode_motor_0c_answer,
+    ReadMotor: _encode_read_motor,
+    StartStopMotorPackets: _encode_start_stop_motor_packets,
+    ConfirmStartStopMotorPackets: _encode_confirm_start_stop_motor_packets,
+    RequestJoystickData: _encode_request_joystick_data,
+    JoystickData: _encode_joystick_data,
+    StartStopSonarPackets: _encode_start_stop_sonar_packets,
+    ConfirmStartStopSonarPackets: _encode_confirm_start_stop_sonar_packets,
+    SonarData: _encode_sonar_data,
+    InitializeDigitalIo: _encode_initialize_digital_io,
+    ConfirmInitializeDigitalIo: _encode_confirm_initialize_digital_io,
+    ChangedBumpers: _encode_changed_bumpers,
+    CheckIoChanged: _encode_check_io_changed,
+    CheckIoChangedAnswer: _encode_check_io_changed_answer,
+    ChangedByte: _encode_changed_byte,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -1508,8 +1710,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity, number)
+            return _ENCODERS[type(message)](message, sender, number)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, number=number)

@@ -504,34 +504,35 @@ BRAIN_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
+_MessageEvent = _rt.MessageEvent
 _UNPACK_0 = _struct.Struct("<3s").unpack_from
 _NUMBER_0 = _rt.Number(16, False, "little", True)
 _PACK_0 = _struct.Struct("<3s").pack
-_UNPACK_1 = _struct.Struct("<B").unpack_from
 _PACK_1 = _struct.Struct("<B").pack
-_UNPACK_2 = _struct.Struct("<BB").unpack_from
-_PACK_2 = _struct.Struct("<BB").pack
-_UNPACK_3 = _struct.Struct("<HH").unpack_from
+_UNPACK_1 = _struct.Struct("<BB").unpack
+_UNPACK_2 = _struct.Struct("<HH").unpack
 _PAIRS_0 = _fast.Pairs(14, True, "little")
-_CODES_0 = _fast.PairCodes(14, True, "little")
-_PACK_3 = _struct.Struct("<HH").pack
-_UNPACK_4 = _struct.Struct("<3B").unpack_from
+_UNPACK_3 = _struct.Struct("<3B").unpack_from
 _MEMBERS_0 = _fast.Members(MaintenanceOperation)
-_UNPACK_5 = _struct.Struct("<BHHH").unpack_from
+_UNPACK_4 = _struct.Struct("<BHHH").unpack
 _MEMBERS_1 = _fast.Members(GyroStatus)
-_PACK_4 = _struct.Struct("<BHHH").pack
 _MEMBERS_2 = _fast.Members(XcelStatus)
 _MEMBERS_3 = _fast.Members(CompassStatus)
-_UNPACK_6 = _struct.Struct("<BHHB").unpack_from
-_PACK_5 = _struct.Struct("<BHHB").pack
+_UNPACK_5 = _struct.Struct("<BHHB").unpack
 _MEMBERS_4 = _fast.Members(LidarStatus)
 _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
-_PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _MEMBERS_5 = _fast.Members(SonarStatus)
-_UNPACK_7 = _struct.Struct("<BHH").unpack_from
+_UNPACK_6 = _struct.Struct("<BHH").unpack
 _PAIRS_1 = _fast.Pairs(14, False, "little")
+_PACK_2 = _struct.Struct("<BBB").pack
+_CODES_0 = _fast.PairCodes(14, True, "little")
+_PACK_3 = _struct.Struct("<BHH").pack
+_PACK_4 = _struct.Struct("<BBHHH").pack
+_PACK_5 = _struct.Struct("<BBHHB").pack
+_PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
+_PACK_6 = _struct.Struct("<BB").pack
 _CODES_1 = _fast.PairCodes(14, False, "little")
-_PACK_6 = _struct.Struct("<BHH").pack
+_PACK_7 = _struct.Struct("<BBHH").pack
 
 
 def _read_maintenance_argument_reconfig_uart(
@@ -579,65 +580,27 @@ def _write_maintenance_argument_run_motor_controller_flasher(
 
 
 def _read_move_manual(data: bytes) -> MoveManual:
-    if len(data) != 2:
-        raise _fast.Unclear
     item = _new(MoveManual)
-    v1, v2 = _UNPACK_2(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
+    v1, v2 = _UNPACK_1(data)
     item.speed = (v1 ^ 0x40) - 0x40
-    if v2 >> 7:
-        raise _fast.Unclear
     item.arc = (v2 ^ 0x40) - 0x40
     return item
 
 
-def _write_move_manual(item: MoveManual) -> bytes:
-    v1 = item.speed
-    if not -64 <= v1 <= 63:
-        raise _fast.Unclear
-    v2 = item.arc
-    if not -64 <= v2 <= 63:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_2(v1 & 0x7F, v2 & 0x7F)
-
-
 def _read_move_relative_twostep(data: bytes) -> MoveRelativeTwostep:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(MoveRelativeTwostep)
-    v1, v2 = _UNPACK_3(data, 0)
+    v1, v2 = _UNPACK_2(data)
     item.angle = _PAIRS_0[v1]
     item.forward = _PAIRS_0[v2]
     return item
-
-
-def _write_move_relative_twostep(item: MoveRelativeTwostep) -> bytes:
-    v1 = item.angle
-    v2 = item.forward
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_3(_CODES_0[v1], _CODES_0[v2])
 
 
 def _read_move_relative_arc(data: bytes) -> MoveRelativeArc:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(MoveRelativeArc)
-    v1, v2 = _UNPACK_3(data, 0)
+    v1, v2 = _UNPACK_2(data)
     item.angle = _PAIRS_0[v1]
     item.forward = _PAIRS_0[v2]
     return item
-
-
-def _write_move_relative_arc(item: MoveRelativeArc) -> bytes:
-    v1 = item.angle
-    v2 = item.forward
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_3(_CODES_0[v1], _CODES_0[v2])
 
 
 def _read_maintenance(data: bytes) -> Maintenance:
@@ -645,16 +608,12 @@ def _read_maintenance(data: bytes) -> Maintenance:
         raise _fast.Unclear
     item = _new(Maintenance)
     v1: list[_typing.Any] = []
-    for v2 in _UNPACK_4(data, 0):
-        if v2 >> 7:
-            raise _fast.Unclear
+    for v2 in _UNPACK_3(data, 0):
         v1.append(v2)
     item.magic = v1
     if item.magic != [66, 17, 122]:
         raise _fast.Unclear
     v3 = data[3]
-    if v3 >> 7:
-        raise _fast.Unclear
     item.operation = _MEMBERS_0[v3]
     at = 4
     case4: _typing.Any = None
@@ -681,7 +640,213 @@ def _read_maintenance(data: bytes) -> Maintenance:
     return item
 
 
-def _write_maintenance(item: Maintenance) -> bytes:
+def _read_gyro(data: bytes) -> Gyro:
+    item = _new(Gyro)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_1[v1]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
+    return item
+
+
+def _read_xcel(data: bytes) -> Xcel:
+    item = _new(Xcel)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_2[v1]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
+    return item
+
+
+def _read_compass(data: bytes) -> Compass:
+    item = _new(Compass)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_3[v1]
+    item.avg_x = _PAIRS_0[v2]
+    item.avg_y = _PAIRS_0[v3]
+    item.avg_z = _PAIRS_0[v4]
+    return item
+
+
+def _read_optflow(data: bytes) -> Optflow:
+    item = _new(Optflow)
+    v1, v2, v3, v4 = _UNPACK_5(data)
+    item.status = v1
+    item.dx = _PAIRS_0[v2]
+    item.dy = _PAIRS_0[v3]
+    item.q = v4
+    return item
+
+
+def _read_lidar(data: bytes) -> Lidar:
+    if len(data) != 721:
+        raise _fast.Unclear
+    item = _new(Lidar)
+    v1 = data[0]
+    item.status = _MEMBERS_4[v1]
+    v2 = _PAIR_LIST_0(data[1 : 721])
+    if len(v2) != 360:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _read_sonar(data: bytes) -> Sonar:
+    if len(data) != 15:
+        raise _fast.Unclear
+    item = _new(Sonar)
+    v1 = data[0]
+    item.status = _MEMBERS_5[v1]
+    v2 = _PAIR_LIST_0(data[1 : 15])
+    if len(v2) != 7:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _read_facing(data: bytes) -> Facing:
+    item = _new(Facing)
+    v1, v2, v3 = _UNPACK_6(data)
+    item.status = v1
+    item.heading = _PAIRS_1[v2]
+    item.speed = _PAIRS_0[v3]
+    return item
+
+
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        while True:
+            if not 0x80 <= data[at] <= 0xFE:
+                return at
+            end = data.find(b"\xff", at)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 9:
+                return at
+            content = raw[:-1]
+            if len(content) < 1:
+                return at
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            numbers = (content[0],)
+            payload_size, read = _HOST_KINDS[content[0]]
+            if 0 <= payload_size != len(payload):
+                return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (2, _read_move_manual),
+    0x81: (4, _read_move_relative_twostep),
+    0x82: (4, _read_move_relative_arc),
+    0xFE: (-1, _read_maintenance),
+}
+
+def _frame_host(payload: bytes, start_: int | None) -> bytes:
+    content = _PACK_1(start_) + payload
+    return content + b"\xff"
+
+
+def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    add = events.append
+    try:
+        while True:
+            payload_size, read, numbers = _BRAIN_KINDS[data[at]]
+            end = at + 1 + payload_size
+            if end > size:
+                return at
+            raw = data[at:end]
+            content = raw
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = BRAIN_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (7, _read_gyro, (128,)),
+    0x81: (7, _read_xcel, (129,)),
+    0x82: (7, _read_compass, (130,)),
+    0x83: (6, _read_optflow, (131,)),
+    0x84: (721, _read_lidar, (132,)),
+    0x85: (15, _read_sonar, (133,)),
+    0xA0: (5, _read_facing, (160,)),
+}
+
+def _frame_brain(payload: bytes, start_: int | None) -> bytes:
+    content = _PACK_1(start_) + payload
+    return content
+
+
+def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.speed
+    if not -64 <= v1 <= 63:
+        raise _fast.Unclear
+    v2 = item.arc
+    if not -64 <= v2 <= 63:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(128, v1 & 0x7F, v2 & 0x7F)
+    return content + b"\xff"
+
+
+def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.angle
+    v2 = item.forward
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_3(129, _CODES_0[v1], _CODES_0[v2])
+    return content + b"\xff"
+
+
+def _encode_move_relative_arc(item: MoveRelativeArc, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.angle
+    v2 = item.forward
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_3(130, _CODES_0[v1], _CODES_0[v2])
+    return content + b"\xff"
+
+
+def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
     v1 = item.magic
     if type(v1) is not list:
         raise _fast.Unclear
@@ -735,24 +900,12 @@ def _write_maintenance(item: Maintenance) -> bytes:
     payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
     if not 4 <= len(payload) <= 7:
         raise _fast.Unclear
-    return payload
+    return _frame_host(payload, 254)
 
 
-def _read_gyro(data: bytes) -> Gyro:
-    if len(data) != 7:
+def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Gyro)
-    v1, v2, v3, v4 = _UNPACK_5(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_1[v1]
-    item.int_x = _PAIRS_0[v2]
-    item.int_y = _PAIRS_0[v3]
-    item.int_z = _PAIRS_0[v4]
-    return item
-
-
-def _write_gyro(item: Gyro) -> bytes:
     v1 = item.status
     if type(v1) is not GyroStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -763,24 +916,13 @@ def _write_gyro(item: Gyro) -> bytes:
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    content = _PACK_4(128, v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    return content
 
 
-def _read_xcel(data: bytes) -> Xcel:
-    if len(data) != 7:
+def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Xcel)
-    v1, v2, v3, v4 = _UNPACK_5(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_2[v1]
-    item.int_x = _PAIRS_0[v2]
-    item.int_y = _PAIRS_0[v3]
-    item.int_z = _PAIRS_0[v4]
-    return item
-
-
-def _write_xcel(item: Xcel) -> bytes:
     v1 = item.status
     if type(v1) is not XcelStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -791,24 +933,13 @@ def _write_xcel(item: Xcel) -> bytes:
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    content = _PACK_4(129, v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    return content
 
 
-def _read_compass(data: bytes) -> Compass:
-    if len(data) != 7:
+def _encode_compass(item: Compass, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Compass)
-    v1, v2, v3, v4 = _UNPACK_5(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_3[v1]
-    item.avg_x = _PAIRS_0[v2]
-    item.avg_y = _PAIRS_0[v3]
-    item.avg_z = _PAIRS_0[v4]
-    return item
-
-
-def _write_compass(item: Compass) -> bytes:
     v1 = item.status
     if type(v1) is not CompassStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -819,26 +950,13 @@ def _write_compass(item: Compass) -> bytes:
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_4(v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    content = _PACK_4(130, v1, _CODES_0[v2], _CODES_0[v3], _CODES_0[v4])
+    return content
 
 
-def _read_optflow(data: bytes) -> Optflow:
-    if len(data) != 6:
+def _encode_optflow(item: Optflow, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Optflow)
-    v1, v2, v3, v4 = _UNPACK_6(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = v1
-    item.dx = _PAIRS_0[v2]
-    item.dy = _PAIRS_0[v3]
-    if v4 >> 7:
-        raise _fast.Unclear
-    item.q = v4
-    return item
-
-
-def _write_optflow(item: Optflow) -> bytes:
     v1 = item.status
     if not 0 <= v1 <= 127:
         raise _fast.Unclear
@@ -849,25 +967,13 @@ def _write_optflow(item: Optflow) -> bytes:
         raise _fast.Unclear
     if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_5(v1, _CODES_0[v2], _CODES_0[v3], v4)
+    content = _PACK_5(131, v1, _CODES_0[v2], _CODES_0[v3], v4)
+    return content
 
 
-def _read_lidar(data: bytes) -> Lidar:
-    if len(data) != 721:
+def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Lidar)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_4[v1]
-    v2 = _PAIR_LIST_0(data[1 : 721])
-    if len(v2) != 360:
-        raise _fast.Unclear
-    item.distances = v2
-    return item
-
-
-def _write_lidar(item: Lidar) -> bytes:
     v1 = item.status
     if type(v1) is not LidarStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -878,25 +984,13 @@ def _write_lidar(item: Lidar) -> bytes:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    return b"".join((_PACK_1(v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_6(132, v1), _PAIR_LIST_1(v2)))
+    return content
 
 
-def _read_sonar(data: bytes) -> Sonar:
-    if len(data) != 15:
+def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Sonar)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_5[v1]
-    v2 = _PAIR_LIST_0(data[1 : 15])
-    if len(v2) != 7:
-        raise _fast.Unclear
-    item.distances = v2
-    return item
-
-
-def _write_sonar(item: Sonar) -> bytes:
     v1 = item.status
     if type(v1) is not SonarStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -907,23 +1001,13 @@ def _write_sonar(item: Sonar) -> bytes:
         raise _fast.Unclear
     if len(v2) != 7:
         raise _fast.Unclear
-    return b"".join((_PACK_1(v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_6(133, v1), _PAIR_LIST_1(v2)))
+    return content
 
 
-def _read_facing(data: bytes) -> Facing:
-    if len(data) != 5:
+def _encode_facing(item: Facing, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Facing)
-    v1, v2, v3 = _UNPACK_7(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = v1
-    item.heading = _PAIRS_1[v2]
-    item.speed = _PAIRS_0[v3]
-    return item
-
-
-def _write_facing(item: Facing) -> bytes:
     v1 = item.status
     if not 0 <= v1 <= 127:
         raise _fast.Unclear
@@ -931,129 +1015,23 @@ def _write_facing(item: Facing) -> bytes:
     v3 = item.speed
     if not (type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    return _PACK_6(v1, _CODES_1[v2], _CODES_0[v3])
-
-
-def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    try:
-        while True:
-            if not 0x80 <= data[at] <= 0xFE:
-                return at
-            end = data.find(b"\xff", at)
-            if end < 0:
-                return at
-            end += 1
-            raw = data[at:end]
-            if len(raw) > 9:
-                return at
-            content = raw[:-1]
-            if len(content) < 1:
-                return at
-            payload = content[1:]
-            if not payload.isascii():
-                return at
-            numbers = (content[0],)
-            payload_size, read = _HOST_KINDS[content[0]]
-            if 0 <= payload_size != len(payload):
-                return at
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = HOST_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (2, _read_move_manual),
-    0x81: (4, _read_move_relative_twostep),
-    0x82: (4, _read_move_relative_arc),
-    0xFE: (-1, _read_maintenance),
-}
-
-def _frame_host(payload: bytes, start_: int | None) -> bytes:
-    if not payload.isascii():
-        raise _fast.Unclear
-    content = _PACK_1(start_) + payload
-    return content + b"\xff"
-
-
-def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    try:
-        while True:
-            payload_size, read = _BRAIN_KINDS[data[at]]
-            end = at + 1 + payload_size
-            if end > size:
-                return at
-            raw = data[at:end]
-            content = raw
-            payload = content[1:]
-            if not payload.isascii():
-                return at
-            numbers = (content[0],)
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = BRAIN_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (7, _read_gyro),
-    0x81: (7, _read_xcel),
-    0x82: (7, _read_compass),
-    0x83: (6, _read_optflow),
-    0x84: (721, _read_lidar),
-    0x85: (15, _read_sonar),
-    0xA0: (5, _read_facing),
-}
-
-def _frame_brain(payload: bytes, start_: int | None) -> bytes:
-    if not payload.isascii():
-        raise _fast.Unclear
-    content = _PACK_1(start_) + payload
+    content = _PACK_7(160, v1, _CODES_1[v2], _CODES_0[v3])
     return content
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "host",
-        _frame_host,
-        {
-            MoveManual: _write_move_manual,
-            MoveRelativeTwostep: _write_move_relative_twostep,
-            MoveRelativeArc: _write_move_relative_arc,
-            Maintenance: _write_maintenance,
-        },
-    ),
-    _fast.SenderWriters(
-        "brain",
-        _frame_brain,
-        {
-            Gyro: _write_gyro,
-            Xcel: _write_xcel,
-            Compass: _write_compass,
-            Optflow: _write_optflow,
-            Lidar: _write_lidar,
-            Sonar: _write_sonar,
-            Facing: _write_facing,
-        },
-    ),
-)
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    MoveManual: _encode_move_manual,
+    MoveRelativeTwostep: _encode_move_relative_twostep,
+    MoveRelativeArc: _encode_move_relative_arc,
+    Maintenance: _encode_maintenance,
+    Gyro: _encode_gyro,
+    Xcel: _encode_xcel,
+    Compass: _encode_compass,
+    Optflow: _encode_optflow,
+    Lidar: _encode_lidar,
+    Sonar: _encode_sonar,
+    Facing: _encode_facing,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -1117,8 +1095,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity)
+            return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

@@ -568,38 +568,40 @@ BRAIN_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
-_UNPACK_0 = _struct.Struct("<B").unpack_from
+_MessageEvent = _rt.MessageEvent
 _PACK_0 = _struct.Struct("<B").pack
-_UNPACK_1 = _struct.Struct("<BB").unpack_from
-_PACK_1 = _struct.Struct("<BB").pack
-_UNPACK_2 = _struct.Struct(">HH").unpack_from
+_UNPACK_0 = _struct.Struct("<BB").unpack
+_UNPACK_1 = _struct.Struct(">HH").unpack
 _PAIRS_0 = _fast.Pairs(14, True, "big")
-_CODES_0 = _fast.PairCodes(14, True, "big")
-_PACK_2 = _struct.Struct(">HH").pack
+_UNPACK_2 = _struct.Struct("<B").unpack
 _UNPACK_3 = _struct.Struct("<3B").unpack_from
 _MEMBERS_0 = _fast.Members(MaintenanceOperation)
-_UNPACK_4 = _struct.Struct("<BHHH").unpack_from
+_UNPACK_4 = _struct.Struct("<BHHH").unpack
 _MEMBERS_1 = _fast.Members(GyroStatus)
 _PAIRS_1 = _fast.Pairs(14, True, "little")
-_CODES_1 = _fast.PairCodes(14, True, "little")
-_PACK_3 = _struct.Struct("<BHHH").pack
 _MEMBERS_2 = _fast.Members(XcelStatus)
 _MEMBERS_3 = _fast.Members(CompassStatus)
 _MEMBERS_4 = _fast.Members(LidarStatus)
 _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
-_PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _MEMBERS_5 = _fast.Members(SonarStatus)
-_UNPACK_5 = _struct.Struct("<BHH").unpack_from
-_PACK_4 = _struct.Struct("<BHH").pack
-_UNPACK_6 = _struct.Struct(">BHH").unpack_from
-_PACK_5 = _struct.Struct(">BHH").pack
-_UNPACK_7 = _struct.Struct(">H").unpack_from
+_UNPACK_5 = _struct.Struct("<BHH").unpack
+_UNPACK_6 = _struct.Struct(">BHH").unpack
+_UNPACK_7 = _struct.Struct(">H").unpack
 _PAIRS_2 = _fast.Pairs(14, False, "big")
-_CODES_2 = _fast.PairCodes(14, False, "big")
-_PACK_6 = _struct.Struct(">H").pack
-_UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack_from
+_UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
-_PACK_7 = _struct.Struct("<5s5s5s5s").pack
+_PACK_1 = _struct.Struct("<BBB").pack
+_CODES_0 = _fast.PairCodes(14, True, "big")
+_PACK_2 = _struct.Struct(">BHH").pack
+_PACK_3 = _struct.Struct("<BB").pack
+_CODES_1 = _fast.PairCodes(14, True, "little")
+_PACK_4 = _struct.Struct("<BBHHH").pack
+_PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
+_PACK_5 = _struct.Struct("<BBHH").pack
+_PACK_6 = _struct.Struct(">BBHH").pack
+_CODES_2 = _fast.PairCodes(14, False, "big")
+_PACK_7 = _struct.Struct(">BH").pack
+_PACK_8 = _struct.Struct("<B5s5s5s5s").pack
 
 
 def _read_maintenance_argument_run_motor_controller_flasher(
@@ -629,87 +631,33 @@ def _write_maintenance_argument_run_motor_controller_flasher(
 
 
 def _read_move_manual(data: bytes) -> MoveManual:
-    if len(data) != 2:
-        raise _fast.Unclear
     item = _new(MoveManual)
-    v1, v2 = _UNPACK_1(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
+    v1, v2 = _UNPACK_0(data)
     item.speed = (v1 ^ 0x40) - 0x40
-    if v2 >> 7:
-        raise _fast.Unclear
     item.arc = (v2 ^ 0x40) - 0x40
     return item
 
 
-def _write_move_manual(item: MoveManual) -> bytes:
-    v1 = item.speed
-    if not -64 <= v1 <= 63:
-        raise _fast.Unclear
-    v2 = item.arc
-    if not -64 <= v2 <= 63:
-        raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_1(v1 & 0x7F, v2 & 0x7F)
-
-
 def _read_move_relative_twostep(data: bytes) -> MoveRelativeTwostep:
-    if len(data) != 4:
-        raise _fast.Unclear
     item = _new(MoveRelativeTwostep)
-    v1, v2 = _UNPACK_2(data, 0)
+    v1, v2 = _UNPACK_1(data)
     item.angle = _PAIRS_0[v1]
     item.forward = _PAIRS_0[v2]
     return item
 
 
-def _write_move_relative_twostep(item: MoveRelativeTwostep) -> bytes:
-    v1 = item.angle
-    v2 = item.forward
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    return _PACK_2(_CODES_0[v1], _CODES_0[v2])
-
-
 def _read_decrease_phase_angle(data: bytes) -> DecreasePhaseAngle:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(DecreasePhaseAngle)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
+    (v1,) = _UNPACK_2(data)
     item.ignored = v1
     return item
-
-
-def _write_decrease_phase_angle(item: DecreasePhaseAngle) -> bytes:
-    v1 = item.ignored
-    if not 0 <= v1 <= 127:
-        raise _fast.Unclear
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_increase_phase_angle(data: bytes) -> IncreasePhaseAngle:
-    if len(data) != 1:
-        raise _fast.Unclear
     item = _new(IncreasePhaseAngle)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
+    (v1,) = _UNPACK_2(data)
     item.ignored = v1
     return item
-
-
-def _write_increase_phase_angle(item: IncreasePhaseAngle) -> bytes:
-    v1 = item.ignored
-    if not 0 <= v1 <= 127:
-        raise _fast.Unclear
-    if type(v1) is not int:
-        raise _fast.Unclear
-    return _PACK_0(v1)
 
 
 def _read_maintenance(data: bytes) -> Maintenance:
@@ -718,15 +666,11 @@ def _read_maintenance(data: bytes) -> Maintenance:
     item = _new(Maintenance)
     v1: list[_typing.Any] = []
     for v2 in _UNPACK_3(data, 0):
-        if v2 >> 7:
-            raise _fast.Unclear
         v1.append(v2)
     item.magic = v1
     if item.magic != [66, 17, 122]:
         raise _fast.Unclear
     v3 = data[3]
-    if v3 >> 7:
-        raise _fast.Unclear
     item.operation = _MEMBERS_0[v3]
     at = 4
     case4: _typing.Any = None
@@ -749,7 +693,245 @@ def _read_maintenance(data: bytes) -> Maintenance:
     return item
 
 
-def _write_maintenance(item: Maintenance) -> bytes:
+def _read_gyro(data: bytes) -> Gyro:
+    item = _new(Gyro)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_1[v1]
+    item.int_x = _PAIRS_1[v2]
+    item.int_y = _PAIRS_1[v3]
+    item.int_z = _PAIRS_1[v4]
+    return item
+
+
+def _read_xcel(data: bytes) -> Xcel:
+    item = _new(Xcel)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_2[v1]
+    item.int_x = _PAIRS_1[v2]
+    item.int_y = _PAIRS_1[v3]
+    item.int_z = _PAIRS_1[v4]
+    return item
+
+
+def _read_compass(data: bytes) -> Compass:
+    item = _new(Compass)
+    v1, v2, v3, v4 = _UNPACK_4(data)
+    item.status = _MEMBERS_3[v1]
+    item.avg_x = _PAIRS_1[v2]
+    item.avg_y = _PAIRS_1[v3]
+    item.avg_z = _PAIRS_1[v4]
+    return item
+
+
+def _read_lidar(data: bytes) -> Lidar:
+    if len(data) != 721:
+        raise _fast.Unclear
+    item = _new(Lidar)
+    v1 = data[0]
+    item.status = _MEMBERS_4[v1]
+    v2 = _PAIR_LIST_0(data[1 : 721])
+    if len(v2) != 360:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _read_sonar(data: bytes) -> Sonar:
+    if len(data) != 7:
+        raise _fast.Unclear
+    item = _new(Sonar)
+    v1 = data[0]
+    item.status = _MEMBERS_5[v1]
+    v2 = _PAIR_LIST_0(data[1 : 7])
+    if len(v2) != 3:
+        raise _fast.Unclear
+    item.distances = v2
+    return item
+
+
+def _read_facing(data: bytes) -> Facing:
+    item = _new(Facing)
+    v1, v2, v3 = _UNPACK_5(data)
+    item.status = v1
+    item.heading = _PAIRS_1[v2]
+    item.speed = _PAIRS_1[v3]
+    return item
+
+
+def _read_optflow_integral(data: bytes) -> OptflowIntegral:
+    item = _new(OptflowIntegral)
+    v1, v2, v3 = _UNPACK_6(data)
+    item.status = v1
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    return item
+
+
+def _read_motor_controller_message(data: bytes) -> MotorControllerMessage:
+    item = _new(MotorControllerMessage)
+    (v1,) = _UNPACK_7(data)
+    item.last_msg = _PAIRS_2[v1]
+    return item
+
+
+def _read_debug_numbers(data: bytes) -> DebugNumbers:
+    item = _new(DebugNumbers)
+    v1, v2, v3, v4 = _UNPACK_8(data)
+    item.dbg1 = _NUMBER_0.decode(v1)
+    item.dbg2 = _NUMBER_0.decode(v2)
+    item.dbg3 = _NUMBER_0.decode(v3)
+    item.dbg4 = _NUMBER_0.decode(v4)
+    return item
+
+
+def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        while True:
+            if not 0x80 <= data[at] <= 0xFE:
+                return at
+            end = data.find(b"\xff", at)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 7:
+                return at
+            content = raw[:-1]
+            if len(content) < 1:
+                return at
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            numbers = (content[0],)
+            payload_size, read = _HOST_KINDS[content[0]]
+            if 0 <= payload_size != len(payload):
+                return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = HOST_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (2, _read_move_manual),
+    0x81: (4, _read_move_relative_twostep),
+    0xD1: (1, _read_decrease_phase_angle),
+    0xD2: (1, _read_increase_phase_angle),
+    0xFE: (-1, _read_maintenance),
+}
+
+def _frame_host(payload: bytes, start_: int | None) -> bytes:
+    content = _PACK_0(start_) + payload
+    return content + b"\xff"
+
+
+def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
+    add = events.append
+    try:
+        while True:
+            payload_size, read, numbers = _BRAIN_KINDS[data[at]]
+            end = at + 1 + payload_size
+            if end > size:
+                return at
+            raw = data[at:end]
+            content = raw
+            payload = content[1:]
+            if not payload.isascii():
+                return at
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = BRAIN_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x80: (7, _read_gyro, (128,)),
+    0x81: (7, _read_xcel, (129,)),
+    0x82: (7, _read_compass, (130,)),
+    0x84: (721, _read_lidar, (132,)),
+    0x85: (7, _read_sonar, (133,)),
+    0xA0: (5, _read_facing, (160,)),
+    0xA1: (5, _read_optflow_integral, (161,)),
+    0xD1: (2, _read_motor_controller_message, (209,)),
+    0xD2: (20, _read_debug_numbers, (210,)),
+}
+
+def _frame_brain(payload: bytes, start_: int | None) -> bytes:
+    content = _PACK_0(start_) + payload
+    return content
+
+
+def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.speed
+    if not -64 <= v1 <= 63:
+        raise _fast.Unclear
+    v2 = item.arc
+    if not -64 <= v2 <= 63:
+        raise _fast.Unclear
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_1(128, v1 & 0x7F, v2 & 0x7F)
+    return content + b"\xff"
+
+
+def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.angle
+    v2 = item.forward
+    if not (type(v1) is type(v2) is int):
+        raise _fast.Unclear
+    content = _PACK_2(129, _CODES_0[v1], _CODES_0[v2])
+    return content + b"\xff"
+
+
+def _encode_decrease_phase_angle(item: DecreasePhaseAngle, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.ignored
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_3(209, v1)
+    return content + b"\xff"
+
+
+def _encode_increase_phase_angle(item: IncreasePhaseAngle, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
+    v1 = item.ignored
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
+    if type(v1) is not int:
+        raise _fast.Unclear
+    content = _PACK_3(210, v1)
+    return content + b"\xff"
+
+
+def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
+    if sender is not None and sender != "host":
+        raise _fast.Unclear
     v1 = item.magic
     if type(v1) is not list:
         raise _fast.Unclear
@@ -796,24 +978,12 @@ def _write_maintenance(item: Maintenance) -> bytes:
     payload = b"".join((b"".join(v2), _PACK_0(v4), case6))
     if not 4 <= len(payload) <= 5:
         raise _fast.Unclear
-    return payload
+    return _frame_host(payload, 254)
 
 
-def _read_gyro(data: bytes) -> Gyro:
-    if len(data) != 7:
+def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Gyro)
-    v1, v2, v3, v4 = _UNPACK_4(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_1[v1]
-    item.int_x = _PAIRS_1[v2]
-    item.int_y = _PAIRS_1[v3]
-    item.int_z = _PAIRS_1[v4]
-    return item
-
-
-def _write_gyro(item: Gyro) -> bytes:
     v1 = item.status
     if type(v1) is not GyroStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -824,24 +994,13 @@ def _write_gyro(item: Gyro) -> bytes:
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_3(v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    content = _PACK_4(128, v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    return content
 
 
-def _read_xcel(data: bytes) -> Xcel:
-    if len(data) != 7:
+def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Xcel)
-    v1, v2, v3, v4 = _UNPACK_4(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_2[v1]
-    item.int_x = _PAIRS_1[v2]
-    item.int_y = _PAIRS_1[v3]
-    item.int_z = _PAIRS_1[v4]
-    return item
-
-
-def _write_xcel(item: Xcel) -> bytes:
     v1 = item.status
     if type(v1) is not XcelStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -852,24 +1011,13 @@ def _write_xcel(item: Xcel) -> bytes:
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_3(v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    content = _PACK_4(129, v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    return content
 
 
-def _read_compass(data: bytes) -> Compass:
-    if len(data) != 7:
+def _encode_compass(item: Compass, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Compass)
-    v1, v2, v3, v4 = _UNPACK_4(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_3[v1]
-    item.avg_x = _PAIRS_1[v2]
-    item.avg_y = _PAIRS_1[v3]
-    item.avg_z = _PAIRS_1[v4]
-    return item
-
-
-def _write_compass(item: Compass) -> bytes:
     v1 = item.status
     if type(v1) is not CompassStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -880,25 +1028,13 @@ def _write_compass(item: Compass) -> bytes:
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_3(v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    content = _PACK_4(130, v1, _CODES_1[v2], _CODES_1[v3], _CODES_1[v4])
+    return content
 
 
-def _read_lidar(data: bytes) -> Lidar:
-    if len(data) != 721:
+def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Lidar)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_4[v1]
-    v2 = _PAIR_LIST_0(data[1 : 721])
-    if len(v2) != 360:
-        raise _fast.Unclear
-    item.distances = v2
-    return item
-
-
-def _write_lidar(item: Lidar) -> bytes:
     v1 = item.status
     if type(v1) is not LidarStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -909,25 +1045,13 @@ def _write_lidar(item: Lidar) -> bytes:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    return b"".join((_PACK_0(v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_3(132, v1), _PAIR_LIST_1(v2)))
+    return content
 
 
-def _read_sonar(data: bytes) -> Sonar:
-    if len(data) != 7:
+def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Sonar)
-    v1 = data[0]
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = _MEMBERS_5[v1]
-    v2 = _PAIR_LIST_0(data[1 : 7])
-    if len(v2) != 3:
-        raise _fast.Unclear
-    item.distances = v2
-    return item
-
-
-def _write_sonar(item: Sonar) -> bytes:
     v1 = item.status
     if type(v1) is not SonarStatus and type(v1) is not int:
         raise _fast.Unclear
@@ -938,23 +1062,13 @@ def _write_sonar(item: Sonar) -> bytes:
         raise _fast.Unclear
     if len(v2) != 3:
         raise _fast.Unclear
-    return b"".join((_PACK_0(v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_3(133, v1), _PAIR_LIST_1(v2)))
+    return content
 
 
-def _read_facing(data: bytes) -> Facing:
-    if len(data) != 5:
+def _encode_facing(item: Facing, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(Facing)
-    v1, v2, v3 = _UNPACK_5(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = v1
-    item.heading = _PAIRS_1[v2]
-    item.speed = _PAIRS_1[v3]
-    return item
-
-
-def _write_facing(item: Facing) -> bytes:
     v1 = item.status
     if not 0 <= v1 <= 127:
         raise _fast.Unclear
@@ -962,23 +1076,13 @@ def _write_facing(item: Facing) -> bytes:
     v3 = item.speed
     if not (type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    return _PACK_4(v1, _CODES_1[v2], _CODES_1[v3])
+    content = _PACK_5(160, v1, _CODES_1[v2], _CODES_1[v3])
+    return content
 
 
-def _read_optflow_integral(data: bytes) -> OptflowIntegral:
-    if len(data) != 5:
+def _encode_optflow_integral(item: OptflowIntegral, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(OptflowIntegral)
-    v1, v2, v3 = _UNPACK_6(data, 0)
-    if v1 >> 7:
-        raise _fast.Unclear
-    item.status = v1
-    item.int_x = _PAIRS_0[v2]
-    item.int_y = _PAIRS_0[v3]
-    return item
-
-
-def _write_optflow_integral(item: OptflowIntegral) -> bytes:
     v1 = item.status
     if not 0 <= v1 <= 127:
         raise _fast.Unclear
@@ -986,178 +1090,55 @@ def _write_optflow_integral(item: OptflowIntegral) -> bytes:
     v3 = item.int_y
     if not (type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    return _PACK_5(v1, _CODES_0[v2], _CODES_0[v3])
+    content = _PACK_6(161, v1, _CODES_0[v2], _CODES_0[v3])
+    return content
 
 
-def _read_motor_controller_message(data: bytes) -> MotorControllerMessage:
-    if len(data) != 2:
+def _encode_motor_controller_message(item: MotorControllerMessage, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(MotorControllerMessage)
-    (v1,) = _UNPACK_7(data, 0)
-    item.last_msg = _PAIRS_2[v1]
-    return item
-
-
-def _write_motor_controller_message(item: MotorControllerMessage) -> bytes:
     v1 = item.last_msg
     if type(v1) is not int:
         raise _fast.Unclear
-    return _PACK_6(_CODES_2[v1])
+    content = _PACK_7(209, _CODES_2[v1])
+    return content
 
 
-def _read_debug_numbers(data: bytes) -> DebugNumbers:
-    if len(data) != 20:
+def _encode_debug_numbers(item: DebugNumbers, sender: str | None) -> bytes:
+    if sender is not None and sender != "brain":
         raise _fast.Unclear
-    item = _new(DebugNumbers)
-    v1, v2, v3, v4 = _UNPACK_8(data, 0)
-    item.dbg1 = _NUMBER_0.decode(v1)
-    item.dbg2 = _NUMBER_0.decode(v2)
-    item.dbg3 = _NUMBER_0.decode(v3)
-    item.dbg4 = _NUMBER_0.decode(v4)
-    return item
-
-
-def _write_debug_numbers(item: DebugNumbers) -> bytes:
     v1 = item.dbg1
     v2 = item.dbg2
     v3 = item.dbg3
     v4 = item.dbg4
     if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    return _PACK_7(
+    content = _PACK_8(
+        210,
         _NUMBER_0.encode(v1),
         _NUMBER_0.encode(v2),
         _NUMBER_0.encode(v3),
         _NUMBER_0.encode(v4),
     )
-
-
-def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    try:
-        while True:
-            if not 0x80 <= data[at] <= 0xFE:
-                return at
-            end = data.find(b"\xff", at)
-            if end < 0:
-                return at
-            end += 1
-            raw = data[at:end]
-            if len(raw) > 7:
-                return at
-            content = raw[:-1]
-            if len(content) < 1:
-                return at
-            payload = content[1:]
-            if not payload.isascii():
-                return at
-            numbers = (content[0],)
-            payload_size, read = _HOST_KINDS[content[0]]
-            if 0 <= payload_size != len(payload):
-                return at
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = HOST_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_HOST_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (2, _read_move_manual),
-    0x81: (4, _read_move_relative_twostep),
-    0xD1: (1, _read_decrease_phase_angle),
-    0xD2: (1, _read_increase_phase_angle),
-    0xFE: (-1, _read_maintenance),
-}
-
-def _frame_host(payload: bytes, start_: int | None) -> bytes:
-    if not payload.isascii():
-        raise _fast.Unclear
-    content = _PACK_0(start_) + payload
-    return content + b"\xff"
-
-
-def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    try:
-        while True:
-            payload_size, read = _BRAIN_KINDS[data[at]]
-            end = at + 1 + payload_size
-            if end > size:
-                return at
-            raw = data[at:end]
-            content = raw
-            payload = content[1:]
-            if not payload.isascii():
-                return at
-            numbers = (content[0],)
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = BRAIN_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (7, _read_gyro),
-    0x81: (7, _read_xcel),
-    0x82: (7, _read_compass),
-    0x84: (721, _read_lidar),
-    0x85: (7, _read_sonar),
-    0xA0: (5, _read_facing),
-    0xA1: (5, _read_optflow_integral),
-    0xD1: (2, _read_motor_controller_message),
-    0xD2: (20, _read_debug_numbers),
-}
-
-def _frame_brain(payload: bytes, start_: int | None) -> bytes:
-    if not payload.isascii():
-        raise _fast.Unclear
-    content = _PACK_0(start_) + payload
     return content
 
 
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "host",
-        _frame_host,
-        {
-            MoveManual: _write_move_manual,
-            MoveRelativeTwostep: _write_move_relative_twostep,
-            DecreasePhaseAngle: _write_decrease_phase_angle,
-            IncreasePhaseAngle: _write_increase_phase_angle,
-            Maintenance: _write_maintenance,
-        },
-    ),
-    _fast.SenderWriters(
-        "brain",
-        _frame_brain,
-        {
-            Gyro: _write_gyro,
-            Xcel: _write_xcel,
-            Compass: _write_compass,
-            Lidar: _write_lidar,
-            Sonar: _write_sonar,
-            Facing: _write_facing,
-            OptflowIntegral: _write_optflow_integral,
-            MotorControllerMessage: _write_motor_controller_message,
-            DebugNumbers: _write_debug_numbers,
-        },
-    ),
-)
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    MoveManual: _encode_move_manual,
+    MoveRelativeTwostep: _encode_move_relative_twostep,
+    DecreasePhaseAngle: _encode_decrease_phase_angle,
+    IncreasePhaseAngle: _encode_increase_phase_angle,
+    Maintenance: _encode_maintenance,
+    Gyro: _encode_gyro,
+    Xcel: _encode_xcel,
+    Compass: _encode_compass,
+    Lidar: _encode_lidar,
+    Sonar: _encode_sonar,
+    Facing: _encode_facing,
+    OptflowIntegral: _encode_optflow_integral,
+    MotorControllerMessage: _encode_motor_controller_message,
+    DebugNumbers: _encode_debug_numbers,
+}
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -1246,8 +1227,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity)
+            return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

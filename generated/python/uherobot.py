@@ -231,19 +231,20 @@ BOARD_FRAME = _rt.FrameSpec(
 
 _new = _fast.new
 _BYTES = _fast.BYTES
+_MessageEvent = _rt.MessageEvent
 _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
-_UNPACK_2 = _struct.Struct("<B").unpack_from
 _MEMBERS_0 = _fast.Members(MotorsServosLedsLeds)
-_PACK_0 = _struct.Struct(">8H").pack
-_PACK_1 = _struct.Struct(">hh").pack
-_PACK_2 = _struct.Struct("<B").pack
-_UNPACK_3 = _struct.Struct(">2H").unpack_from
-_PACK_3 = _struct.Struct(">2H").pack
-_UNPACK_4 = _struct.Struct(">hhh").unpack_from
-_PACK_4 = _struct.Struct(">hhh").pack
+_UNPACK_2 = _struct.Struct(">2H").unpack_from
+_UNPACK_3 = _struct.Struct(">hh").unpack
+_UNPACK_4 = _struct.Struct(">hhh").unpack
 _STUFFING_0 = _transparency.Base16Upper()
-_PACK_5 = _struct.Struct("<BBB").pack
+_PACK_0 = _struct.Struct("<BB").pack
+_PACK_1 = _struct.Struct(">8H").pack
+_PACK_2 = _struct.Struct(">BBhh").pack
+_PACK_3 = _struct.Struct("<B").pack
+_PACK_4 = _struct.Struct(">2H").pack
+_PACK_5 = _struct.Struct(">BBhhh").pack
 
 
 def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
@@ -257,7 +258,138 @@ def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
     return item
 
 
-def _write_motors_servos_leds(item: MotorsServosLeds) -> bytes:
+def _read_motors_two_servos(data: bytes) -> MotorsTwoServos:
+    if len(data) != 8:
+        raise _fast.Unclear
+    item = _new(MotorsTwoServos)
+    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
+    item.servos = list(_UNPACK_2(data, 4))
+    return item
+
+
+def _read_motor_test(data: bytes) -> MotorTest:
+    item = _new(MotorTest)
+    item.motor_1, item.motor_2 = _UNPACK_3(data)
+    return item
+
+
+def _read_status(data: bytes) -> Status:
+    item = _new(Status)
+    item.voltage, item.current, item.temperature = _UNPACK_4(data)
+    return item
+
+
+def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        while True:
+            if data[at] != 0x62:
+                return at
+            end = data.find(b"\x65", at + 1)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 512:
+                return at
+            if raw.find(b"\x62", 1) > 0:
+                return at
+            content = raw[1:-1]
+            content = _STUFFING_0.decode(content)
+            if len(content) < 1:
+                return at
+            if len(content) != content[0]:
+                return at
+            if not 2 <= content[0] <= 255:
+                return at
+            payload = content[2:]
+            numbers = (content[1],)
+            read = _DAEMON_KINDS.get(content[1])
+            if read is None:
+                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = DAEMON_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x00: _read_motors_servos_leds,
+    0x01: _read_motors_two_servos,
+    0x03: _read_motor_test,
+}
+
+def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
+    content = _PACK_0(len(payload) + 2, type_) + payload
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
+
+
+def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    add = events.append
+    try:
+        while True:
+            if data[at] != 0x62:
+                return at
+            end = data.find(b"\x65", at + 1)
+            if end < 0:
+                return at
+            end += 1
+            raw = data[at:end]
+            if len(raw) > 512:
+                return at
+            if raw.find(b"\x62", 1) > 0:
+                return at
+            content = raw[1:-1]
+            content = _STUFFING_0.decode(content)
+            if len(content) < 1:
+                return at
+            if len(content) != content[0]:
+                return at
+            if not 2 <= content[0] <= 255:
+                return at
+            payload = content[2:]
+            numbers = (content[1],)
+            read = _BOARD_KINDS.get(content[1])
+            if read is None:
+                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
+                at = end
+                continue
+            event = _new(_MessageEvent)
+            event.message = read(payload)
+            event.offset = base + at
+            event.raw = raw
+            event.numbers = numbers
+            event.payload = payload
+            event.codec = BOARD_SENDER
+            add(event)
+            at = end
+    except _fast.ANYTHING:  # The reference looks at what is here.
+        return at
+
+
+
+_BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
+    0x01: _read_status,
+}
+
+def _frame_board(payload: bytes, type_: int | None) -> bytes:
+    content = _PACK_0(len(payload) + 2, type_) + payload
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
+
+
+def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> bytes:
+    if sender is not None and sender != "daemon":
+        raise _fast.Unclear
     v1 = item.motor_1
     v2 = item.motor_2
     v3 = item.servos
@@ -272,19 +404,13 @@ def _write_motors_servos_leds(item: MotorsServosLeds) -> bytes:
     v4 = item.leds
     if type(v4) is not MotorsServosLedsLeds and type(v4) is not int:
         raise _fast.Unclear
-    return b"".join((_PACK_1(v1, v2), _PACK_0(*v3), _PACK_2(v4)))
+    content = b"".join((_PACK_2(23, 0, v1, v2), _PACK_1(*v3), _PACK_3(v4)))
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _read_motors_two_servos(data: bytes) -> MotorsTwoServos:
-    if len(data) != 8:
+def _encode_motors_two_servos(item: MotorsTwoServos, sender: str | None) -> bytes:
+    if sender is not None and sender != "daemon":
         raise _fast.Unclear
-    item = _new(MotorsTwoServos)
-    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
-    item.servos = list(_UNPACK_3(data, 4))
-    return item
-
-
-def _write_motors_two_servos(item: MotorsTwoServos) -> bytes:
     v1 = item.motor_1
     v2 = item.motor_2
     v3 = item.servos
@@ -296,166 +422,39 @@ def _write_motors_two_servos(item: MotorsTwoServos) -> bytes:
         raise _fast.Unclear
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    return b"".join((_PACK_1(v1, v2), _PACK_3(*v3)))
+    content = b"".join((_PACK_2(10, 1, v1, v2), _PACK_4(*v3)))
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _read_motor_test(data: bytes) -> MotorTest:
-    if len(data) != 4:
+def _encode_motor_test(item: MotorTest, sender: str | None) -> bytes:
+    if sender is not None and sender != "daemon":
         raise _fast.Unclear
-    item = _new(MotorTest)
-    item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
-    return item
-
-
-def _write_motor_test(item: MotorTest) -> bytes:
     v1 = item.motor_1
     v2 = item.motor_2
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    return _PACK_1(v1, v2)
+    content = _PACK_2(6, 3, v1, v2)
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _read_status(data: bytes) -> Status:
-    if len(data) != 6:
+def _encode_status(item: Status, sender: str | None) -> bytes:
+    if sender is not None and sender != "board":
         raise _fast.Unclear
-    item = _new(Status)
-    item.voltage, item.current, item.temperature = _UNPACK_4(data, 0)
-    return item
-
-
-def _write_status(item: Status) -> bytes:
     v1 = item.voltage
     v2 = item.current
     v3 = item.temperature
     if not (type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    return _PACK_4(v1, v2, v3)
+    content = _PACK_5(8, 1, v1, v2, v3)
+    return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    try:
-        while True:
-            if data[at] != 0x62:
-                return at
-            end = data.find(b"\x65", at + 1)
-            if end < 0:
-                return at
-            end += 1
-            raw = data[at:end]
-            if len(raw) > 512:
-                return at
-            if raw.find(b"\x62", 1) > 0:
-                return at
-            content = raw[1:-1]
-            content = _STUFFING_0.decode(content)
-            if len(content) < 2:
-                return at
-            payload = content[2:]
-            if len(payload) > 253:
-                return at
-            if content[0] != len(payload) + 2:
-                return at
-            numbers = (content[1],)
-            read = _DAEMON_KINDS.get(content[1])
-            if read is None:
-                events.append(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
-                at = end
-                continue
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = DAEMON_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x00: _read_motors_servos_leds,
-    0x01: _read_motors_two_servos,
-    0x03: _read_motor_test,
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
+    MotorsServosLeds: _encode_motors_servos_leds,
+    MotorsTwoServos: _encode_motors_two_servos,
+    MotorTest: _encode_motor_test,
+    Status: _encode_status,
 }
-
-def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
-    content = _PACK_5(0x62, len(payload) + 2, type_) + payload
-    return content[:1] + _STUFFING_0.encode(content[1:]) + b"\x65"
-
-
-def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    try:
-        while True:
-            if data[at] != 0x62:
-                return at
-            end = data.find(b"\x65", at + 1)
-            if end < 0:
-                return at
-            end += 1
-            raw = data[at:end]
-            if len(raw) > 512:
-                return at
-            if raw.find(b"\x62", 1) > 0:
-                return at
-            content = raw[1:-1]
-            content = _STUFFING_0.decode(content)
-            if len(content) < 2:
-                return at
-            payload = content[2:]
-            if len(payload) > 253:
-                return at
-            if content[0] != len(payload) + 2:
-                return at
-            numbers = (content[1],)
-            read = _BOARD_KINDS.get(content[1])
-            if read is None:
-                events.append(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
-                at = end
-                continue
-            event = _new(_rt.MessageEvent)
-            event.message = read(payload)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.payload = payload
-            event.codec = BOARD_SENDER
-            events.append(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
-
-
-
-_BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x01: _read_status,
-}
-
-def _frame_board(payload: bytes, type_: int | None) -> bytes:
-    content = _PACK_5(0x62, len(payload) + 2, type_) + payload
-    return content[:1] + _STUFFING_0.encode(content[1:]) + b"\x65"
-
-
-_ENCODERS = _fast.encoders(
-    _fast.SenderWriters(
-        "daemon",
-        _frame_daemon,
-        {
-            MotorsServosLeds: _write_motors_servos_leds,
-            MotorsTwoServos: _write_motors_two_servos,
-            MotorTest: _write_motor_test,
-        },
-    ),
-    _fast.SenderWriters(
-        "board",
-        _frame_board,
-        {
-            Status: _write_status,
-        },
-    ),
-)
 # fmt: on
 
 # --- the codec ----------------------------------------------------------------------------------
@@ -512,8 +511,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            write, frame, identity = _ENCODERS[type(message), sender]
-            return frame(write(message), *identity)
+            return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

@@ -6,6 +6,7 @@ from collections import ChainMap
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
+from types import ModuleType
 from typing import Any
 
 from protogen.evolution.quantities import quantity
@@ -46,12 +47,16 @@ class Side:
         self.protocol = protocol
 
     @cached_property
+    def _module(self) -> ModuleType:
+        return module_of(self.protocol)
+
+    @property
     def _codec(self) -> Any:
-        return module_of(self.protocol).PROTOCOL
+        return self._module.PROTOCOL
 
     @cached_property
     def _engine(self) -> PythonEngine:
-        return PythonEngine(self._codec)
+        return PythonEngine(self._codec, self._module.encode)
 
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes | None:
         """The frame of a message; None where the encoder refuses it."""

@@ -41,6 +41,16 @@ def _shifts(size: int) -> tuple[int, ...]:
 _SHIFTS = tuple(_shifts((1 << bits) - 1) for bits in range(_LONG.bit_length()))
 
 
+def xor_of(data: bytes) -> int:
+    """Return the exclusive or of all bytes."""
+    # Halves of one great integer are laid over each other, until they are one byte.
+    great = int.from_bytes(data, "little")
+    size = len(data)
+    for shift in _SHIFTS[size.bit_length()] if size < _LONG else _shifts(size):
+        great ^= great >> shift
+    return great & 0xFF
+
+
 @dataclass(frozen=True, slots=True)
 class Xor8:
     """The exclusive or of all bytes and `init`."""
@@ -54,12 +64,7 @@ class Xor8:
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0..255."""
-        # Halves of one great integer are laid over each other, until they are one byte.
-        great = int.from_bytes(data, "little")
-        size = len(data)
-        for shift in _SHIFTS[size.bit_length()] if size < _LONG else _shifts(size):
-            great ^= great >> shift
-        return great & 0xFF ^ self.init
+        return xor_of(data) ^ self.init
 
 
 @dataclass(frozen=True, slots=True)

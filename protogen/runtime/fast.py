@@ -7,16 +7,14 @@ reference (construct, and the machine of `machine.py`) decides and says what is 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
-from protogen.runtime.message import Message
 from protogen.runtime.number import ByteOrder, Number
 from protogen.runtime.pairs import INTEGERS, PairCodes, PairLists, Pairs, Unclear
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.sender import Cutter, SenderSpec
 
 AnyT = TypeVar("AnyT")
 
@@ -25,16 +23,14 @@ __all__ = [
     "ANYTHING",
     "BYTES",
     "INTEGERS",
-    "Encoders",
     "Members",
     "PairCodes",
     "PairLists",
     "Pairs",
-    "SenderWriters",
     "SevenBitFloat",
     "Unclear",
+    "checked",
     "closed",
-    "encoders",
     "new",
     "seven_bit_float",
     "unknown",
@@ -62,32 +58,12 @@ def unknown(
     return UnknownEvent(offset, raw, sender.name, sender.parts(*numbers), payload, sender)
 
 
-@dataclass(frozen=True, slots=True)
-class SenderWriters:
-    """What makes the frames of one sender: a function for the frame, and one for each payload."""
-
-    sender: str
-    frame: Callable[..., bytes]
-    writers: Mapping[type[Message], Callable[[Any], bytes]]
-
-
-Encoders = dict[
-    tuple[type[Message], str | None],
-    tuple[Callable[[Any], bytes], Callable[..., bytes], tuple[int, ...]],
-]
-"""What makes a payload and a frame, and the identity, by message and sender; None: the only one."""
-
-
-def encoders(*senders: SenderWriters) -> Encoders:
-    """The table that `encode` looks up."""
-    table: Encoders = {}
-    for sender in senders:
-        for message, write in sender.writers.items():
-            entry = (write, sender.frame, message.IDENTITY)
-            table[message, sender.sender] = entry
-            if len(message.SENDERS) == 1:
-                table[message, None] = entry
-    return table
+def checked(wire: bytes, payload: bytes, cut: Cutter) -> bytes:
+    """The frame, if a decoder takes exactly these bytes for it. Raises Unclear."""
+    events: list[Any] = []
+    if cut(wire, 0, 0, events) != len(wire) or [event.payload for event in events] != [payload]:
+        raise Unclear
+    return wire
 
 
 # --- named values -------------------------------------------------------------------------------

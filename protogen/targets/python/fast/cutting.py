@@ -47,7 +47,10 @@ def _kind(frame: FastFrame, kin: Kin) -> str | None:
         reader = f"_read_{kin.messages[0].name}"
     if frame.length is not None:
         return reader
-    return f"({-1 if kin.fixed is None else kin.fixed}, {reader})"
+    size = -1 if kin.fixed is None else kin.fixed
+    if frame.ended_by == "kind" and frame.shows_identity:
+        return f"({size}, {reader}, {tuple_of(map(str, kin.identity))})"
+    return f"({size}, {reader})"
 
 
 def identity_key(identity: tuple[int, ...]) -> str:
@@ -68,6 +71,13 @@ class _Cutter:
     def body(self) -> tuple[str, ...]:
         if self.frame.ended_by in ("length", "kind"):
             self.lines.add("size = len(data)")
+        self.lines.add("add = events.append")
+        if self.frame.ended_by == "start":
+            # Behind a frame that ends where the next start is, that needs not be checked again.
+            with self.lines.block("try:"):
+                self._start()
+            with self.lines.block("except IndexError:"):
+                self.lines.add("return at")
         with self.lines.block("try:"), self.lines.block("while True:"):
             self._locate()
             self._content()
@@ -87,7 +97,8 @@ class _Cutter:
 
     def _locate(self) -> None:
         """Set `raw`, the frame's bytes, and `end`, the place behind them."""
-        self._start()
+        if self.frame.ended_by != "start":
+            self._start()
         match self.frame.ended_by:
             case "start":
                 self._until_start()
@@ -114,11 +125,11 @@ class _Cutter:
     def _until_start(self) -> None:
         if isinstance(self.frame.start, StartLiteral):
             self.lines.add(f"end = data.find({literal(self.frame.start.bytes)}, at + 1)")
-            self._stop_if("end < 0")
+            with self.lines.block("if end < 0:"):
+                self.lines.add("end = len(data)")
         else:
             self.lines.add(f"found = {self._starts()}(data, at + 1)")
-            self._stop_if("found is None")
-            self.lines.add("end = found.start()")
+            self.lines.add("end = len(data) if found is None else found.start()")
         self._raw()
 
     def _starts(self) -> str:
@@ -185,7 +196,10 @@ class _Cutter:
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
         key = self._identity("data", "at + ")
-        self.lines.add(f"payload_size, read = _{self.name.upper()}_KINDS[{key}]")
+        found = "payload_size, read"
+        if frame.shows_identity:
+            found += ", numbers"
+        self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
         open_kinds = any(kin.fixed is None for kin in frame.kins)
         if open_kinds and frame.end:
             with self.lines.block("if payload_size < 0:"):
@@ -243,7 +257,7 @@ class _Cutter:
         assert transparency is not None
         strict = tables.encoding(transparency.encoding)
         decode = f"{self.lines.constants.named('STUFFING', strict)}.decode"
-        specials = self.frame.specials
+        specials = self.frame.specials(sending=False)
         if specials is None:
             self.lines.add(f"content = {decode}(content)")
             return
@@ -257,20 +271,45 @@ class _Cutter:
         around = frame.head_size - frame.skipped + frame.tail_size
         head = frame.head_size - frame.skipped
         sliced = f"payload = {frame.slice_of('content', head, -frame.tail_size)}"
-        if frame.optional:
+        if frame.length is not None and not frame.optional:
+            self._length(frame.length, around)
+            self.lines.add(sliced)
+        elif frame.optional:
             with self.lines.block(f"if len(content) <= {around}:"):
                 self._stop_if(f"len(content) != {around - self._optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
+            if frame.length is not None:
+                self._stop_if(f"len(payload) > {frame.framing.payload.greatest}")
+                self._optional_length(frame.length)
         else:
             if frame.ended_by in ("end", "start"):
                 self._stop_if(f"len(content) < {max(around, 1)}")
             self.lines.add(sliced)
-        if frame.length is not None:
-            self._stop_if(f"len(payload) > {frame.framing.payload.greatest}")
         if frame.framing.seven_bit:
             self._stop_if("not payload.isascii()")
+
+    def _length(self, part: LengthPart, around: int) -> None:
+        """A length in bounds that is right tells that all other parts are there."""
+        counted, number = self._counted(part), self._number("content", part)
+        behind = self.frame.offset(part) + part.type.size
+        if around < behind or self.frame.ended_by in ("end", "start"):
+            self._stop_if(f"len(content) < {behind}")
+        rest = around - counted
+        due = f"{number} + {rest}" if rest > 0 else f"{number} - {-rest}" if rest else number
+        self._stop_if(f"len(content) != {due}")
+        least = max(part.least, counted)
+        greatest = min(part.greatest, counted + self.frame.framing.payload.greatest)
+        if least > 0 or greatest < part.type.greatest:
+            self._stop_if(f"not {least} <= {number} <= {greatest}")
+
+    def _optional_length(self, part: LengthPart) -> None:
+        counted, number = self._counted(part), self._number("content", part)
+        self._stop_if(
+            f"{number} != len(payload) + {counted} - {self._optional_size} * (not payload)"
+        )
+        self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _head(self) -> None:
         for part in self.frame.head:
@@ -279,8 +318,6 @@ class _Cutter:
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"
                 self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
-        if self.frame.length is not None:
-            self._length(self.frame.length)
 
     def _is_start(self, part: LiteralPart) -> bool:
         """Whether finding the start has checked the literal."""
@@ -290,17 +327,6 @@ class _Cutter:
     @staticmethod
     def _has_padding(type_: Integer) -> bool:
         return type_.bits % 8 != 0 or type_.byte_bits == 7
-
-    def _length(self, part: LengthPart) -> None:
-        counted = self._counted(part)
-        value = f"len(payload) + {counted}" if counted else "len(payload)"
-        if self.frame.optional:
-            value = f"({value} - {self._optional_size} * (not payload))"
-        number = self._number("content", part)
-        self._stop_if(f"{number} != {value}")
-        greatest = counted + self.frame.framing.payload.greatest
-        if part.least > counted - self._optional_size or part.greatest < greatest:
-            self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _counted(self, part: LengthPart) -> int:
         """What the length counts besides the payload."""
@@ -361,17 +387,18 @@ class _Cutter:
 
     def _event(self) -> None:
         frame = self.frame
-        numbers = tuple_of(self._number("content", part) for part in frame.shown)
-        self.lines.add(f"numbers = {numbers}")
+        if frame.ended_by != "kind" or not frame.shows_identity:
+            numbers = tuple_of(self._number("content", part) for part in frame.shown)
+            self.lines.add(f"numbers = {numbers}")
         if frame.ended_by != "kind":
             self._look_up()
-        self.lines.add("event = _new(_rt.MessageEvent)")
+        self.lines.add("event = _new(_MessageEvent)")
         self.lines.add("event.message = read(payload)")
         self.lines.add("event.offset = base + at")
         for name in ("raw", "numbers", "payload"):
             self.lines.add(f"event.{name} = {name}")
         self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
-        self.lines.add("events.append(event)")
+        self.lines.add("add(event)")
         self.lines.add("at = end")
 
     def _look_up(self) -> None:
@@ -391,7 +418,7 @@ class _Cutter:
 
     def _unknown(self) -> None:
         spec = f"{self.name.upper()}_SENDER"
-        self.lines.add(f"events.append(_fast.unknown({spec}, base + at, raw, numbers, payload))")
+        self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, payload))")
         self.lines.add("at = end")
         self.lines.add("continue")
 
@@ -403,5 +430,7 @@ def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constan
     if spec.kind == "sum" and spec.init == 0 and greatest < _SHORT:
         total = f"_adler32({data}, 0)"
         return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
+    if spec.kind == "xor" and spec.init == 0:
+        return f"_checksum.xor_of({data})"
     compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.compute")
     return f"{compute}({data})"

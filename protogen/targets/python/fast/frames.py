@@ -92,6 +92,10 @@ class FastFrame:
         before = sum(map(fixed_size, self.parts[:first]))
         return before, True, sum(map(fixed_size, self.parts[last + 1 :]))
 
+    def sends(self, message: Message) -> bool:
+        """Whether the sender sends the message."""
+        return self.sender.name in message.senders
+
     # --- what can be cut --------------------------------------------------------------------------
 
     @property
@@ -154,14 +158,18 @@ class FastFrame:
         return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
 
     @property
+    def shows_identity(self) -> bool:
+        """Whether events show the identity and no other part."""
+        return self.shown == self.identity
+
+    @property
     def start_bytes(self) -> bytes:
         """The start literal; empty where there is none."""
         return self.start.bytes if isinstance(self.start, StartLiteral) else b""
 
     # --- stuffing ---------------------------------------------------------------------------------
 
-    @property
-    def specials(self) -> tuple[int, ...] | None:
+    def specials(self, sending: bool) -> tuple[int, ...] | None:
         """Bytes without which a stuffed region stands for itself.
 
         None where there are too many, or where every region is encoded.
@@ -174,7 +182,7 @@ class FastFrame:
                 found = {byte, *of}
             case Base16() | Cobs() | None:
                 return None
-        if self.ended_by == "start" and len(self.start_bytes) == 1:
+        if not sending and self.ended_by == "start" and len(self.start_bytes) == 1:
             found -= set(self.start_bytes)
         return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
 
@@ -213,14 +221,14 @@ class FastFrame:
         ]
         return " + ".join(pieces) or 'b""'
 
-    def _has(self, part: LiteralPart) -> bool:
-        """Whether a literal is in the content."""
-        return part in self.head and self.offset(part) >= 0
+    def is_skipped(self, part: LiteralPart) -> bool:
+        """Whether a literal stands in front of the content."""
+        return part in self.head and self.offset(part) < 0
 
     def _run(self, name: str) -> tuple[int, int] | bytes:
         """Where a part begins and ends in the content; the bytes of one that is not in it."""
         part = self.sender.frame.part(name)
-        if isinstance(part, LiteralPart) and not self._has(part):
+        if isinstance(part, LiteralPart) and (self.is_skipped(part) or part not in self.parts):
             return part.bytes
         if isinstance(part, PayloadPart):
             return self.head_size - self.skipped, -self.tail_size

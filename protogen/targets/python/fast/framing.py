@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from protogen.model.frame import (
     ChecksumPart,
     CounterPart,
@@ -13,13 +15,16 @@ from protogen.model.frame import (
     PayloadPart,
     ValuePart,
 )
+from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.cutting import checksum
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Constants, Lines
+from protogen.targets.python.fast.writing import Packed, content_writer, payload_writer
 from protogen.targets.python.literals import octets_in_class as literal
+from protogen.targets.python.literals import text
 
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
@@ -41,19 +46,65 @@ def _of_caller(frame: FastFrame, names: tuple[str, ...]) -> list[str]:
     return [f"{name}_" if name in own else f"other{index}" for index, name in enumerate(names)]
 
 
+def encoder(
+    message: Message, frames: Sequence[FastFrame], of_caller: tuple[str, ...], constants: Constants
+) -> tuple[str, ...]:
+    """The body of `_encode_NAME(item, sender, VALUES...)`, for the frames of its senders."""
+    lines = Lines(constants)
+    if len(frames) == 1:
+        name = text(frames[0].sender.name)
+        lines.refuse_if(f"sender is not None and sender != {name}")
+        if message.sizes.fixed is not None and _goes_together(frames[0]):
+            return _Framer(frames[0], of_caller, lines, message).whole(message)
+    payload_writer(message, lines)
+    values = [*map(str, message.identity), *encoder_arguments(of_caller)]
+    for frame in frames:
+        call = f"_frame_{frame.sender.name}({', '.join(['payload', *values])})"
+        if len(frames) == 1:
+            lines.add(f"return {call}")
+        else:
+            with lines.block(f"if sender == {text(frame.sender.name)}:"):
+                lines.add(f"return {call}")
+    if len(frames) > 1:
+        lines.add("raise _fast.Unclear")
+    return lines.text
+
+
+def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
+    """What callers of `encode` give, as arguments."""
+    return [f"{name}_" for name in of_caller]
+
+
+def _goes_together(frame: FastFrame) -> bool:
+    """Whether all parts in front of the payload are numbers for `struct`, and none is optional."""
+    plain = all(
+        (isinstance(part, NumberPart) and _is_plain(part.type))
+        or (isinstance(part, LiteralPart) and (frame.is_skipped(part) or len(part.bytes) == 1))
+        for part in frame.head
+    )
+    return plain and not frame.optional
+
+
 class _Framer:
     """Writes the body of one function."""
 
-    def __init__(self, frame: FastFrame, of_caller: tuple[str, ...], lines: Lines) -> None:
+    def __init__(
+        self,
+        frame: FastFrame,
+        of_caller: tuple[str, ...],
+        lines: Lines,
+        message: Message | None = None,
+    ) -> None:
+        """With a message, for its frames alone: what is the same in all of them is no argument."""
         self.frame = frame
-        self.of_caller = of_caller
         self.lines = lines
+        self.message = message
+        names = _of_caller(frame, of_caller) if message is None else encoder_arguments(of_caller)
+        self.values = dict(zip(of_caller, names, strict=True))
 
     def body(self) -> tuple[str, ...]:
         self._values()
         self._payload()
-        if self.frame.framing.cut_ambiguous:
-            self.lines.add("events: list[_typing.Any] = []")
         if self.frame.optional:
             with self.lines.block("if payload:"):
                 self._make(bare=False)
@@ -62,10 +113,32 @@ class _Framer:
             self._make(bare=False)
         return self.lines.text
 
+    def whole(self, message: Message) -> tuple[str, ...]:
+        """The body for a message of a fixed size, packed together with what is in front of it."""
+        self._values()
+        head = [self._packed(part) for part in self.frame.head if not self._is_skipped(part)]
+        self.lines.add(f"content = {content_writer(message, head, self.lines)}")
+        if self.frame.framing.cut_ambiguous:
+            self.lines.add(f"payload = {self._own_payload()}")
+        for part in self.frame.checksums:
+            self._insert(part)
+        self._return()
+        return self.lines.text
+
+    def _own_payload(self) -> str:
+        return self.frame.slice_of("content", self.frame.head_size - self.frame.skipped, 0)
+
+    def _packed(self, part: Part) -> Packed:
+        if isinstance(part, LiteralPart):
+            return Packed("", "B", f"0x{part.bytes[0]:02X}")
+        assert isinstance(part, NumberPart)
+        return Packed(_order(part.type), _CODES[part.type.size], self._value(part, bare=False))
+
     def _values(self) -> None:
-        for name in _of_caller(self.frame, self.of_caller):
-            if not name.endswith("_"):
-                self.lines.refuse_if(f"{name} is not None")
+        own = {part.name for part in self.frame.sender.frame.caller_parts}
+        for name, argument in self.values.items():
+            if name not in own:
+                self.lines.refuse_if(f"{argument} is not None")
         for part in self.frame.sender.frame.caller_parts:
             assert isinstance(part, CounterPart | ValuePart)
             if part.default is not None:
@@ -83,8 +156,6 @@ class _Framer:
             greatest = min(greatest, frame.length.greatest - counted)
             if least or not self._always_fits(greatest):
                 self.lines.refuse_if(f"not {least} <= len(payload) <= {greatest}")
-        if frame.framing.seven_bit:
-            self.lines.refuse_if("not payload.isascii()")
 
     def _always_fits(self, greatest: int) -> bool:
         """Whether the sizes of all messages are in bounds."""
@@ -103,12 +174,17 @@ class _Framer:
     def _make(self, bare: bool) -> None:
         """Return the wire bytes; `bare`: of a frame without a payload and its checksums."""
         frame = self.frame
-        parts = [part for part in frame.parts if not (bare and _is_optional(part))]
+        present = [part for part in frame.parts if not (bare and _is_optional(part))]
+        parts = [part for part in present if not self._is_skipped(part)]
         checked = [part for part in parts if isinstance(part, ChecksumPart)]
         self.lines.add(f"content = {self._joined([p for p in parts if p not in checked], bare)}")
         for part in checked:
-            self._insert(part, parts)
+            self._insert(part)
         self._return()
+
+    def _is_skipped(self, part: Part) -> bool:
+        """Whether a part is a literal in front of the content."""
+        return isinstance(part, LiteralPart) and self.frame.is_skipped(part)
 
     def _joined(self, parts: list[Part], bare: bool) -> str:
         """These parts one after another, numbers packed together."""
@@ -150,7 +226,12 @@ class _Framer:
     def _value(self, part: NumberPart, bare: bool) -> str:
         if isinstance(part, LengthPart):
             counted = self._counted(part, bare)
+            if self.message is not None:
+                assert self.message.sizes.fixed is not None
+                return str(self.message.sizes.fixed + counted)
             return f"len(payload) + {counted}" if counted else "len(payload)"
+        if self.message is not None and isinstance(part, IdentityPart):
+            return str(self.message.identity[self.frame.identity.index(part)])
         assert isinstance(part, IdentityPart | CounterPart | ValuePart)
         return f"{part.name}_"
 
@@ -159,7 +240,7 @@ class _Framer:
         listed = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
         return self.lines.constants.named("NUMBER", f"_rt.Number({listed})")
 
-    def _insert(self, part: ChecksumPart, parts: list[Part]) -> None:
+    def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""
         due = checksum(part, self._covered(part), self.frame, self.lines.constants)
         if _is_plain(part.type) and part.type.size == 1:
@@ -175,15 +256,14 @@ class _Framer:
 
     def _return(self) -> None:
         frame = self.frame
-        wire = "content"
-        if frame.stuffed:
-            before = f"content[:{frame.before}] + " if frame.before else ""
-            behind = f" + content[{-frame.behind}:]" if frame.behind else ""
-            inner = frame.slice_of("content", frame.before, -frame.behind)
-            assert frame.sender.frame.transparency is not None
-            stuffing = tables.encoding(frame.sender.frame.transparency.encoding)
-            encode = f"{self.lines.constants.named('STUFFING', stuffing)}.encode"
-            wire = f"{before}{encode}({inner}){behind}"
+        wire = self._stuffed() if frame.stuffed else "content"
+        skipped = b"".join(
+            part.bytes
+            for part in frame.parts
+            if isinstance(part, LiteralPart) and frame.is_skipped(part)
+        )
+        if skipped:
+            wire = f"{literal(skipped)} + {wire}"
         if frame.end:
             wire += f" + {literal(frame.end)}"
         if not frame.framing.cut_ambiguous:
@@ -191,9 +271,25 @@ class _Framer:
             return
         # A decoder might end the frame elsewhere.
         self.lines.add(f"wire = {wire}")
-        self.lines.add(f"end = _cut_{frame.sender.name}(wire, 0, 0, events)")
-        self.lines.refuse_if("end != len(wire) or [event.payload for event in events] != [payload]")
-        self.lines.add("return wire")
+        self.lines.add(f"return _fast.checked(wire, payload, _cut_{frame.sender.name})")
+
+    def _stuffed(self) -> str:
+        """The content, stuffed unless it stands for itself."""
+        frame = self.frame
+        front = frame.before - frame.skipped
+        inner = frame.slice_of("content", front, -frame.behind)
+        assert frame.sender.frame.transparency is not None
+        stuffing = tables.encoding(frame.sender.frame.transparency.encoding)
+        encode = f"{self.lines.constants.named('STUFFING', stuffing)}.encode"
+        before = f"content[:{front}] + " if front else ""
+        behind = f" + content[{-frame.behind}:]" if frame.behind else ""
+        specials = frame.specials(sending=True)
+        if specials is None or before or behind:
+            return f"{before}{encode}({inner}){behind}"
+        found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
+        with self.lines.block(f"if {found}:"):
+            self.lines.add(f"content = {encode}(content)")
+        return "content"
 
 
 def _is_optional(part: Part) -> bool:

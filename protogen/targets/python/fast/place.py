@@ -19,6 +19,7 @@ class Place:
             return str(self.offset)
         return f"{self.variable} + {self.offset}" if self.offset else self.variable
 
-    def behind(self, size: int) -> str:
-        """The place that lies `size` bytes further, as an expression."""
-        return Place(self.variable, self.offset + size).text
+    @property
+    def grouped(self) -> str:
+        """The same, in brackets where it is a sum."""
+        return f"({self.text})" if self.variable and self.offset else self.text

@@ -39,15 +39,27 @@ from protogen.targets.python.literals import tuple_of
 from protogen.targets.python.spelling import class_name
 
 
-def message_reader(message: Message, constants: Constants) -> tuple[str, ...]:
-    """The body of `_read_NAME(data)`, which gives the message."""
-    reader = _Reader(Lines(constants), Place())
-    reader.lines.refuse_if(outside(message.sizes, "data"))
+def message_reader(message: Message, is_ascii: bool, constants: Constants) -> tuple[str, ...]:
+    """The body of `_read_NAME(data)`, which gives the message.
+
+    `is_ascii`: whoever calls it has seen that no byte has its most significant bit set.
+    """
+    reader = _Reader(Lines(constants), Place(), is_ascii)
+    reader.whole = message.sizes.fixed
+    if message.sizes.fixed is None or not goes_together(message.fields):
+        reader.whole = None
+        reader.lines.refuse_if(outside(message.sizes, "data"))
     reader.record("item", message.name, message.fields)
     if message.sizes.fixed is None:
         reader.lines.refuse_if(f"{reader.place.text} != len(data)")
     reader.lines.add("return item")
     return reader.lines.text
+
+
+def goes_together(fields: tuple[Field, ...]) -> bool:
+    """Whether one `struct` reads all fields."""
+    orders = {order_of(item.type) for item in fields} - {""}
+    return bool(fields) and all(code_of(f.type) is not None for f in fields) and len(orders) < 2
 
 
 def struct_reader(struct: Struct, constants: Constants) -> tuple[str, ...]:
@@ -79,9 +91,12 @@ class _Run:
 class _Reader:
     """Writes the body of one function."""
 
-    def __init__(self, lines: Lines, place: Place) -> None:
+    def __init__(self, lines: Lines, place: Place, is_ascii: bool = False) -> None:
         self.lines = lines
         self.place = place
+        self.is_ascii = is_ascii
+        self.whole: int | None = None
+        """The size of the message, where one `struct` reads it and checks that."""
         self.raw: dict[str, str] = {}
         """Raw values of the fields in front, by name."""
         self._run = _Run()
@@ -145,13 +160,17 @@ class _Reader:
         if not run.codes:
             return
         layout = f'"{run.order or "<"}{run.codes}"'
-        unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack_from")
-        if run.codes == "B":
+        if self.whole is not None:
+            unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack")
+            names = ", ".join(run.variables)
+            self._unpack(f"({names},)" if len(run.variables) == 1 else names, f"{unpack}(data)")
+        elif run.codes == "B":
             self.lines.add(f"{run.variables[0]} = data[{self.place.text}]")
         else:
             names = ", ".join(run.variables)
             if len(run.variables) == 1:
                 names = f"({names},)"
+            unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack_from")
             self._unpack(names, f"{unpack}(data, {self.place.text})")
         self.place.offset += run.size
         for target, variable, type_, item in run.after:
@@ -196,7 +215,8 @@ class _Reader:
         assert code is not None
         if code.endswith("s"):
             return f"{self._number(type_)}.decode({variable})"
-        self.lines.refuse_if(f"{variable} >> {type_.bits}")
+        if not (self.is_ascii and type_.bits == 7):
+            self.lines.refuse_if(f"{variable} >> {type_.bits}")
         if not type_.signed:
             return variable
         sign = f"0x{1 << (type_.bits - 1):X}"
@@ -220,7 +240,7 @@ class _Reader:
         return f"{self.lines.constants.named('MEMBERS', members)}[{value}]"
 
     def _string(self, value: str, type_: Text | Octets) -> str:
-        if type_.byte_bits == 7:
+        if type_.byte_bits == 7 and not self.is_ascii:
             self.lines.refuse_if(f"not {value}.isascii()")
         if isinstance(type_, Octets):
             return value
@@ -352,7 +372,7 @@ class _Reader:
         if not isinstance(extent, Fill):
             return self._count(extent)
         count, left = self.lines.local("n"), self.lines.local("left")
-        self.lines.add(f"{count}, {left} = divmod(len(data) - ({self.place.text}), {size})")
+        self.lines.add(f"{count}, {left} = divmod(len(data) - {self.place.grouped}, {size})")
         self.lines.refuse_if(f"{left} or {count} > {extent.greatest}")
         return count
 
@@ -406,8 +426,35 @@ class _Reader:
         outer = "".join(f", {self.raw[name]}" for name in outer_names(element))
         start = self.place.text
         stop = f"{start} + {size} * {count}"
+        if goes_together(element.fields):
+            return self._elements_together(element, size, count)
         call = f"_read_{element.name}(data, place{outer})"
         return f"[{call} for place in range({start}, {stop}, {size})]"
+
+    def _elements_together(self, element: Struct, size: int, count: str) -> str:
+        values, item = self.lines.local(), self.lines.local("s")
+        data = self.lines.local("data")
+        start = self.place.text
+        self.lines.add(f"{data} = data[{start} : {start} + {size} * {count}]")
+        self.lines.refuse_if(f"len({data}) != {size} * {count}")
+        self.lines.add(f"{values}: list[_typing.Any] = []")
+        outside, self._run, raw = self._run, _Run(), dict(self.raw)
+        for field_ in element.fields:
+            self._field(f"{item}.{field_.name}", field_)
+        run, self._run, self.raw = self._run, outside, raw
+        layout = f'_struct.Struct("{run.order or "<"}{run.codes}").iter_unpack'
+        unpack = self.lines.constants.named("ITERATE", layout)
+        names = [self.lines.local() if "." in name else name for name in run.variables]
+        with self.lines.block(f"for {tuple_of(names)[1:-1]} in {unpack}({data}):"):
+            self.lines.add(f"{item} = _new({class_name(element.name)})")
+            for name, variable in zip(names, run.variables, strict=True):
+                if "." in variable:
+                    self.lines.add(f"{variable} = {name}")
+            for target, variable, type_, field_or_none in run.after:
+                self.lines.add(f"{target} = {self._converted(variable, type_)}")
+                self._constant(target, field_or_none)
+            self.lines.add(f"{values}.append({item})")
+        return values
 
     def _converted_elements(self, code: str, array: Array, count: str) -> str:
         values, value = self.lines.local(), self.lines.local()

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.targets.python.fast import cutting, framing
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.layout import fixed_size, outer_names
 from protogen.targets.python.fast.lines import Constants
 from protogen.targets.python.fast.reading import message_reader, struct_reader
-from protogen.targets.python.fast.writing import message_writer, struct_writer
+from protogen.targets.python.fast.writing import struct_writer
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import method
@@ -37,7 +38,6 @@ class FastSender:
     cut: Function | None
     kinds: str
     frame: Function | None
-    encoders: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,9 @@ class Fast:
     constants: tuple[str, ...]
     records: tuple[Function, ...]
     senders: tuple[FastSender, ...]
+    encoders: tuple[Function, ...]
+    table: tuple[str, ...]
+    """Entries of the table of encoders by the message's class."""
     modules: tuple[str, ...]
     """Modules of the standard library that the text names."""
 
@@ -54,11 +57,14 @@ class Fast:
 def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
     constants = Constants()
-    frames = [FastFrame(sender) for sender in protocol.senders]
+    frames = [FastFrame(sender, skips_start=True) for sender in protocol.senders]
     records = _records(protocol, constants)
     overloads = [function for frame in frames for function in _overloads(frame)]
     senders = tuple(_sender(frame, of_caller, constants) for frame in frames)
-    lines = [*constants.text, *(line for function in records for line in function.body)]
+    made = {m.name: _encoder(m, frames, of_caller, constants) for m in protocol.messages}
+    encoders = {name: encoder for name, encoder in made.items() if encoder is not None}
+    functions = [*records, *encoders.values()]
+    lines = [*constants.text, *(line for function in functions for line in function.body)]
     for sender in senders:
         lines += [line for item in (sender.cut, sender.frame) if item for line in item.body]
     joined = "\n".join(lines)
@@ -66,6 +72,8 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
         constants=constants.text,
         records=(*records, *overloads),
         senders=senders,
+        encoders=tuple(encoders.values()),
+        table=tuple(f"{class_name(name)}: _encode_{name}," for name in encoders),
         modules=tuple(name for name in ("re", "struct", "zlib") if _USES[name] in joined),
     )
 
@@ -75,6 +83,7 @@ _USES = {"re": "_re.", "struct": "_struct.", "zlib": "_adler32("}
 
 def _records(protocol: Protocol, constants: Constants) -> tuple[Function, ...]:
     functions: list[Function] = []
+    ascii_messages = _seen_to_be_ascii(protocol)
     for struct in classes_of(protocol):
         name = class_name(struct.name)
         outer = "".join(f", {name}_: int" for name in outer_names(struct))
@@ -87,11 +96,28 @@ def _records(protocol: Protocol, constants: Constants) -> tuple[Function, ...]:
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
         name = class_name(message.name)
-        body = message_reader(message, constants)
+        body = message_reader(message, message.name in ascii_messages, constants)
         functions.append(_function(f"_read_{message.name}", "data: bytes", name, body))
-        body = message_writer(message, constants)
-        functions.append(_function(f"_write_{message.name}", f"item: {name}", "bytes", body))
     return tuple(functions)
+
+
+def _seen_to_be_ascii(protocol: Protocol) -> set[str]:
+    """The messages of whose payloads all cutters see that no byte has its top bit set."""
+    seen = {m.name for s in protocol.senders if s.framing.seven_bit for m in s.messages}
+    return seen - {m.name for s in protocol.senders if not s.framing.seven_bit for m in s.messages}
+
+
+def _encoder(
+    message: Message, frames: list[FastFrame], of_caller: tuple[str, ...], constants: Constants
+) -> Function | None:
+    """The function that makes a message's frames; None where only the reference does."""
+    own = [frame for frame in frames if frame.sends(message)]
+    if not all(frame.can_frame for frame in own):
+        return None
+    given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
+    parameters = f"item: {class_name(message.name)}, sender: str | None{given}"
+    body = framing.encoder(message, own, of_caller, constants)
+    return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 
 def _overloads(frame: FastFrame) -> list[Function]:
@@ -116,8 +142,7 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
     name = frame.sender.name
     cut = made = None
     if frame.can_cut:
-        skipping = FastFrame(frame.sender, skips_start=True)
-        body = cutting.cutter(skipping, constants)
+        body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
     if frame.can_frame:
@@ -125,15 +150,4 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
-    return FastSender(
-        name, name.upper(), cut, cutting.kinds(frame) if cut else "", made, _encoders(frame)
-    )
-
-
-def _encoders(frame: FastFrame) -> tuple[str, ...]:
-    """The writers of a sender's messages by their classes."""
-    if not frame.can_frame:
-        return ()
-    return tuple(
-        f"{class_name(message.name)}: _write_{message.name}," for message in frame.sender.messages
-    )
+    return FastSender(name, name.upper(), cut, cutting.kinds(frame) if cut else "", made)

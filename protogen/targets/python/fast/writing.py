@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from protogen.model.fields import Field
@@ -38,16 +39,27 @@ from protogen.targets.python.spelling import class_name
 _GREATEST_FLOAT32 = "3.4028234663852886e38"
 
 
-def message_writer(message: Message, constants: Constants) -> tuple[str, ...]:
-    """The body of `_write_NAME(item)`, which gives the payload."""
-    writer = _Writer(Lines(constants))
-    payload = writer.record("item", message.fields)
+def payload_writer(message: Message, lines: Lines) -> None:
+    """Check a message `item` and set `payload`."""
+    lines.add(f"payload = {_Writer(lines).record('item', message.fields)}")
     if message.sizes.fixed is None:
-        writer.lines.add(f"payload = {payload}")
-        writer.lines.refuse_if(outside(message.sizes, "payload"))
-        payload = "payload"
-    writer.lines.add(f"return {payload}")
-    return writer.lines.text
+        lines.refuse_if(outside(message.sizes, "payload"))
+
+
+def content_writer(message: Message, head: Sequence[Packed], lines: Lines) -> str:
+    """The same for numbers in front of a payload of a fixed size, and the payload."""
+    writer = _Writer(lines)
+    writer.begin(head)
+    return writer.record("item", message.fields)
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """A value for `struct`: the order of its bytes, its code, and an expression."""
+
+    order: str
+    code: str
+    value: str
 
 
 def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
@@ -88,6 +100,11 @@ class _Writer:
         """Raw values of the fields in front, by name."""
         self._bytes = _Bytes()
 
+    def begin(self, head: Sequence[Packed]) -> None:
+        """Numbers that stand in front."""
+        for item in head:
+            self._pack(item)
+
     def record(self, source: str, fields: tuple[Field, ...]) -> str:
         """Check the fields of `source`; the expression of their bytes."""
         self._fields(source, fields)
@@ -127,13 +144,16 @@ class _Writer:
 
     def _put(self, type_: Type, expression: str) -> None:
         """Let `struct` write a value together with its neighbours."""
-        code, order = code_of(type_), order_of(type_)
+        code = code_of(type_)
         assert code is not None
-        if order and self._bytes.order and order != self._bytes.order:
+        self._pack(Packed(order_of(type_), code, expression))
+
+    def _pack(self, item: Packed) -> None:
+        if item.order and self._bytes.order and item.order != self._bytes.order:
             self._flush()
-        self._bytes.order = self._bytes.order or order
-        self._bytes.codes += code
-        self._bytes.values.append(expression)
+        self._bytes.order = self._bytes.order or item.order
+        self._bytes.codes += item.code
+        self._bytes.values.append(item.value)
 
     def _flush(self) -> None:
         """Write the values that are due."""
