@@ -410,8 +410,9 @@ HOST_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
-_MEMBERS_0 = _fast.Members(PowerCode)
+_MEMBERS_0 = _TABLES.members(PowerCode, 8)
 _PACK_0 = _struct.Struct("<B").pack
 
 
@@ -606,9 +607,13 @@ def _read_command(data: bytes) -> Command:
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
+            if data.startswith(b"\x0a", at):
+                return at
             payload_size, read, numbers = _HOST_KINDS[data[at]]
             if payload_size < 0:
                 end = data.find(b"\x0a", at + 1)
@@ -672,9 +677,13 @@ def _frame_host(payload: bytes, id_: int | None) -> bytes:
 
 def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
+            if data.startswith(b"\x0a", at):
+                return at
             payload_size, read, numbers = _ROBOT_KINDS[data[at]]
             if payload_size < 0:
                 end = data.find(b"\x0a", at + 1)

@@ -449,6 +449,7 @@ HOST_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<5B").unpack_from
 _UNPACK_1 = _struct.Struct("<HHHhhhb").unpack
 _UNPACK_2 = _struct.Struct("<BBi").unpack
@@ -456,7 +457,7 @@ _UNPACK_3 = _struct.Struct("<hh").unpack
 _UNPACK_4 = _struct.Struct("<b").unpack
 _UNPACK_5 = _struct.Struct("<bB").unpack
 _UNPACK_6 = _struct.Struct("<B").unpack
-_MEMBERS_0 = _fast.Members(PowerCode)
+_MEMBERS_0 = _TABLES.members(PowerCode, 8)
 _UNPACK_7 = _struct.Struct("<ii").unpack
 _UNPACK_8 = _struct.Struct("<7s").unpack
 _STUFFING_0 = _transparency.Escape(0x1B, frozenset({0x0D, 0x1B}), 0x1B)
@@ -584,6 +585,8 @@ def _read_host_77(data: bytes) -> Motor | Drive:
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -596,7 +599,13 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             content = raw[:-1]
             if 0x0D in content or 0x1B in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x1b\x16", b"\x0d")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x0d", b"\x1b\x16")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             payload = content[1:]
@@ -630,11 +639,14 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
 def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -647,7 +659,13 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             content = raw[:-1]
             if 0x0D in content or 0x1B in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x1b\x16", b"\x0d")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x0d", b"\x1b\x16")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             payload = content[1:]
@@ -682,7 +700,8 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -698,7 +717,8 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = b"".join((_PACK_0(83), _PACK_1(*v1)))
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -731,7 +751,8 @@ def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_2(79, v1, v2, v3, v4, v5, v6, v7)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -745,7 +766,8 @@ def _encode_battery(item: Battery, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_3(98, v1, v2, v3)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -758,7 +780,8 @@ def _encode_compass(item: Compass, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_4(67, v1, v2)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -770,7 +793,8 @@ def _encode_motor(item: Motor, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_5(77, v1)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -783,7 +807,8 @@ def _encode_drive(item: Drive, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_6(77, v1, v2)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -795,7 +820,8 @@ def _encode_steering(item: Steering, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_7(83, v1)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -807,7 +833,8 @@ def _encode_power(item: Power, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_7(80, v1)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 
@@ -820,7 +847,8 @@ def _encode_gps_position(item: GpsPosition, sender: str | None) -> bytes:
         raise _fast.Unclear
     content = _PACK_8(71, v1, v2)
     if 0x0D in content or 0x1B in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
     return content + b"\x0d"
 
 

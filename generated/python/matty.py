@@ -370,13 +370,14 @@ PC_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
-_MEMBERS_0 = _fast.Members(RobotMode)
+_MEMBERS_0 = _TABLES.members(RobotMode, 8)
 _UNPACK_1 = _struct.Struct("<hh").unpack
 _UNPACK_2 = _struct.Struct("<HH").unpack
-_MEMBERS_1 = _fast.Members(GpsModeMode)
+_MEMBERS_1 = _TABLES.members(GpsModeMode, 8)
 _UNPACK_3 = _struct.Struct("<BBHHhhHHHH").unpack
-_MEMBERS_2 = _fast.Members(StatusStatus)
+_MEMBERS_2 = _TABLES.members(StatusStatus, 8)
 _STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
 _PACK_0 = _struct.Struct("<BBB").pack
 _PACK_1 = _struct.Struct("<BBBB").pack
@@ -479,6 +480,8 @@ def _read_gps(data: bytes) -> Gps:
 
 
 def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         if data[at] != 0x55:
@@ -495,7 +498,13 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 return at
             content = raw[1:]
             if 0x56 in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x56\xaa", b"\x55")
+                content = content.replace(b"\x56\xa9", b"\x56")
+                again = content.replace(b"\x56", b"\x56\xa9")
+                again = again.replace(b"\x55", b"\x56\xaa")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             if len(content) != content[0] + 2:
@@ -541,11 +550,14 @@ def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> byt
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
 def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         if data[at] != 0x55:
@@ -562,7 +574,13 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 return at
             content = raw[1:]
             if 0x56 in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x56\xaa", b"\x55")
+                content = content.replace(b"\x56\xa9", b"\x56")
+                again = content.replace(b"\x56", b"\x56\xa9")
+                again = again.replace(b"\x55", b"\x56\xaa")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             if len(content) != content[0] + 2:
@@ -605,7 +623,8 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -617,7 +636,8 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_0(2, counter_, 83)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -629,7 +649,8 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -644,7 +665,8 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -660,7 +682,8 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_2(6, counter_, 71, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -676,7 +699,8 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
     content = _PACK_2(6, counter_, 76, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -692,7 +716,8 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
     content = _PACK_3(6, counter_, 84, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -707,7 +732,8 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -719,7 +745,8 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -731,7 +758,8 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -761,7 +789,8 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     content = _PACK_4(20, counter_, 73, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 

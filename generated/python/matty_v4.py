@@ -476,16 +476,17 @@ PC_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
-_MEMBERS_0 = _fast.Members(StopMode)
-_MEMBERS_1 = _fast.Members(RobotMode)
+_MEMBERS_0 = _TABLES.members(StopMode, 8)
+_MEMBERS_1 = _TABLES.members(RobotMode, 8)
 _UNPACK_1 = _struct.Struct("<hh").unpack
 _UNPACK_2 = _struct.Struct("<HH").unpack
-_MEMBERS_2 = _fast.Members(GpsModeMode)
+_MEMBERS_2 = _TABLES.members(GpsModeMode, 8)
 _UNPACK_3 = _struct.Struct("<B3s").unpack
 _NUMBER_0 = _rt.Number(24, False, "little", False)
 _UNPACK_4 = _struct.Struct("<BBHHhhHHHHhhh").unpack
-_MEMBERS_3 = _fast.Members(StatusStatus)
+_MEMBERS_3 = _TABLES.members(StatusStatus, 8)
 _UNPACK_5 = _struct.Struct("<BB").unpack
 _STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
 _PACK_0 = _struct.Struct("<BBB").pack
@@ -614,6 +615,8 @@ def _read_version(data: bytes) -> Version:
 
 
 def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         if data[at] != 0x55:
@@ -630,7 +633,13 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 return at
             content = raw[1:]
             if 0x56 in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x56\xaa", b"\x55")
+                content = content.replace(b"\x56\xa9", b"\x56")
+                again = content.replace(b"\x56", b"\x56\xa9")
+                again = again.replace(b"\x55", b"\x56\xaa")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             if len(content) != content[0] + 2:
@@ -678,11 +687,14 @@ def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> byt
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
 def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         if data[at] != 0x55:
@@ -699,7 +711,13 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 return at
             content = raw[1:]
             if 0x56 in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x56\xaa", b"\x55")
+                content = content.replace(b"\x56\xa9", b"\x56")
+                again = content.replace(b"\x56", b"\x56\xa9")
+                again = again.replace(b"\x55", b"\x56\xaa")
+                if again != stuffed:
+                    return at
             if len(content) < 1:
                 return at
             if len(content) != content[0] + 2:
@@ -743,7 +761,8 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -758,7 +777,8 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_1(3, counter_, 83, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -770,7 +790,8 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -785,7 +806,8 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -801,7 +823,8 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_2(6, counter_, 71, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -817,7 +840,8 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
     content = _PACK_2(6, counter_, 76, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -833,7 +857,8 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
     content = _PACK_3(6, counter_, 84, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -848,7 +873,8 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -860,7 +886,8 @@ def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int 
     content = _PACK_0(2, counter_, 86)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -876,7 +903,8 @@ def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_4(6, counter_, 68, v1, _NUMBER_0.encode(v2))
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -888,7 +916,8 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -900,7 +929,8 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -933,7 +963,8 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     content = _PACK_5(26, counter_, 73, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 
@@ -962,7 +993,8 @@ def _encode_version(item: Version, sender: str | None, counter_: int | None) -> 
     content = _PACK_6(4, counter_, 86, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
     return b"\x55" + content
 
 

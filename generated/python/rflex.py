@@ -752,19 +752,20 @@ FLEX_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
 _UNPACK_1 = _struct.Struct(">IIB").unpack
-_MEMBERS_0 = _fast.Members(SystemStatusBrake)
+_MEMBERS_0 = _TABLES.members(SystemStatusBrake, 8)
 _UNPACK_2 = _struct.Struct("<B").unpack
 _UNPACK_3 = _struct.Struct(">BIIIB").unpack
-_MEMBERS_1 = _fast.Members(Axis)
-_MEMBERS_2 = _fast.Members(MotorCommandDirection)
+_MEMBERS_1 = _TABLES.members(Axis, 8)
+_MEMBERS_2 = _TABLES.members(MotorCommandDirection, 8)
 _UNPACK_4 = _struct.Struct(">II").unpack
 _UNPACK_5 = _struct.Struct(">IIBiiii").unpack
 _MEMBERS_3 = _fast.Members(StartStopMotorPacketsStartStop)
 _UNPACK_6 = _struct.Struct(">IiiB").unpack
-_MEMBERS_4 = _fast.Members(JoystickDataButtons)
+_MEMBERS_4 = _TABLES.members(JoystickDataButtons, 8)
 _UNPACK_7 = _struct.Struct(">IIBI").unpack
 _MEMBERS_5 = _fast.Members(StartStopSonarPacketsStartStop)
 _UNPACK_8 = _struct.Struct(">II").unpack_from
@@ -980,6 +981,8 @@ def _read_changed_byte(data: bytes) -> ChangedByte:
 
 
 def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -996,7 +999,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+                if again != stuffed:
+                    return at
             if len(content) < 4:
                 return at
             if len(content) != content[3] + 5:
@@ -1047,11 +1056,14 @@ def _frame_linux(
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -1068,7 +1080,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+                if again != stuffed:
+                    return at
             if len(content) < 4:
                 return at
             if len(content) != content[3] + 5:
@@ -1121,7 +1139,8 @@ def _frame_flex(
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1137,7 +1156,8 @@ def _encode_request_system_status(
     content = _PACK_1(1, number_, 1, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1158,7 +1178,8 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1175,7 +1196,8 @@ def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> 
     content = _PACK_3(2, number_, 0, 1, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1200,7 +1222,8 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
     content = _PACK_4(2, number_, 7, 14, v1, v2, v3, v4, v5)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1223,7 +1246,8 @@ def _encode_confirm_motor_command(
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1237,7 +1261,8 @@ def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> 
     content = _PACK_1(2, number_, 10, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1251,7 +1276,8 @@ def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> 
     content = _PACK_1(2, number_, 12, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1269,7 +1295,8 @@ def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: in
     content = _PACK_5(2, number_, 12, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1294,7 +1321,8 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
     content = _PACK_6(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1316,7 +1344,8 @@ def _encode_start_stop_motor_packets(
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1336,7 +1365,8 @@ def _encode_confirm_start_stop_motor_packets(
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1352,7 +1382,8 @@ def _encode_request_joystick_data(
     content = _PACK_1(3, number_, 0, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1374,7 +1405,8 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
     content = _PACK_7(3, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1398,7 +1430,8 @@ def _encode_start_stop_sonar_packets(
     content = _PACK_8(4, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1418,7 +1451,8 @@ def _encode_confirm_start_stop_sonar_packets(
     content = _PACK_5(4, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1434,9 +1468,8 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    payload = b"".join(
-        (_PACK_9(v1, v2), b"".join([_write_sonar_data_readings(each) for each in v3])),
-    )
+    v4 = b"".join([_write_sonar_data_readings(each) for each in v3])
+    payload = b"".join((_PACK_9(v1, v2), v4))
     if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
         raise _fast.Unclear
     return _frame_flex(payload, 4, 2, number_)
@@ -1457,7 +1490,8 @@ def _encode_initialize_digital_io(
     content = _PACK_10(5, number_, 0, 4, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1477,7 +1511,8 @@ def _encode_confirm_initialize_digital_io(
     content = _PACK_5(5, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1498,7 +1533,8 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
     content = _PACK_11(5, number_, 1, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1517,7 +1553,8 @@ def _encode_check_io_changed(
     content = _PACK_10(5, number_, 2, 4, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1538,7 +1575,8 @@ def _encode_check_io_changed_answer(
     content = _PACK_12(5, number_, 2, 12, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1559,7 +1597,8 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
     content = _PACK_11(5, number_, 3, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 

@@ -888,29 +888,30 @@ FLEX_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
 _UNPACK_1 = _struct.Struct(">IIB").unpack
-_MEMBERS_0 = _fast.Members(SystemStatusBrake)
+_MEMBERS_0 = _TABLES.members(SystemStatusBrake, 8)
 _UNPACK_2 = _struct.Struct(">IBB").unpack_from
 _UNPACK_3 = _struct.Struct("<B").unpack
-_MEMBERS_1 = _fast.Members(Axis)
+_MEMBERS_1 = _TABLES.members(Axis, 8)
 _UNPACK_4 = _struct.Struct(">BIIIB").unpack
-_MEMBERS_2 = _fast.Members(MotorCommandDirection)
+_MEMBERS_2 = _TABLES.members(MotorCommandDirection, 8)
 _UNPACK_5 = _struct.Struct(">II").unpack
 _UNPACK_6 = _struct.Struct(">IIBiiii").unpack
 _MEMBERS_3 = _fast.Members(StartStopMotorPacketsMask)
 _UNPACK_7 = _struct.Struct(">IiiB").unpack
-_MEMBERS_4 = _fast.Members(JoystickDataButtons)
+_MEMBERS_4 = _TABLES.members(JoystickDataButtons, 8)
 _UNPACK_8 = _struct.Struct(">IIIB").unpack
-_MEMBERS_5 = _fast.Members(StartStopSonarPacketsMode)
+_MEMBERS_5 = _TABLES.members(StartStopSonarPacketsMode, 8)
 _UNPACK_9 = _struct.Struct(">II").unpack_from
 _ITERATE_0 = _struct.Struct(">BH").iter_unpack
 _UNPACK_10 = _struct.Struct(">I").unpack
 _UNPACK_11 = _struct.Struct(">IBH").unpack
 _UNPACK_12 = _struct.Struct(">III").unpack
 _UNPACK_13 = _struct.Struct(">IIIIIB").unpack
-_MEMBERS_6 = _fast.Members(IrRunMode)
+_MEMBERS_6 = _TABLES.members(IrRunMode, 8)
 _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
@@ -1172,6 +1173,8 @@ def _read_ir_report(data: bytes) -> IrReport:
 
 
 def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -1188,7 +1191,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+                if again != stuffed:
+                    return at
             if len(content) < 4:
                 return at
             if len(content) != content[3] + 5:
@@ -1241,11 +1250,14 @@ def _frame_linux(
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -1262,7 +1274,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                content = _STUFFING_0.decode(content)
+                stuffed = content
+                content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+                content = content.replace(b"\x1b\x00", b"\x1b")
+                again = content.replace(b"\x1b", b"\x1b\x00")
+                again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+                if again != stuffed:
+                    return at
             if len(content) < 4:
                 return at
             if len(content) != content[3] + 5:
@@ -1317,7 +1335,8 @@ def _frame_flex(
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1333,7 +1352,8 @@ def _encode_request_system_status(
     content = _PACK_1(1, number_, 1, 0)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1354,7 +1374,8 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1390,7 +1411,8 @@ def _encode_axis_get_system(item: AxisGetSystem, sender: str | None, number_: in
     content = _PACK_4(2, number_, 0, 1, v1)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1415,7 +1437,8 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
     content = _PACK_5(2, number_, 7, 14, v1, v2, v3, v4, v5)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1438,7 +1461,8 @@ def _encode_confirm_motor_command(
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1452,7 +1476,8 @@ def _encode_set_defaults(item: SetDefaults, sender: str | None, number_: int | N
     content = _PACK_1(2, number_, 10, 0)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1466,7 +1491,8 @@ def _encode_brake_set(item: BrakeSet, sender: str | None, number_: int | None) -
     content = _PACK_1(2, number_, 11, 0)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1480,7 +1506,8 @@ def _encode_brake_release(item: BrakeRelease, sender: str | None, number_: int |
     content = _PACK_1(2, number_, 12, 0)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1500,7 +1527,8 @@ def _encode_brake_release_answer(
     content = _PACK_6(2, number_, 12, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1525,7 +1553,8 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
     content = _PACK_7(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1547,7 +1576,8 @@ def _encode_start_stop_motor_packets(
     content = _PACK_6(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1567,7 +1597,8 @@ def _encode_confirm_start_stop_motor_packets(
     content = _PACK_6(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1583,7 +1614,8 @@ def _encode_request_joystick_data(
     content = _PACK_1(3, number_, 0, 0)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1605,7 +1637,8 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
     content = _PACK_8(3, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1629,7 +1662,8 @@ def _encode_start_stop_sonar_packets(
     content = _PACK_9(4, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1649,7 +1683,8 @@ def _encode_confirm_start_stop_sonar_packets(
     content = _PACK_6(4, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1665,9 +1700,8 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    payload = b"".join(
-        (_PACK_10(v1, v2), b"".join([_write_sonar_data_readings(each) for each in v3])),
-    )
+    v4 = b"".join([_write_sonar_data_readings(each) for each in v3])
+    payload = b"".join((_PACK_10(v1, v2), v4))
     if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
         raise _fast.Unclear
     return _frame_flex(payload, 4, 2, number_)
@@ -1688,7 +1722,8 @@ def _encode_initialize_digital_io(
     content = _PACK_11(5, number_, 0, 4, v1)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1708,7 +1743,8 @@ def _encode_confirm_initialize_digital_io(
     content = _PACK_6(5, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1727,7 +1763,8 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
     content = _PACK_12(5, number_, 1, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1746,7 +1783,8 @@ def _encode_check_io_changed(
     content = _PACK_11(5, number_, 2, 4, v1)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1767,7 +1805,8 @@ def _encode_check_io_changed_answer(
     content = _PACK_13(5, number_, 2, 12, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1786,7 +1825,8 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
     content = _PACK_12(5, number_, 3, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
@@ -1810,7 +1850,8 @@ def _encode_ir_run(item: IrRun, sender: str | None, number_: int | None) -> byte
     content = _PACK_14(6, number_, 0, 21, v1, v2, v3, v4, v5, v6)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
-        content = _STUFFING_0.encode(content)
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 

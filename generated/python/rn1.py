@@ -505,25 +505,26 @@ BRAIN_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<3s").unpack_from
 _NUMBER_0 = _rt.Number(16, False, "little", True)
 _PACK_0 = _struct.Struct("<3s").pack
 _PACK_1 = _struct.Struct("<B").pack
 _UNPACK_1 = _struct.Struct("<BB").unpack
 _UNPACK_2 = _struct.Struct("<HH").unpack
-_PAIRS_0 = _fast.Pairs(14, True, "little")
+_PAIRS_0 = _TABLES.pairs(14, True)
 _UNPACK_3 = _struct.Struct("<3B").unpack_from
-_MEMBERS_0 = _fast.Members(MaintenanceOperation)
+_MEMBERS_0 = _TABLES.members(MaintenanceOperation, 7)
 _UNPACK_4 = _struct.Struct("<BHHH").unpack
-_MEMBERS_1 = _fast.Members(GyroStatus)
-_MEMBERS_2 = _fast.Members(XcelStatus)
-_MEMBERS_3 = _fast.Members(CompassStatus)
+_MEMBERS_1 = _TABLES.members(GyroStatus, 7)
+_MEMBERS_2 = _TABLES.members(XcelStatus, 7)
+_MEMBERS_3 = _TABLES.members(CompassStatus, 7)
 _UNPACK_5 = _struct.Struct("<BHHB").unpack
-_MEMBERS_4 = _fast.Members(LidarStatus)
+_MEMBERS_4 = _TABLES.members(LidarStatus, 7)
 _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
-_MEMBERS_5 = _fast.Members(SonarStatus)
+_MEMBERS_5 = _TABLES.members(SonarStatus, 7)
 _UNPACK_6 = _struct.Struct("<BHH").unpack
-_PAIRS_1 = _fast.Pairs(14, False, "little")
+_PAIRS_1 = _TABLES.pairs(14, False)
 _PACK_2 = _struct.Struct("<BBB").pack
 _CODES_0 = _fast.PairCodes(14, True, "little")
 _PACK_3 = _struct.Struct("<BHH").pack
@@ -607,10 +608,7 @@ def _read_maintenance(data: bytes) -> Maintenance:
     if not 4 <= len(data) <= 7:
         raise _fast.Unclear
     item = _new(Maintenance)
-    v1: list[_typing.Any] = []
-    for v2 in _UNPACK_3(data, 0):
-        v1.append(v2)
-    item.magic = v1
+    item.magic = list(_UNPACK_3(data, 0))
     if item.magic != [66, 17, 122]:
         raise _fast.Unclear
     v3 = data[3]
@@ -716,6 +714,8 @@ def _read_facing(data: bytes) -> Facing:
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -766,11 +766,13 @@ def _frame_host(payload: bytes, start_: int | None) -> bytes:
 
 def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
-            payload_size, read, numbers = _BRAIN_KINDS[data[at]]
-            end = at + 1 + payload_size
+            frame_size, read, numbers = _BRAIN_KINDS[data[at]]
+            end = at + frame_size
             if end > size:
                 return at
             raw = data[at:end]
@@ -793,13 +795,13 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
 
 
 _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (7, _read_gyro, (128,)),
-    0x81: (7, _read_xcel, (129,)),
-    0x82: (7, _read_compass, (130,)),
-    0x83: (6, _read_optflow, (131,)),
-    0x84: (721, _read_lidar, (132,)),
-    0x85: (15, _read_sonar, (133,)),
-    0xA0: (5, _read_facing, (160,)),
+    0x80: (8, _read_gyro, (128,)),
+    0x81: (8, _read_xcel, (129,)),
+    0x82: (8, _read_compass, (130,)),
+    0x83: (7, _read_optflow, (131,)),
+    0x84: (722, _read_lidar, (132,)),
+    0x85: (16, _read_sonar, (133,)),
+    0xA0: (6, _read_facing, (160,)),
 }
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:

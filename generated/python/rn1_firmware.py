@@ -569,25 +569,25 @@ BRAIN_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _PACK_0 = _struct.Struct("<B").pack
 _UNPACK_0 = _struct.Struct("<BB").unpack
 _UNPACK_1 = _struct.Struct(">HH").unpack
-_PAIRS_0 = _fast.Pairs(14, True, "big")
+_PAIRS_0 = _TABLES.pairs(14, True)
 _UNPACK_2 = _struct.Struct("<B").unpack
 _UNPACK_3 = _struct.Struct("<3B").unpack_from
-_MEMBERS_0 = _fast.Members(MaintenanceOperation)
+_MEMBERS_0 = _TABLES.members(MaintenanceOperation, 7)
 _UNPACK_4 = _struct.Struct("<BHHH").unpack
-_MEMBERS_1 = _fast.Members(GyroStatus)
-_PAIRS_1 = _fast.Pairs(14, True, "little")
-_MEMBERS_2 = _fast.Members(XcelStatus)
-_MEMBERS_3 = _fast.Members(CompassStatus)
-_MEMBERS_4 = _fast.Members(LidarStatus)
+_MEMBERS_1 = _TABLES.members(GyroStatus, 7)
+_MEMBERS_2 = _TABLES.members(XcelStatus, 7)
+_MEMBERS_3 = _TABLES.members(CompassStatus, 7)
+_MEMBERS_4 = _TABLES.members(LidarStatus, 7)
 _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
-_MEMBERS_5 = _fast.Members(SonarStatus)
+_MEMBERS_5 = _TABLES.members(SonarStatus, 7)
 _UNPACK_5 = _struct.Struct("<BHH").unpack
 _UNPACK_6 = _struct.Struct(">BHH").unpack
 _UNPACK_7 = _struct.Struct(">H").unpack
-_PAIRS_2 = _fast.Pairs(14, False, "big")
+_PAIRS_1 = _TABLES.pairs(14, False)
 _UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
 _PACK_1 = _struct.Struct("<BBB").pack
@@ -664,10 +664,7 @@ def _read_maintenance(data: bytes) -> Maintenance:
     if not 4 <= len(data) <= 5:
         raise _fast.Unclear
     item = _new(Maintenance)
-    v1: list[_typing.Any] = []
-    for v2 in _UNPACK_3(data, 0):
-        v1.append(v2)
-    item.magic = v1
+    item.magic = list(_UNPACK_3(data, 0))
     if item.magic != [66, 17, 122]:
         raise _fast.Unclear
     v3 = data[3]
@@ -697,9 +694,9 @@ def _read_gyro(data: bytes) -> Gyro:
     item = _new(Gyro)
     v1, v2, v3, v4 = _UNPACK_4(data)
     item.status = _MEMBERS_1[v1]
-    item.int_x = _PAIRS_1[v2]
-    item.int_y = _PAIRS_1[v3]
-    item.int_z = _PAIRS_1[v4]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
     return item
 
 
@@ -707,9 +704,9 @@ def _read_xcel(data: bytes) -> Xcel:
     item = _new(Xcel)
     v1, v2, v3, v4 = _UNPACK_4(data)
     item.status = _MEMBERS_2[v1]
-    item.int_x = _PAIRS_1[v2]
-    item.int_y = _PAIRS_1[v3]
-    item.int_z = _PAIRS_1[v4]
+    item.int_x = _PAIRS_0[v2]
+    item.int_y = _PAIRS_0[v3]
+    item.int_z = _PAIRS_0[v4]
     return item
 
 
@@ -717,9 +714,9 @@ def _read_compass(data: bytes) -> Compass:
     item = _new(Compass)
     v1, v2, v3, v4 = _UNPACK_4(data)
     item.status = _MEMBERS_3[v1]
-    item.avg_x = _PAIRS_1[v2]
-    item.avg_y = _PAIRS_1[v3]
-    item.avg_z = _PAIRS_1[v4]
+    item.avg_x = _PAIRS_0[v2]
+    item.avg_y = _PAIRS_0[v3]
+    item.avg_z = _PAIRS_0[v4]
     return item
 
 
@@ -753,8 +750,8 @@ def _read_facing(data: bytes) -> Facing:
     item = _new(Facing)
     v1, v2, v3 = _UNPACK_5(data)
     item.status = v1
-    item.heading = _PAIRS_1[v2]
-    item.speed = _PAIRS_1[v3]
+    item.heading = _PAIRS_0[v2]
+    item.speed = _PAIRS_0[v3]
     return item
 
 
@@ -770,7 +767,7 @@ def _read_optflow_integral(data: bytes) -> OptflowIntegral:
 def _read_motor_controller_message(data: bytes) -> MotorControllerMessage:
     item = _new(MotorControllerMessage)
     (v1,) = _UNPACK_7(data)
-    item.last_msg = _PAIRS_2[v1]
+    item.last_msg = _PAIRS_1[v1]
     return item
 
 
@@ -785,6 +782,8 @@ def _read_debug_numbers(data: bytes) -> DebugNumbers:
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -836,11 +835,13 @@ def _frame_host(payload: bytes, start_: int | None) -> bytes:
 
 def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
-            payload_size, read, numbers = _BRAIN_KINDS[data[at]]
-            end = at + 1 + payload_size
+            frame_size, read, numbers = _BRAIN_KINDS[data[at]]
+            end = at + frame_size
             if end > size:
                 return at
             raw = data[at:end]
@@ -863,15 +864,15 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
 
 
 _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x80: (7, _read_gyro, (128,)),
-    0x81: (7, _read_xcel, (129,)),
-    0x82: (7, _read_compass, (130,)),
-    0x84: (721, _read_lidar, (132,)),
-    0x85: (7, _read_sonar, (133,)),
-    0xA0: (5, _read_facing, (160,)),
-    0xA1: (5, _read_optflow_integral, (161,)),
-    0xD1: (2, _read_motor_controller_message, (209,)),
-    0xD2: (20, _read_debug_numbers, (210,)),
+    0x80: (8, _read_gyro, (128,)),
+    0x81: (8, _read_xcel, (129,)),
+    0x82: (8, _read_compass, (130,)),
+    0x84: (722, _read_lidar, (132,)),
+    0x85: (8, _read_sonar, (133,)),
+    0xA0: (6, _read_facing, (160,)),
+    0xA1: (6, _read_optflow_integral, (161,)),
+    0xD1: (3, _read_motor_controller_message, (209,)),
+    0xD2: (21, _read_debug_numbers, (210,)),
 }
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:

@@ -232,9 +232,10 @@ BOARD_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
-_MEMBERS_0 = _fast.Members(MotorsServosLedsLeds)
+_MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
 _UNPACK_2 = _struct.Struct(">2H").unpack_from
 _UNPACK_3 = _struct.Struct(">hh").unpack
 _UNPACK_4 = _struct.Struct(">hhh").unpack
@@ -280,6 +281,8 @@ def _read_status(data: bytes) -> Status:
 
 
 def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -335,6 +338,8 @@ def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
 
 
 def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:

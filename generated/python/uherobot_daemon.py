@@ -219,9 +219,10 @@ BOARD_FRAME = _rt.FrameSpec(
 _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
+_TABLES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
-_MEMBERS_0 = _fast.Members(MotorsServosLedsLeds)
+_MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
 _UNPACK_2 = _struct.Struct(">hhHHHH").unpack
 _STUFFING_0 = _transparency.Base16Upper()
 _PACK_0 = _struct.Struct("<BB").pack
@@ -256,6 +257,8 @@ def _read_status(data: bytes) -> Status:
 
 
 def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:
@@ -309,6 +312,8 @@ def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
 
 
 def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    if not _TABLES.are_filled:
+        _TABLES.fill()
     add = events.append
     try:
         while True:

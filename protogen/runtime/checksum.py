@@ -33,12 +33,8 @@ _LONG = 256
 """So many bytes have a sum of more than 16 bits, or nearly."""
 
 
-def _shifts(size: int) -> tuple[int, ...]:
-    """By how many bits to shift, until all of `size` bytes lie on top of each other."""
-    return tuple(8 << power for power in reversed(range(size.bit_length())))
-
-
-_SHIFTS = tuple(_shifts((1 << bits) - 1) for bits in range(_LONG.bit_length()))
+_HALVED = 32
+"""So many bytes are halved five times, without asking how many there are."""
 
 
 def xor_of(data: bytes) -> int:
@@ -46,9 +42,16 @@ def xor_of(data: bytes) -> int:
     # Halves of one great integer are laid over each other, until they are one byte.
     great = int.from_bytes(data, "little")
     size = len(data)
-    for shift in _SHIFTS[size.bit_length()] if size < _LONG else _shifts(size):
-        great ^= great >> shift
-    return great & 0xFF
+    while size > _HALVED:
+        half = size + 1 >> 1
+        great ^= great >> 8 * half
+        great &= (1 << 8 * half) - 1
+        size = half
+    great ^= great >> 128
+    great ^= great >> 64
+    great ^= great >> 32
+    great ^= great >> 16
+    return (great ^ great >> 8) & 0xFF
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,14 @@ reference (construct, and the machine of `machine.py`) decides and says what is 
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.number import ByteOrder, Number
-from protogen.runtime.pairs import INTEGERS, PairCodes, PairLists, Pairs, Unclear
+from protogen.runtime.pairs import INTEGERS, PairCodes, PairLists, Pairs, Unclear, pair_values
 from protogen.runtime.sender import Cutter, SenderSpec
 
 AnyT = TypeVar("AnyT")
@@ -28,6 +29,7 @@ __all__ = [
     "PairLists",
     "Pairs",
     "SevenBitFloat",
+    "Tables",
     "Unclear",
     "checked",
     "closed",
@@ -67,6 +69,38 @@ def checked(wire: bytes, payload: bytes, cut: Cutter) -> bytes:
 
 
 # --- named values -------------------------------------------------------------------------------
+
+
+class Tables:
+    """Lists that readers look values up in, filled when a decoder first needs them."""
+
+    def __init__(self) -> None:
+        self.are_filled = False
+        self._fillings: list[tuple[list[Any], Callable[[], Iterable[Any]]]] = []
+
+    def fill(self) -> None:
+        """Fill all lists, in place."""
+        while self._fillings:
+            table, values = self._fillings.pop()
+            table += values()
+        self.are_filled = True
+
+    def _table(self, values: Callable[[], Iterable[Any]]) -> list[Any]:
+        table: list[Any] = []
+        self._fillings.append((table, values))
+        return table
+
+    def members(self, named: type[OpenEnum | Flags], bits: int) -> list[Any]:
+        """The member of an enum or a set of flags for each value of so many bits."""
+        return self._table(lambda: map(named, range(1 << bits)))
+
+    def pairs(self, bits: int, signed: bool) -> list[Any]:
+        """The integer of two bytes of 7 bits, by the 16 bits that `struct` reads.
+
+        Only for bytes whose top bits are clear; padding bits that are set give None.
+        """
+        return self._table(lambda: pair_values(bits, signed))
+
 
 _KEPT_MEMBERS = 4096
 """Members without a name that are kept; what comes off a wire must not fill the memory."""

@@ -41,6 +41,20 @@ class PairCodes(dict[int, int]):
         return code
 
 
+@lru_cache(16)
+def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
+    """The integer for each 16 bits of two bytes with clear top bits; None where there is none."""
+    great, sign = 1 << bits, 1 << bits - 1
+
+    def value(code: int) -> int | None:
+        raw = code >> 8 << 7 | code & 0x7F
+        if raw >= great or code & 0x80:
+            return None
+        return raw - great if signed and raw & sign else raw
+
+    return tuple(map(value, range(1 << 15)))
+
+
 @lru_cache(256)
 def _lanes(pattern: int, count: int) -> int:
     """A pattern of 16 bits, `count` times."""

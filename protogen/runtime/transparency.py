@@ -191,7 +191,7 @@ class _CodeBook:
         self._decoded = {sequence: _ONE_BYTE[byte] for byte, sequence in table.items()}
         self._listed = _any_of(map(_ONE_BYTE.__getitem__, table))
         self._sequences = _any_of(sequences)
-        self._steps = _steps(self._table)
+        self._steps = replacing_order(self._table)
         self._unsent = bytes(byte for byte in special if byte not in table)
         self.codewords = literals | self._decoded
         self.prefixes = {seq[:length] for seq in sequences for length in range(1, len(seq))}
@@ -220,8 +220,8 @@ class _CodeBook:
         return data if self.encode(data) == region else None
 
 
-def _steps(table: Mapping[bytes, bytes]) -> tuple[tuple[bytes, bytes], ...] | None:
-    """The table in an order in which its bytes can be replaced one after the other.
+def replacing_order(table: Mapping[bytes, bytes]) -> tuple[tuple[bytes, bytes], ...] | None:
+    """Return the table in an order in which its bytes can be replaced one after the other.
 
     None where there is none: what is put in for a byte must hold no byte that comes later.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart, NumberPart
-from protogen.model.framing import StartLiteral, StartSet
+from protogen.model.framing import AfterEnd, StartLiteral, StartSet
 from protogen.model.types import Integer
 from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
@@ -48,6 +48,8 @@ def _kind(frame: FastFrame, kin: Kin) -> str | None:
     if frame.length is not None:
         return reader
     size = -1 if kin.fixed is None else kin.fixed
+    if frame.ended_by == "kind" and not frame.has_open_kinds and not frame.optional:
+        size += frame.head_size + frame.tail_size + len(frame.end)
     if frame.ended_by == "kind" and frame.shows_identity:
         return f"({size}, {reader}, {tuple_of(map(str, kin.identity))})"
     return f"({size}, {reader})"
@@ -71,6 +73,8 @@ class _Cutter:
     def body(self) -> tuple[str, ...]:
         if self.frame.ended_by in ("length", "kind"):
             self.lines.add("size = len(data)")
+        self.lines.add("if not _TABLES.are_filled:")
+        self.lines.add("    _TABLES.fill()")
         self.lines.add("add = events.append")
         if self.frame.ended_by == "start":
             # Behind a frame that ends where the next start is, that needs not be checked again.
@@ -111,7 +115,10 @@ class _Cutter:
 
     def _start(self) -> None:
         start = self.frame.start
-        if isinstance(start, StartSet) and self.frame.ended_by != "kind":
+        if isinstance(start, AfterEnd) and self.frame.ended_by != "end":
+            # Nothing in front of an end is no frame, even where frames begin with the same bytes.
+            self._stop_if(f"data.startswith({literal(self.frame.end)}, at)")
+        elif isinstance(start, StartSet) and self.frame.ended_by != "kind":
             self._stop_if(f"not 0x{start.least:02X} <= data[at] <= 0x{start.greatest:02X}")
         elif isinstance(start, StartLiteral):
             begin = literal(start.bytes)
@@ -196,11 +203,12 @@ class _Cutter:
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
         key = self._identity("data", "at + ")
-        found = "payload_size, read"
+        varies = self.frame.has_open_kinds or self.frame.optional
+        found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
             found += ", numbers"
         self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
-        open_kinds = any(kin.fixed is None for kin in frame.kins)
+        open_kinds = frame.has_open_kinds
         if open_kinds and frame.end:
             with self.lines.block("if payload_size < 0:"):
                 self.lines.add(f"end = data.find({literal(frame.end)}, at + {frame.head_size})")
@@ -216,7 +224,10 @@ class _Cutter:
             if open_kinds:
                 self._stop_if("payload_size < 0")
             less = f" - {self._optional_size} * (not payload_size)" if frame.optional else ""
-            self.lines.add(f"end = at + {around} + payload_size{less}")
+            if less or open_kinds:
+                self.lines.add(f"end = at + {around} + payload_size{less}")
+            else:
+                self.lines.add("end = at + frame_size")
         self._sized()
 
     def _sized(self) -> None:
@@ -263,7 +274,22 @@ class _Cutter:
             return
         found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
         with self.lines.block(f"if {found}:"):
-            self.lines.add(f"content = {decode}(content)")
+            if self.frame.replacements is None:
+                self.lines.add(f"content = {decode}(content)")
+            else:
+                self._replaced()
+
+    def _replaced(self) -> None:
+        """What an encoder makes of the outcome has to be what stood there."""
+        assert self.frame.replacements is not None
+        self.lines.add("stuffed = content")
+        for byte, code in reversed(self.frame.replacements):
+            self.lines.add(f"content = content.replace({literal(code)}, {literal(byte)})")
+        source = "content"
+        for byte, code in self.frame.replacements:
+            self.lines.add(f"again = {source}.replace({literal(byte)}, {literal(code)})")
+            source = "again"
+        self._stop_if("again != stuffed")
 
     def _payload(self) -> None:
         """Set `payload`, and check that there is room for it."""

@@ -22,6 +22,7 @@ from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.model.wire import fixed_size
+from protogen.runtime.transparency import replacing_order
 from protogen.targets.python.literals import octets_in_class
 
 EndedBy = Literal["end", "start", "length", "kind"]
@@ -126,8 +127,14 @@ class FastFrame:
             and len({part.when_payload for part in self.checksums}) < 2
             and not (self.optional and any(part in self.head for part in self.checksums))
             and self._region_is_plain
-            and (not self.shares or self._literals_in_front == len(self.start_bytes))
+            and (not self.shares or self._shares_plainly)
         )
+
+    @property
+    def _shares_plainly(self) -> bool:
+        """Whether a frame with a shared delimiter is all that is between two of them."""
+        alone = self._literals_in_front == len(self.start_bytes)
+        return alone and self.ended_by == "end"
 
     @property
     def _region_is_plain(self) -> bool:
@@ -158,6 +165,11 @@ class FastFrame:
         return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
 
     @property
+    def has_open_kinds(self) -> bool:
+        """Whether the payloads of some identity vary in size."""
+        return any(kin.fixed is None for kin in self.kins)
+
+    @property
     def shows_identity(self) -> bool:
         """Whether events show the identity and no other part."""
         return self.shown == self.identity
@@ -168,6 +180,24 @@ class FastFrame:
         return self.start.bytes if isinstance(self.start, StartLiteral) else b""
 
     # --- stuffing ---------------------------------------------------------------------------------
+
+    @property
+    def replacements(self) -> tuple[tuple[bytes, bytes], ...] | None:
+        """Bytes and what stands for them, in an order in which an encoder can replace them.
+
+        None where there is none, and where a byte begins codes but has none itself.
+        """
+        transparency = self.sender.frame.transparency
+        match None if transparency is None else transparency.encoding:
+            case Substitution(table=listed):
+                table = {bytes((byte,)): code for byte, code in listed}
+            case Escape(byte=byte, of=of, xor=xor):
+                table = {bytes((member,)): bytes((byte, member ^ xor)) for member in of}
+            case _:
+                return None
+        if any(code[:1] not in table for code in table.values()):
+            return None
+        return replacing_order(table)
 
     def specials(self, sending: bool) -> tuple[int, ...] | None:
         """Bytes without which a stuffed region stands for itself.

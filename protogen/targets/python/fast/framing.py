@@ -288,7 +288,11 @@ class _Framer:
             return f"{before}{encode}({inner}){behind}"
         found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
         with self.lines.block(f"if {found}:"):
-            self.lines.add(f"content = {encode}(content)")
+            if frame.replacements is None:
+                self.lines.add(f"content = {encode}(content)")
+            else:
+                for byte, code in frame.replacements:
+                    self.lines.add(f"content = content.replace({literal(byte)}, {literal(code)})")
         return "content"
 
 

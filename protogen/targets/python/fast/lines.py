@@ -49,7 +49,7 @@ class Lines:
         """A statement whose expression is broken at commas where it does not fit."""
         for word in ("return ", " = "):
             start, found, expression = line.partition(word)
-            if found:
+            if found and " for " not in expression:
                 indent = len(_INDENT) * (self._depth + 1)
                 column = indent + len(start + word)
                 return start + word + wrapped(expression, column, indent, after=0)

@@ -210,6 +210,9 @@ class _Reader:
         if is_native(type_):
             return variable
         if is_pair(type_):
+            if self.is_ascii and type_.bits == 14:
+                table = f"_TABLES.pairs({type_.bits}, {type_.signed})"
+                return f"{self.lines.constants.named('PAIRS', table)}[{variable}]"
             return f"{self._pairs(type_)}[{variable}]"
         code = code_of(type_)
         assert code is not None
@@ -235,6 +238,9 @@ class _Reader:
         named = type_.enum or type_.flags
         if named is None:
             return value
+        if not (type_.enum and type_.enum.closed) and not type_.signed and type_.bits <= 8:
+            table = f"_TABLES.members({class_name(named.name)}, {type_.bits})"
+            return f"{self.lines.constants.named('MEMBERS', table)}[{value}]"
         kind = "closed" if type_.enum is not None and type_.enum.closed else "Members"
         members = f"_fast.{kind}({class_name(named.name)})"
         return f"{self.lines.constants.named('MEMBERS', members)}[{value}]"
@@ -429,7 +435,9 @@ class _Reader:
         if goes_together(element.fields):
             return self._elements_together(element, size, count)
         call = f"_read_{element.name}(data, place{outer})"
-        return f"[{call} for place in range({start}, {stop}, {size})]"
+        places = self.lines.local("places")
+        self.lines.add(f"{places} = range({start}, {stop}, {size})")
+        return f"[{call} for place in {places}]"
 
     def _elements_together(self, element: Struct, size: int, count: str) -> str:
         values, item = self.lines.local(), self.lines.local("s")
@@ -458,10 +466,22 @@ class _Reader:
 
     def _converted_elements(self, code: str, array: Array, count: str) -> str:
         values, value = self.lines.local(), self.lines.local()
+        unpacked = self._unpack_array(code, array, count)
+        if self._is_seen(array.element):
+            return f"list({unpacked})"
         self.lines.add(f"{values}: list[_typing.Any] = []")
-        with self.lines.block(f"for {value} in {self._unpack_array(code, array, count)}:"):
+        with self.lines.block(f"for {value} in {unpacked}:"):
             self.lines.add(f"{values}.append({self._converted(value, array.element)})")
         return values
+
+    def _is_seen(self, type_: Type) -> bool:
+        """Whether a byte is the value itself, now that its top bit was seen to be clear."""
+        return (
+            isinstance(type_, Integer)
+            and (self.is_ascii, type_.bits, type_.size, type_.signed) == (True, 7, 1, False)
+            and type_.role != "bool"
+            and not is_named(type_)
+        )
 
     def _array_of_varying(self, array: Array, count: str | None = None) -> str:
         """Elements one by one, each from where the one before ended."""

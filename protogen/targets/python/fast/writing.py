@@ -313,7 +313,11 @@ class _Writer:
         element = array.element
         if isinstance(element, Struct):
             outer = "".join(f", {self.raw[name]}" for name in outer_names(element))
-            self._piece(f'b"".join([_write_{element.name}(each{outer}) for each in {value}])')
+            self._flush()
+            data = self.lines.local()
+            written = f"_write_{element.name}(each{outer})"
+            self.lines.add(f'{data} = b"".join([{written} for each in {value}])')
+            self._piece(data)
         elif is_pair(element) and isinstance(element, Integer) and not is_named(element):
             self._all_in_range(value, item)
             arguments = f'{element.bits}, {element.signed}, "{element.byte_order}"'
