@@ -45,15 +45,17 @@ struct {name}_writer {{
     uint8_t **next;
 }};
 
+typedef void (*{name}_put)(void *user, uint8_t byte);
+
 void {name}_write({writer}, uint8_t byte) {{
-    *(*writer{member}next)++ = byte;
+    {take};
 }}
 """
 _PUT = """
 size_t shim_{prefix}_put(const {struct} *message, uint8_t *bytes) {{
     uint8_t *next = bytes;
     struct {name}_writer writer = {{&next}};
-    {put}(message, {by}writer);
+    {put}(message, {writing});
     return (size_t)(next - bytes);
 }}
 """
@@ -73,10 +75,11 @@ def write_sources(protocol: Protocol, folder: Path, *, payloads_only: bool = Fal
 
 def shim_of(protocol: Protocol, module: Module) -> str:
     """A source that includes the generated one and makes its static functions callable."""
-    by_value = is_stateless(protocol)
-    member = "." if by_value else "->"
-    writer = {"writer": writer_parameter(protocol), "member": member}
-    parts = [_SHIM.format(name=module.name, **writer), *module.sinks]
+    stateless = is_stateless(protocol)
+    next_ = f"((struct {module.name}_writer *)user)->next" if stateless else "writer->next"
+    take = f"{'(void)put; ' if stateless else ''}*(*{next_})++ = byte"
+    head = {"name": module.name, "writer": writer_parameter(protocol), "take": take}
+    parts = [_SHIM.format(**head), *module.sinks]
     for message in module.messages:
         given = {
             "name": module.name,
@@ -84,7 +87,7 @@ def shim_of(protocol: Protocol, module: Module) -> str:
             "struct": message.struct,
             "put": message.put,
             "check": message.check,
-            "by": "" if by_value else "&",
+            "writing": "NULL, &writer" if stateless else "&writer",
         }
         parts += [message.put_function, _PUT.format(**given)]
         parts += [_CHECK.format(**given)] if message.checks else []

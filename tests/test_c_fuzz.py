@@ -13,13 +13,16 @@ from c_proof.generated import generate
 from compiled import DOCUMENTS, ROOT, name_of, protocol_of
 from fuzz.harness import build, build_from, executions
 
+from protogen.targets.c.options import EVENTS, Events
+
 MATTY = ROOT / "schemas" / "matty.yaml"
-SECONDS = 4
+SECONDS = 2
 
 
+@pytest.mark.parametrize("events", EVENTS)
 @pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
-def test_no_input_breaks_a_decoder(path: Path, tmp_path: Path) -> None:
-    fuzzer = build(protocol_of(path), path, tmp_path)
+def test_no_input_breaks_a_decoder(path: Path, events: Events, tmp_path: Path) -> None:
+    fuzzer = build(protocol_of(path), path, tmp_path, events=events)
     said = fuzzer.run(f"-max_total_time={SECONDS}", "-seed=1")
     assert executions(said) > 1000
 

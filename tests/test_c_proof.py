@@ -1,7 +1,7 @@
 """EVA finds nothing that could go wrong in generated decoders, whatever they are given.
 
-`PROTOGEN_PROVE_ALL=1` also proves the framings of the tests, the decoders without invalid events,
-and all of it for a machine whose words have 16 bits.
+`PROTOGEN_PROVE_ALL=1` also proves the framings of the tests, and all of it for words of 64 and of
+16 bits, with and without invalid events.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     if ALL
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS)),
-        *((path, EVENTS[0], NARROW) for path in DOCUMENTS),
+        *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
     ]
 )
 STATES = "-eva-slevel=1200"
@@ -45,7 +45,7 @@ def prove(made: Generated, driver: Driver, machine: str = WIDE, *options: str) -
     """Analyse a driver of generated code."""
     source = made.folder / "driver.c"
     source.write_text(driver.text, encoding="utf-8")
-    return analyse(source, made.folder, machine, *options)
+    return analyse(source, made.folder, machine, *driver.options, *options)
 
 
 @pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)
@@ -68,6 +68,19 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     assert (report.alarms, report.found) == (0, ())
 
 
+@pytest.mark.parametrize(
+    ("document", "only"),
+    [("matty", "status"), ("rflex", "request_system_status"), ("rn1", "gyro")],
+)
+def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_path: Path) -> None:
+    """Its frames have one size, which it does not keep."""
+    protocol = protocol_of(ROOT / "schemas" / f"{document}.yaml")
+    made = generate(protocol, tmp_path, COptions(events="messages", only=(only,)))
+    driver = push_driver(protocol, made.header.read_text(encoding="utf-8"))
+    report = prove(made, driver, NARROW)
+    assert (report.alarms, report.found) == (0, ())
+
+
 # --- faults that have to be seen ------------------------------------------------------------------
 
 
@@ -86,6 +99,21 @@ def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
     report = prove(made, push_driver(made.protocol, header))
     assert report.alarms > 0
     assert any("out of bounds" in found for found in report.found)
+
+
+def test_a_buffer_that_a_polled_decoder_writes_behind_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
+    header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")
+    report = prove(made, push_driver(made.protocol, header))
+    assert any("out of bounds" in found for found in report.found)
+
+
+def test_an_event_that_is_not_filled_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
+    assert made.source is not None
+    changed(made.source, r"    event->payload = .*;\n", "")
+    report = prove(made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")))
+    assert any("uninitialized" in found for found in report.found)
 
 
 def test_a_member_that_is_too_small_by_an_element_is_found(tmp_path: Path) -> None:

@@ -734,14 +734,8 @@ static enum dagny_result dagny_laser_check(const uint8_t *payload, size_t size, 
     (void)payload;
     (void)need;
     size_t at = 0;
-    for (size_t count = 0; at < size; count++) {
-        if (count == 512u) {
-            return DAGNY_ERROR_SIZE;
-        }
-        if (size - at < 1u) {
-            return DAGNY_ERROR_SIZE;
-        }
-        at += 1;
+    if (size - at > 512u) {
+        return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
 }
@@ -845,11 +839,15 @@ enum {
 #define DAGNY_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
 /* xor-8 */
+static inline uint8_t dagny_xor_8_step(uint8_t sum, uint8_t byte) {
+    sum = (uint8_t)(sum ^ byte);
+    return sum;
+}
+
 static uint8_t dagny_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
     for (; index < size; index++) {
-        const uint8_t byte = data[index];
-        sum = (uint8_t)(sum ^ byte);
+        sum = dagny_xor_8_step(sum, data[index]);
     }
     return sum;
 }
@@ -916,7 +914,7 @@ enum { DAGNY_STUFFED = 128 };
 /* The next byte of content. */
 static void dagny_host_write(struct dagny_writer *writer, uint8_t byte) {
     if ((writer->flags & 1u) != 0u) {
-        writer->host_checksum = dagny_xor_8_run(writer->host_checksum, &byte, 1u);
+        writer->host_checksum = dagny_xor_8_step(writer->host_checksum, byte);
     }
     writer->put(writer->user, byte);
 }

@@ -746,7 +746,7 @@ void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
 /* --- handlers ---------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function is a decoder's handler that decodes each message and calls its own function
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
  * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
  * weak functions. For another one, define all of them, or leave out the dispatching by defining
  * DAGNY_NO_HANDLERS for the source.

@@ -441,14 +441,8 @@ static enum dagny_library_result dagny_library_laser_check(const uint8_t *payloa
     (void)payload;
     (void)need;
     size_t at = 0;
-    for (size_t count = 0; at < size; count++) {
-        if (count == 512u) {
-            return DAGNY_LIBRARY_ERROR_SIZE;
-        }
-        if (size - at < 1u) {
-            return DAGNY_LIBRARY_ERROR_SIZE;
-        }
-        at += 1;
+    if (size - at > 512u) {
+        return DAGNY_LIBRARY_ERROR_SIZE;
     }
     return DAGNY_LIBRARY_OK;
 }
@@ -592,28 +586,25 @@ static size_t dagny_library_host_stuff(uint8_t *wire, uint8_t byte) {
 static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     uint8_t *const content = dagny_library_host_payload(frame, payload) - 1;
     uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + 0u;
-    size_t from;
-    size_t to;
+    const uint16_t stuffed = (uint16_t)(1u + payload + 0u);
+    uint16_t from = 0;
+    uint8_t *to = frame;
     (void)tail;
     content[0u] = (uint8_t)id;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    from = 0;
-    to = 0;
-    for (; from < size; from++) {
-        const uint8_t byte = content[from];
+    for (; from < stuffed; from++) {
+        uint8_t byte = content[from];
         if (byte == 0x0D || byte == 0x1B) {
-            frame[to] = 0x1B;
+            *to = 0x1B;
             to++;
-            frame[to] = (uint8_t)(byte ^ 0x1Bu);
-        } else {
-            frame[to] = byte;
+            byte = (uint8_t)(byte ^ 0x1Bu);
         }
+        *to = byte;
         to++;
     }
-    size = to;
-    frame[size + 0u] = 0x0D;
-    return size + 1u;
+    *to = 0x0D;
+    to++;
+    return (size_t)(to - frame);
 }
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */

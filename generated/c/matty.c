@@ -2,6 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "matty.h"
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define MATTY_FAST_FEED as 1 or 0 to choose.
+ * Define MATTY_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef MATTY_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define MATTY_FAST_FEED 1
+#else
+#define MATTY_FAST_FEED 0
+#endif
+#endif
+#ifndef MATTY_SSE2
+#define MATTY_SSE2 0
+#endif
+#if MATTY_SSE2
+#include <emmintrin.h>
+#endif
+
 static void matty_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
@@ -425,24 +444,6 @@ enum {
 
 #define MATTY_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
-/*
- * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
- * done where pointers have more than 32 bits; define MATTY_FAST_FEED as 1 or 0 to choose.
- * Define MATTY_SSE2 as 1 for sixteen at a time on x86.
- */
-#ifndef MATTY_FAST_FEED
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define MATTY_FAST_FEED 1
-#else
-#define MATTY_FAST_FEED 0
-#endif
-#endif
-#ifndef MATTY_SSE2
-#define MATTY_SSE2 0
-#endif
-#if MATTY_SSE2
-#include <emmintrin.h>
-#endif
 #if MATTY_FAST_FEED
 #include <string.h>
 
@@ -454,6 +455,11 @@ enum {
 #endif
 
 /* sum-8/negated */
+static inline uint8_t matty_sum_8_negated_step(uint8_t sum, uint8_t byte) {
+    sum = (uint8_t)(sum + byte);
+    return sum;
+}
+
 static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
 #if MATTY_FAST_FEED
@@ -469,8 +475,7 @@ static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t 
     }
 #endif
     for (; index < size; index++) {
-        const uint8_t byte = data[index];
-        sum = (uint8_t)(sum + byte);
+        sum = matty_sum_8_negated_step(sum, data[index]);
     }
     return sum;
 }
@@ -507,39 +512,31 @@ static size_t matty_pc_stuff(uint8_t *wire, uint8_t byte) {
 static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
     uint8_t *const content = matty_pc_payload(frame, payload) - 4;
     uint8_t *const tail = &content[4u + payload];
-    size_t size = 4u + payload + 1u;
     const uint16_t length = (uint16_t)(2u + payload);
-    size_t from;
-    size_t to;
+    const uint16_t stuffed = (uint16_t)(4u + payload + 1u);
+    uint16_t from = 1;
+    uint8_t *to = frame;
+    uint8_t sum = 0x00;
     (void)tail;
     content[0u] = 0x55;
     content[1u] = (uint8_t)length;
     content[2u] = (uint8_t)counter;
     content[3u] = (uint8_t)command;
-    {
-        uint8_t sum = 0x00;
-        uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
-        due = matty_sum_8_negated_final(sum);
-        tail[0u] = (uint8_t)due;
-    }
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    frame[0] = content[0];
-    from = 1;
-    to = 1;
-    for (; from < size; from++) {
-        const uint8_t byte = content[from];
+    *to = content[0];
+    to++;
+    for (; from < stuffed; from++) {
+        uint8_t byte = from + 1u == stuffed ? (uint8_t)matty_sum_8_negated_final(sum) : content[from];
+        sum = matty_sum_8_negated_step(sum, byte);
         if (byte == 0x55 || byte == 0x56) {
-            frame[to] = 0x56;
+            *to = 0x56;
             to++;
-            frame[to] = (uint8_t)(byte ^ 0xFFu);
-        } else {
-            frame[to] = byte;
+            byte = (uint8_t)(byte ^ 0xFFu);
         }
+        *to = byte;
         to++;
     }
-    size = to;
-    return size + 0u;
+    return (size_t)(to - frame);
 }
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */
@@ -557,7 +554,7 @@ enum { MATTY_STUFFED = 128 };
 /* The next byte of content. */
 static void matty_pc_write(struct matty_writer *writer, uint8_t byte) {
     if ((writer->flags & 1u) != 0u) {
-        writer->pc_crc = matty_sum_8_negated_run(writer->pc_crc, &byte, 1u);
+        writer->pc_crc = matty_sum_8_negated_step(writer->pc_crc, byte);
     }
     if ((writer->flags & MATTY_STUFFED) != 0u) {
         uint8_t wire[2];
@@ -1268,10 +1265,15 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
         const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        if (_mm_movemask_epi8(found) != 0) {
+        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        if (marks != 0U) {
+            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
+                from++;
+                at++;
+            }
             break;
         }
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         from += 16U;
         at += 16U;
     }
@@ -1709,10 +1711,15 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
         const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        if (_mm_movemask_epi8(found) != 0) {
+        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        if (marks != 0U) {
+            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
+                from++;
+                at++;
+            }
             break;
         }
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         from += 16U;
         at += 16U;
     }

@@ -1100,7 +1100,7 @@ void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
 /* --- handlers ---------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function is a decoder's handler that decodes each message and calls its own function
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
  * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
  * weak functions. For another one, define all of them, or leave out the dispatching by defining
  * RFLEX_NO_HANDLERS for the source.

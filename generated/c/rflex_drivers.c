@@ -2,6 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "rflex_drivers.h"
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RFLEX_DRIVERS_FAST_FEED as 1 or 0 to choose.
+ * Define RFLEX_DRIVERS_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RFLEX_DRIVERS_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RFLEX_DRIVERS_FAST_FEED 1
+#else
+#define RFLEX_DRIVERS_FAST_FEED 0
+#endif
+#endif
+#ifndef RFLEX_DRIVERS_SSE2
+#define RFLEX_DRIVERS_SSE2 0
+#endif
+#if RFLEX_DRIVERS_SSE2
+#include <emmintrin.h>
+#endif
+
 static void rflex_drivers_store_u32be(uint8_t *at, uint32_t value) {
     at[0] = (uint8_t)(value >> 24);
     at[1] = (uint8_t)(value >> 16);
@@ -730,14 +749,14 @@ static enum rflex_drivers_result rflex_drivers_sonar_data_check(const uint8_t *p
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     size_t at = 8;
-    for (size_t count = 0; at < size; count++) {
-        if (count == 82u) {
-            return RFLEX_DRIVERS_ERROR_SIZE;
-        }
-        if (size - at < 3u) {
-            return RFLEX_DRIVERS_ERROR_SIZE;
-        }
+    if (size - at > 246u) {
+        return RFLEX_DRIVERS_ERROR_SIZE;
+    }
+    while (at < size) {
         at += 3;
+    }
+    if (at != size) {
+        return RFLEX_DRIVERS_ERROR_SIZE;
     }
     return RFLEX_DRIVERS_OK;
 }
@@ -1112,24 +1131,6 @@ enum {
 
 #define RFLEX_DRIVERS_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
-/*
- * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
- * done where pointers have more than 32 bits; define RFLEX_DRIVERS_FAST_FEED as 1 or 0 to choose.
- * Define RFLEX_DRIVERS_SSE2 as 1 for sixteen at a time on x86.
- */
-#ifndef RFLEX_DRIVERS_FAST_FEED
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define RFLEX_DRIVERS_FAST_FEED 1
-#else
-#define RFLEX_DRIVERS_FAST_FEED 0
-#endif
-#endif
-#ifndef RFLEX_DRIVERS_SSE2
-#define RFLEX_DRIVERS_SSE2 0
-#endif
-#if RFLEX_DRIVERS_SSE2
-#include <emmintrin.h>
-#endif
 #if RFLEX_DRIVERS_FAST_FEED
 #include <string.h>
 
@@ -1141,6 +1142,11 @@ enum {
 #endif
 
 /* xor-8 */
+static inline uint8_t rflex_drivers_xor_8_step(uint8_t sum, uint8_t byte) {
+    sum = (uint8_t)(sum ^ byte);
+    return sum;
+}
+
 static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
 #if RFLEX_DRIVERS_FAST_FEED
@@ -1155,8 +1161,7 @@ static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t 
     sum = (uint8_t)(sum ^ all ^ (all >> 8));
 #endif
     for (; index < size; index++) {
-        const uint8_t byte = data[index];
-        sum = (uint8_t)(sum ^ byte);
+        sum = rflex_drivers_xor_8_step(sum, data[index]);
     }
     return sum;
 }
@@ -1200,10 +1205,11 @@ static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
 static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
     uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
     uint8_t *const tail = &content[6u + payload];
-    size_t size = 6u + payload + 1u;
     const uint16_t length = (uint16_t)(payload);
-    size_t from;
-    size_t to;
+    const uint16_t stuffed = (uint16_t)(6u + payload + 1u);
+    uint16_t from = 2;
+    uint8_t *to = frame;
+    uint8_t sum = 0x00;
     (void)tail;
     content[0u] = 0x1B;
     content[1u] = 0x02;
@@ -1211,43 +1217,38 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     content[3u] = (uint8_t)number;
     content[4u] = (uint8_t)subclass;
     content[5u] = (uint8_t)length;
-    {
-        uint8_t sum = 0x00;
-        uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + payload) - (size_t)(2U));
-        due = rflex_drivers_xor_8_final(sum);
-        tail[0u] = (uint8_t)due;
-    }
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    frame[0] = content[0];
-    frame[1] = content[1];
-    from = 2;
-    to = 2;
-    for (; from < size; from++) {
-        const uint8_t byte = content[from];
+    *to = content[0];
+    to++;
+    *to = content[1];
+    to++;
+    for (; from < stuffed; from++) {
+        uint8_t byte = from + 1u == stuffed ? (uint8_t)rflex_drivers_xor_8_final(sum) : content[from];
+        sum = rflex_drivers_xor_8_step(sum, byte);
         switch (byte) {
         case 0x1B:
-            frame[to] = 0x1B;
+            *to = 0x1B;
             to++;
-            frame[to] = 0x00;
+            *to = 0x00;
             break;
         case 0x7C:
-            frame[to] = 0x7C;
+            *to = 0x7C;
             to++;
-            frame[to] = 0x1B;
+            *to = 0x1B;
             to++;
-            frame[to] = 0x01;
+            *to = 0x01;
             break;
         default:
-            frame[to] = byte;
+            *to = byte;
             break;
         }
         to++;
     }
-    size = to;
-    frame[size + 0u] = 0x1B;
-    frame[size + 1u] = 0x03;
-    return size + 2u;
+    *to = 0x1B;
+    to++;
+    *to = 0x03;
+    to++;
+    return (size_t)(to - frame);
 }
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */
@@ -1265,7 +1266,7 @@ enum { RFLEX_DRIVERS_STUFFED = 128 };
 /* The next byte of content. */
 static void rflex_drivers_linux_write(struct rflex_drivers_writer *writer, uint8_t byte) {
     if ((writer->flags & 1u) != 0u) {
-        writer->linux_checksum = rflex_drivers_xor_8_run(writer->linux_checksum, &byte, 1u);
+        writer->linux_checksum = rflex_drivers_xor_8_step(writer->linux_checksum, byte);
     }
     if ((writer->flags & RFLEX_DRIVERS_STUFFED) != 0u) {
         uint8_t wire[3];
@@ -2744,10 +2745,15 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
         const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        if (_mm_movemask_epi8(found) != 0) {
+        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        if (marks != 0U) {
+            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
+                from++;
+                at++;
+            }
             break;
         }
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         from += 16U;
         at += 16U;
     }
@@ -3378,10 +3384,15 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
         const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        if (_mm_movemask_epi8(found) != 0) {
+        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+        if (marks != 0U) {
+            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
+                from++;
+                at++;
+            }
             break;
         }
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         from += 16U;
         at += 16U;
     }

@@ -2,6 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "rn1.h"
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RN1_FAST_FEED as 1 or 0 to choose.
+ * Define RN1_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RN1_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RN1_FAST_FEED 1
+#else
+#define RN1_FAST_FEED 0
+#endif
+#endif
+#ifndef RN1_SSE2
+#define RN1_SSE2 0
+#endif
+#if RN1_SSE2
+#include <emmintrin.h>
+#endif
+
 static bool rn1_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0u;
@@ -17,7 +36,7 @@ static int8_t rn1_load_s7(const uint8_t *at) {
 
 static void rn1_store_u14le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)((value >> 7) & 0x7Fu);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
 }
 
 static uint16_t rn1_load_u14le(const uint8_t *at) {
@@ -30,7 +49,7 @@ static int16_t rn1_load_s14le(const uint8_t *at) {
 
 static void rn1_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)((value >> 7) & 0x7Fu);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
     at[2] = (uint8_t)(value >> 14);
 }
 
@@ -52,6 +71,23 @@ static uint16_t rn1_all_bits_u16(const uint16_t *numbers, size_t count) {
         all |= numbers[i];
     }
     return all;
+}
+
+static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
+    size_t i = 0;
+#if RN1_SSE2
+    for (; count - i >= 8u; i += 8u) {
+        const void *const from = &at[2u * i];
+        const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
+        const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));
+        const __m128i next = _mm_srli_epi16(pairs, 1);
+        const __m128i high = _mm_and_si128(next, _mm_set1_epi16(0x3F80));
+        _mm_storeu_si128((__m128i *)(void *)&numbers[i], _mm_or_si128(low, high));
+    }
+#endif
+    for (; i < count; i++) {
+        numbers[i] = rn1_load_u14le(&at[2u * i]);
+    }
 }
 
 /* --- move_manual ------------------------------------------------------------------------------- */
@@ -733,9 +769,7 @@ static enum rn1_result rn1_lidar_check(const uint8_t *payload, size_t size, size
 
 void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
-    for (size_t i = 0; i < 360u; i++) {
-        message->distances[i] = rn1_load_u14le(payload + 1 + 2 * i);
-    }
+    rn1_load_u14le_run(message->distances, payload + 1, 360u);
 }
 
 enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *payload, size_t size) {
@@ -793,9 +827,7 @@ static enum rn1_result rn1_sonar_check(const uint8_t *payload, size_t size, size
 
 void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
-    for (size_t i = 0; i < 7u; i++) {
-        message->distances[i] = rn1_load_u14le(payload + 1 + 2 * i);
-    }
+    rn1_load_u14le_run(message->distances, payload + 1, 7u);
 }
 
 enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *payload, size_t size) {
@@ -893,24 +925,6 @@ enum {
 
 #define RN1_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
-/*
- * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
- * done where pointers have more than 32 bits; define RN1_FAST_FEED as 1 or 0 to choose.
- * Define RN1_SSE2 as 1 for sixteen at a time on x86.
- */
-#ifndef RN1_FAST_FEED
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define RN1_FAST_FEED 1
-#else
-#define RN1_FAST_FEED 0
-#endif
-#endif
-#ifndef RN1_SSE2
-#define RN1_SSE2 0
-#endif
-#if RN1_SSE2
-#include <emmintrin.h>
-#endif
 #if RN1_FAST_FEED
 #include <string.h>
 
@@ -992,138 +1006,130 @@ static size_t rn1_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */
 
-struct rn1_writer {
-    rn1_put put;
-    void *user;
-};
-
-static inline void rn1_write(struct rn1_writer writer, uint8_t byte) {
-    writer.put(writer.user, byte);
+static inline void rn1_write(rn1_put put, void *user, uint8_t byte) {
+    put(user, byte);
 }
 
-static void rn1_host_send_head(struct rn1_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_host_send_head(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    rn1_write(writer, (uint8_t)start);
+    rn1_write(put, user, (uint8_t)start);
 }
 
-static void rn1_host_send_tail(struct rn1_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_host_send_tail(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    writer.put(writer.user, 0xFF);
+    put(user, 0xFF);
 }
 
-static void rn1_brain_send_head(struct rn1_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    rn1_write(writer, (uint8_t)start);
+    rn1_write(put, user, (uint8_t)start);
 }
 
-static void rn1_write_u14le(struct rn1_writer writer, uint16_t value) {
-    rn1_write(writer, (uint8_t)(value & 0x7Fu));
-    rn1_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
+static void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
+    rn1_write(put, user, (uint8_t)(value & 0x7Fu));
+    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
 }
 
-static void rn1_write_u16le(struct rn1_writer writer, uint16_t value) {
-    rn1_write(writer, (uint8_t)(value & 0x7Fu));
-    rn1_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
-    rn1_write(writer, (uint8_t)(value >> 14));
+static void rn1_write_u16le(rn1_put put, void *user, uint16_t value) {
+    rn1_write(put, user, (uint8_t)(value & 0x7Fu));
+    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
+    rn1_write(put, user, (uint8_t)(value >> 14));
 }
 
-static void rn1_write_bytes(struct rn1_writer writer, const void *from, size_t size) {
+static void rn1_write_bytes(rn1_put put, void *user, const void *from, size_t size) {
     const uint8_t *bytes = (const uint8_t *)from;
     for (size_t i = 0; i < size; i++) {
-        rn1_write(writer, bytes[i]);
+        rn1_write(put, user, bytes[i]);
     }
 }
 
-static void rn1_move_manual_put(const struct rn1_move_manual *message, struct rn1_writer writer) {
-    rn1_write(writer, (uint8_t)((uint8_t)message->speed & 0x7Fu));
-    rn1_write(writer, (uint8_t)((uint8_t)message->arc & 0x7Fu));
+static void rn1_move_manual_put(const struct rn1_move_manual *message, rn1_put put, void *user) {
+    rn1_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7Fu));
+    rn1_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7Fu));
 }
 
 static void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
-                                          struct rn1_writer writer) {
-    rn1_write_u14le(writer, (uint16_t)message->angle);
-    rn1_write_u14le(writer, (uint16_t)message->forward);
+                                          rn1_put put, void *user) {
+    rn1_write_u14le(put, user, (uint16_t)message->angle);
+    rn1_write_u14le(put, user, (uint16_t)message->forward);
 }
 
 static void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *message,
-                                      struct rn1_writer writer) {
-    rn1_write_u14le(writer, (uint16_t)message->angle);
-    rn1_write_u14le(writer, (uint16_t)message->forward);
+                                      rn1_put put, void *user) {
+    rn1_write_u14le(put, user, (uint16_t)message->angle);
+    rn1_write_u14le(put, user, (uint16_t)message->forward);
 }
 
-static void rn1_maintenance_put(const struct rn1_maintenance *message, struct rn1_writer writer) {
-    rn1_write(writer, 0x42u);
-    rn1_write(writer, 0x11u);
-    rn1_write(writer, 0x7Au);
-    rn1_write(writer, message->operation);
+static void rn1_maintenance_put(const struct rn1_maintenance *message, rn1_put put, void *user) {
+    rn1_write(put, user, 0x42u);
+    rn1_write(put, user, 0x11u);
+    rn1_write(put, user, 0x7Au);
+    rn1_write(put, user, message->operation);
     switch (message->operation) {
     case 65u:
-        rn1_write_u16le(writer, message->argument.reconfig_uart.baud_rate_register);
+        rn1_write_u16le(put, user, message->argument.reconfig_uart.baud_rate_register);
         break;
     case 81u:
     case 82u:
         break;
     case 83u:
-        rn1_write(writer, message->argument.run_motor_controller_flasher.motor_controller);
+        rn1_write(put, user, message->argument.run_motor_controller_flasher.motor_controller);
         break;
     default:
-        rn1_write_bytes(writer, message->argument.other.bytes, message->argument.other.size);
+        rn1_write_bytes(put, user, message->argument.other.bytes, message->argument.other.size);
         break;
     }
 }
 
-static void rn1_gyro_put(const struct rn1_gyro *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
-    rn1_write_u14le(writer, (uint16_t)message->int_x);
-    rn1_write_u14le(writer, (uint16_t)message->int_y);
-    rn1_write_u14le(writer, (uint16_t)message->int_z);
+static void rn1_gyro_put(const struct rn1_gyro *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
+    rn1_write_u14le(put, user, (uint16_t)message->int_x);
+    rn1_write_u14le(put, user, (uint16_t)message->int_y);
+    rn1_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_xcel_put(const struct rn1_xcel *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
-    rn1_write_u14le(writer, (uint16_t)message->int_x);
-    rn1_write_u14le(writer, (uint16_t)message->int_y);
-    rn1_write_u14le(writer, (uint16_t)message->int_z);
+static void rn1_xcel_put(const struct rn1_xcel *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
+    rn1_write_u14le(put, user, (uint16_t)message->int_x);
+    rn1_write_u14le(put, user, (uint16_t)message->int_y);
+    rn1_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_compass_put(const struct rn1_compass *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
-    rn1_write_u14le(writer, (uint16_t)message->avg_x);
-    rn1_write_u14le(writer, (uint16_t)message->avg_y);
-    rn1_write_u14le(writer, (uint16_t)message->avg_z);
+static void rn1_compass_put(const struct rn1_compass *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
+    rn1_write_u14le(put, user, (uint16_t)message->avg_x);
+    rn1_write_u14le(put, user, (uint16_t)message->avg_y);
+    rn1_write_u14le(put, user, (uint16_t)message->avg_z);
 }
 
-static void rn1_optflow_put(const struct rn1_optflow *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
-    rn1_write_u14le(writer, (uint16_t)message->dx);
-    rn1_write_u14le(writer, (uint16_t)message->dy);
-    rn1_write(writer, message->q);
+static void rn1_optflow_put(const struct rn1_optflow *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
+    rn1_write_u14le(put, user, (uint16_t)message->dx);
+    rn1_write_u14le(put, user, (uint16_t)message->dy);
+    rn1_write(put, user, message->q);
 }
 
-static void rn1_lidar_put(const struct rn1_lidar *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
+static void rn1_lidar_put(const struct rn1_lidar *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
     for (size_t i = 0; i < 360u; i++) {
-        rn1_write_u14le(writer, message->distances[i]);
+        rn1_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_sonar_put(const struct rn1_sonar *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
+static void rn1_sonar_put(const struct rn1_sonar *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
     for (size_t i = 0; i < 7u; i++) {
-        rn1_write_u14le(writer, message->distances[i]);
+        rn1_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_facing_put(const struct rn1_facing *message, struct rn1_writer writer) {
-    rn1_write(writer, message->status);
-    rn1_write_u14le(writer, message->heading);
-    rn1_write_u14le(writer, (uint16_t)message->speed);
+static void rn1_facing_put(const struct rn1_facing *message, rn1_put put, void *user) {
+    rn1_write(put, user, message->status);
+    rn1_write_u14le(put, user, message->heading);
+    rn1_write_u14le(put, user, (uint16_t)message->speed);
 }
 
 enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
@@ -1143,17 +1149,14 @@ enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uin
 
 enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
                                      void *user) {
-    struct rn1_writer writer;
     const size_t payload = 2u;
     const enum rn1_result result = rn1_move_manual_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_host_send_head(writer, payload, 0x80);
-    rn1_move_manual_put(message, writer);
-    rn1_host_send_tail(writer, payload, 0x80);
+    rn1_host_send_head(put, user, payload, 0x80);
+    rn1_move_manual_put(message, put, user);
+    rn1_host_send_tail(put, user, payload, 0x80);
     return RN1_OK;
 }
 
@@ -1174,17 +1177,14 @@ enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_t
 
 enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_twostep *message,
                                                rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 4u;
     const enum rn1_result result = rn1_move_relative_twostep_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_host_send_head(writer, payload, 0x81);
-    rn1_move_relative_twostep_put(message, writer);
-    rn1_host_send_tail(writer, payload, 0x81);
+    rn1_host_send_head(put, user, payload, 0x81);
+    rn1_move_relative_twostep_put(message, put, user);
+    rn1_host_send_tail(put, user, payload, 0x81);
     return RN1_OK;
 }
 
@@ -1205,17 +1205,14 @@ enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *
 
 enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message, rn1_put put,
                                            void *user) {
-    struct rn1_writer writer;
     const size_t payload = 4u;
     const enum rn1_result result = rn1_move_relative_arc_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_host_send_head(writer, payload, 0x82);
-    rn1_move_relative_arc_put(message, writer);
-    rn1_host_send_tail(writer, payload, 0x82);
+    rn1_host_send_head(put, user, payload, 0x82);
+    rn1_move_relative_arc_put(message, put, user);
+    rn1_host_send_tail(put, user, payload, 0x82);
     return RN1_OK;
 }
 
@@ -1237,18 +1234,15 @@ enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uin
 
 enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
                                      void *user) {
-    struct rn1_writer writer;
     size_t payload;
     const enum rn1_result result = rn1_maintenance_validate(message);
     if (result != RN1_OK) {
         return result;
     }
     payload = rn1_maintenance_measure(message);
-    writer.put = put;
-    writer.user = user;
-    rn1_host_send_head(writer, payload, 0xFE);
-    rn1_maintenance_put(message, writer);
-    rn1_host_send_tail(writer, payload, 0xFE);
+    rn1_host_send_head(put, user, payload, 0xFE);
+    rn1_maintenance_put(message, put, user);
+    rn1_host_send_tail(put, user, payload, 0xFE);
     return RN1_OK;
 }
 
@@ -1268,16 +1262,13 @@ enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, s
 }
 
 enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 7u;
     const enum rn1_result result = rn1_gyro_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x80);
-    rn1_gyro_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x80);
+    rn1_gyro_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1297,16 +1288,13 @@ enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, s
 }
 
 enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 7u;
     const enum rn1_result result = rn1_xcel_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x81);
-    rn1_xcel_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x81);
+    rn1_xcel_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1326,16 +1314,13 @@ enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *fr
 }
 
 enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 7u;
     const enum rn1_result result = rn1_compass_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x82);
-    rn1_compass_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x82);
+    rn1_compass_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1355,16 +1340,13 @@ enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *fr
 }
 
 enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 6u;
     const enum rn1_result result = rn1_optflow_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x83);
-    rn1_optflow_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x83);
+    rn1_optflow_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1384,16 +1366,13 @@ enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
 }
 
 enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 721u;
     const enum rn1_result result = rn1_lidar_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x84);
-    rn1_lidar_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x84);
+    rn1_lidar_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1413,16 +1392,13 @@ enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame,
 }
 
 enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 15u;
     const enum rn1_result result = rn1_sonar_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0x85);
-    rn1_sonar_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0x85);
+    rn1_sonar_put(message, put, user);
     return RN1_OK;
 }
 
@@ -1442,16 +1418,13 @@ enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *fram
 }
 
 enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user) {
-    struct rn1_writer writer;
     const size_t payload = 5u;
     const enum rn1_result result = rn1_facing_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_brain_send_head(writer, payload, 0xA0);
-    rn1_facing_put(message, writer);
+    rn1_brain_send_head(put, user, payload, 0xA0);
+    rn1_facing_put(message, put, user);
     return RN1_OK;
 }
 

@@ -2,6 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "rn1_firmware.h"
 
+/*
+ * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
+ * done where pointers have more than 32 bits; define RN1_FIRMWARE_FAST_FEED as 1 or 0 to choose.
+ * Define RN1_FIRMWARE_SSE2 as 1 for sixteen at a time on x86.
+ */
+#ifndef RN1_FIRMWARE_FAST_FEED
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define RN1_FIRMWARE_FAST_FEED 1
+#else
+#define RN1_FIRMWARE_FAST_FEED 0
+#endif
+#endif
+#ifndef RN1_FIRMWARE_SSE2
+#define RN1_FIRMWARE_SSE2 0
+#endif
+#if RN1_FIRMWARE_SSE2
+#include <emmintrin.h>
+#endif
+
 static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0u;
@@ -16,7 +35,7 @@ static int8_t rn1_firmware_load_s7(const uint8_t *at) {
 }
 
 static void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)((value >> 7) & 0x7Fu);
+    at[0] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
     at[1] = (uint8_t)(value & 0x7Fu);
 }
 
@@ -38,7 +57,7 @@ static void rn1_firmware_copy(void *to, const void *from, size_t size) {
 
 static void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)((value >> 7) & 0x7Fu);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
 }
 
 static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
@@ -55,6 +74,23 @@ static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count)
         all |= numbers[i];
     }
     return all;
+}
+
+static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
+    size_t i = 0;
+#if RN1_FIRMWARE_SSE2
+    for (; count - i >= 8u; i += 8u) {
+        const void *const from = &at[2u * i];
+        const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
+        const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));
+        const __m128i next = _mm_srli_epi16(pairs, 1);
+        const __m128i high = _mm_and_si128(next, _mm_set1_epi16(0x3F80));
+        _mm_storeu_si128((__m128i *)(void *)&numbers[i], _mm_or_si128(low, high));
+    }
+#endif
+    for (; i < count; i++) {
+        numbers[i] = rn1_firmware_load_u14le(&at[2u * i]);
+    }
 }
 
 static void rn1_firmware_store_u32be(uint8_t *at, uint32_t value) {
@@ -733,9 +769,7 @@ static enum rn1_firmware_result rn1_firmware_lidar_check(const uint8_t *payload,
 
 void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
-    for (size_t i = 0; i < 360u; i++) {
-        message->distances[i] = rn1_firmware_load_u14le(payload + 1 + 2 * i);
-    }
+    rn1_firmware_load_u14le_run(message->distances, payload + 1, 360u);
 }
 
 enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *message,
@@ -796,9 +830,7 @@ static enum rn1_firmware_result rn1_firmware_sonar_check(const uint8_t *payload,
 
 void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
-    for (size_t i = 0; i < 3u; i++) {
-        message->distances[i] = rn1_firmware_load_u14le(payload + 1 + 2 * i);
-    }
+    rn1_firmware_load_u14le_run(message->distances, payload + 1, 3u);
 }
 
 enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *message,
@@ -1097,24 +1129,6 @@ enum {
 
 #define RN1_FIRMWARE_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
 
-/*
- * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
- * done where pointers have more than 32 bits; define RN1_FIRMWARE_FAST_FEED as 1 or 0 to choose.
- * Define RN1_FIRMWARE_SSE2 as 1 for sixteen at a time on x86.
- */
-#ifndef RN1_FIRMWARE_FAST_FEED
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define RN1_FIRMWARE_FAST_FEED 1
-#else
-#define RN1_FIRMWARE_FAST_FEED 0
-#endif
-#endif
-#ifndef RN1_FIRMWARE_SSE2
-#define RN1_FIRMWARE_SSE2 0
-#endif
-#if RN1_FIRMWARE_SSE2
-#include <emmintrin.h>
-#endif
 #if RN1_FIRMWARE_FAST_FEED
 #include <string.h>
 
@@ -1196,167 +1210,159 @@ static size_t rn1_firmware_brain_wrap(uint8_t *frame, size_t payload, uint8_t st
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */
 
-struct rn1_firmware_writer {
-    rn1_firmware_put put;
-    void *user;
-};
-
-static inline void rn1_firmware_write(struct rn1_firmware_writer writer, uint8_t byte) {
-    writer.put(writer.user, byte);
+static inline void rn1_firmware_write(rn1_firmware_put put, void *user, uint8_t byte) {
+    put(user, byte);
 }
 
-static void rn1_firmware_host_send_head(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_firmware_host_send_head(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    rn1_firmware_write(writer, (uint8_t)start);
+    rn1_firmware_write(put, user, (uint8_t)start);
 }
 
-static void rn1_firmware_host_send_tail(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_firmware_host_send_tail(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    writer.put(writer.user, 0xFF);
+    put(user, 0xFF);
 }
 
-static void rn1_firmware_brain_send_head(struct rn1_firmware_writer writer, size_t payload, uint8_t start) {
-    (void)writer;
+static void rn1_firmware_brain_send_head(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    rn1_firmware_write(writer, (uint8_t)start);
+    rn1_firmware_write(put, user, (uint8_t)start);
 }
 
-static void rn1_firmware_write_u14be(struct rn1_firmware_writer writer, uint16_t value) {
-    rn1_firmware_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)(value & 0x7Fu));
+static void rn1_firmware_write_u14be(rn1_firmware_put put, void *user, uint16_t value) {
+    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
 }
 
-static void rn1_firmware_write_bytes(struct rn1_firmware_writer writer, const void *from,
+static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const void *from,
                                      size_t size) {
     const uint8_t *bytes = (const uint8_t *)from;
     for (size_t i = 0; i < size; i++) {
-        rn1_firmware_write(writer, bytes[i]);
+        rn1_firmware_write(put, user, bytes[i]);
     }
 }
 
-static void rn1_firmware_write_u14le(struct rn1_firmware_writer writer, uint16_t value) {
-    rn1_firmware_write(writer, (uint8_t)(value & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
+static void rn1_firmware_write_u14le(rn1_firmware_put put, void *user, uint16_t value) {
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
 }
 
-static void rn1_firmware_write_u32be(struct rn1_firmware_writer writer, uint32_t value) {
-    rn1_firmware_write(writer, (uint8_t)(value >> 28));
-    rn1_firmware_write(writer, (uint8_t)((value >> 21) & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)((value >> 14) & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)((value >> 7) & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)(value & 0x7Fu));
+static void rn1_firmware_write_u32be(rn1_firmware_put put, void *user, uint32_t value) {
+    rn1_firmware_write(put, user, (uint8_t)(value >> 28));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 21) & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 14) & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 7) & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
 }
 
 static void rn1_firmware_move_manual_put(const struct rn1_firmware_move_manual *message,
-                                         struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, (uint8_t)((uint8_t)message->speed & 0x7Fu));
-    rn1_firmware_write(writer, (uint8_t)((uint8_t)message->arc & 0x7Fu));
+                                         rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7Fu));
 }
 
 static void rn1_firmware_move_relative_twostep_put(const struct rn1_firmware_move_relative_twostep *message,
-                                                   struct rn1_firmware_writer writer) {
-    rn1_firmware_write_u14be(writer, (uint16_t)message->angle);
-    rn1_firmware_write_u14be(writer, (uint16_t)message->forward);
+                                                   rn1_firmware_put put, void *user) {
+    rn1_firmware_write_u14be(put, user, (uint16_t)message->angle);
+    rn1_firmware_write_u14be(put, user, (uint16_t)message->forward);
 }
 
 static void rn1_firmware_decrease_phase_angle_put(const struct rn1_firmware_decrease_phase_angle *message,
-                                                  struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->ignored);
+                                                  rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->ignored);
 }
 
 static void rn1_firmware_increase_phase_angle_put(const struct rn1_firmware_increase_phase_angle *message,
-                                                  struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->ignored);
+                                                  rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->ignored);
 }
 
 static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *message,
-                                         struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, 0x42u);
-    rn1_firmware_write(writer, 0x11u);
-    rn1_firmware_write(writer, 0x7Au);
-    rn1_firmware_write(writer, message->operation);
+                                         rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, 0x42u);
+    rn1_firmware_write(put, user, 0x11u);
+    rn1_firmware_write(put, user, 0x7Au);
+    rn1_firmware_write(put, user, message->operation);
     switch (message->operation) {
     case 82u:
         break;
     case 83u:
-        rn1_firmware_write(writer, message->argument.run_motor_controller_flasher.motor_controller);
+        rn1_firmware_write(put, user, message->argument.run_motor_controller_flasher.motor_controller);
         break;
     default:
-        rn1_firmware_write_bytes(writer, message->argument.other.bytes, message->argument.other.size);
+        rn1_firmware_write_bytes(put, user, message->argument.other.bytes, message->argument.other.size);
         break;
     }
 }
 
 static void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
-                                  struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_x);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_y);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_z);
+                                  rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
 static void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
-                                  struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_x);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_y);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->int_z);
+                                  rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
 static void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
-                                     struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->avg_x);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->avg_y);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->avg_z);
+                                     rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_x);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_y);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_z);
 }
 
 static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
-                                   struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
+                                   rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
     for (size_t i = 0; i < 360u; i++) {
-        rn1_firmware_write_u14le(writer, message->distances[i]);
+        rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
 
 static void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
-                                   struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
+                                   rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
     for (size_t i = 0; i < 3u; i++) {
-        rn1_firmware_write_u14le(writer, message->distances[i]);
+        rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
 
 static void rn1_firmware_facing_put(const struct rn1_firmware_facing *message,
-                                    struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->heading);
-    rn1_firmware_write_u14le(writer, (uint16_t)message->speed);
+                                    rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->heading);
+    rn1_firmware_write_u14le(put, user, (uint16_t)message->speed);
 }
 
 static void rn1_firmware_optflow_integral_put(const struct rn1_firmware_optflow_integral *message,
-                                              struct rn1_firmware_writer writer) {
-    rn1_firmware_write(writer, message->status);
-    rn1_firmware_write_u14be(writer, (uint16_t)message->int_x);
-    rn1_firmware_write_u14be(writer, (uint16_t)message->int_y);
+                                              rn1_firmware_put put, void *user) {
+    rn1_firmware_write(put, user, message->status);
+    rn1_firmware_write_u14be(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_u14be(put, user, (uint16_t)message->int_y);
 }
 
 static void rn1_firmware_motor_controller_message_put(const struct rn1_firmware_motor_controller_message *message,
-                                                      struct rn1_firmware_writer writer) {
-    rn1_firmware_write_u14be(writer, message->last_msg);
+                                                      rn1_firmware_put put, void *user) {
+    rn1_firmware_write_u14be(put, user, message->last_msg);
 }
 
 static void rn1_firmware_debug_numbers_put(const struct rn1_firmware_debug_numbers *message,
-                                           struct rn1_firmware_writer writer) {
-    rn1_firmware_write_u32be(writer, (uint32_t)message->dbg1);
-    rn1_firmware_write_u32be(writer, (uint32_t)message->dbg2);
-    rn1_firmware_write_u32be(writer, (uint32_t)message->dbg3);
-    rn1_firmware_write_u32be(writer, (uint32_t)message->dbg4);
+                                           rn1_firmware_put put, void *user) {
+    rn1_firmware_write_u32be(put, user, (uint32_t)message->dbg1);
+    rn1_firmware_write_u32be(put, user, (uint32_t)message->dbg2);
+    rn1_firmware_write_u32be(put, user, (uint32_t)message->dbg3);
+    rn1_firmware_write_u32be(put, user, (uint32_t)message->dbg4);
 }
 
 enum rn1_firmware_result rn1_firmware_move_manual_frame(const struct rn1_firmware_move_manual *message,
@@ -1377,17 +1383,14 @@ enum rn1_firmware_result rn1_firmware_move_manual_frame(const struct rn1_firmwar
 
 enum rn1_firmware_result rn1_firmware_move_manual_send(const struct rn1_firmware_move_manual *message,
                                                        rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 2u;
     const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_host_send_head(writer, payload, 0x80);
-    rn1_firmware_move_manual_put(message, writer);
-    rn1_firmware_host_send_tail(writer, payload, 0x80);
+    rn1_firmware_host_send_head(put, user, payload, 0x80);
+    rn1_firmware_move_manual_put(message, put, user);
+    rn1_firmware_host_send_tail(put, user, payload, 0x80);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1409,17 +1412,14 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(const struct r
 
 enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(const struct rn1_firmware_move_relative_twostep *message,
                                                                  rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 4u;
     const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_host_send_head(writer, payload, 0x81);
-    rn1_firmware_move_relative_twostep_put(message, writer);
-    rn1_firmware_host_send_tail(writer, payload, 0x81);
+    rn1_firmware_host_send_head(put, user, payload, 0x81);
+    rn1_firmware_move_relative_twostep_put(message, put, user);
+    rn1_firmware_host_send_tail(put, user, payload, 0x81);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1441,17 +1441,14 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(const struct rn
 
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(const struct rn1_firmware_decrease_phase_angle *message,
                                                                 rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 1u;
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_host_send_head(writer, payload, 0xD1);
-    rn1_firmware_decrease_phase_angle_put(message, writer);
-    rn1_firmware_host_send_tail(writer, payload, 0xD1);
+    rn1_firmware_host_send_head(put, user, payload, 0xD1);
+    rn1_firmware_decrease_phase_angle_put(message, put, user);
+    rn1_firmware_host_send_tail(put, user, payload, 0xD1);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1473,17 +1470,14 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(const struct rn
 
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(const struct rn1_firmware_increase_phase_angle *message,
                                                                 rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 1u;
     const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_host_send_head(writer, payload, 0xD2);
-    rn1_firmware_increase_phase_angle_put(message, writer);
-    rn1_firmware_host_send_tail(writer, payload, 0xD2);
+    rn1_firmware_host_send_head(put, user, payload, 0xD2);
+    rn1_firmware_increase_phase_angle_put(message, put, user);
+    rn1_firmware_host_send_tail(put, user, payload, 0xD2);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1506,18 +1500,15 @@ enum rn1_firmware_result rn1_firmware_maintenance_frame(const struct rn1_firmwar
 
 enum rn1_firmware_result rn1_firmware_maintenance_send(const struct rn1_firmware_maintenance *message,
                                                        rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     size_t payload;
     const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
     payload = rn1_firmware_maintenance_measure(message);
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_host_send_head(writer, payload, 0xFE);
-    rn1_firmware_maintenance_put(message, writer);
-    rn1_firmware_host_send_tail(writer, payload, 0xFE);
+    rn1_firmware_host_send_head(put, user, payload, 0xFE);
+    rn1_firmware_maintenance_put(message, put, user);
+    rn1_firmware_host_send_tail(put, user, payload, 0xFE);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1538,16 +1529,13 @@ enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro 
 
 enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *message,
                                                 rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 7u;
     const enum rn1_firmware_result result = rn1_firmware_gyro_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0x80);
-    rn1_firmware_gyro_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0x80);
+    rn1_firmware_gyro_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1568,16 +1556,13 @@ enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel 
 
 enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *message,
                                                 rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 7u;
     const enum rn1_firmware_result result = rn1_firmware_xcel_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0x81);
-    rn1_firmware_xcel_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0x81);
+    rn1_firmware_xcel_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1598,16 +1583,13 @@ enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_co
 
 enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_compass *message,
                                                    rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 7u;
     const enum rn1_firmware_result result = rn1_firmware_compass_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0x82);
-    rn1_firmware_compass_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0x82);
+    rn1_firmware_compass_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1628,16 +1610,13 @@ enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lida
 
 enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar *message,
                                                  rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 721u;
     const enum rn1_firmware_result result = rn1_firmware_lidar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0x84);
-    rn1_firmware_lidar_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0x84);
+    rn1_firmware_lidar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1658,16 +1637,13 @@ enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sona
 
 enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar *message,
                                                  rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 7u;
     const enum rn1_firmware_result result = rn1_firmware_sonar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0x85);
-    rn1_firmware_sonar_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0x85);
+    rn1_firmware_sonar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1688,16 +1664,13 @@ enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_fac
 
 enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_facing *message,
                                                   rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 5u;
     const enum rn1_firmware_result result = rn1_firmware_facing_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0xA0);
-    rn1_firmware_facing_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0xA0);
+    rn1_firmware_facing_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1719,16 +1692,13 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_frame(const struct rn1_fi
 
 enum rn1_firmware_result rn1_firmware_optflow_integral_send(const struct rn1_firmware_optflow_integral *message,
                                                             rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 5u;
     const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0xA1);
-    rn1_firmware_optflow_integral_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0xA1);
+    rn1_firmware_optflow_integral_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1752,16 +1722,13 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(const struc
 enum rn1_firmware_result rn1_firmware_motor_controller_message_send(const struct rn1_firmware_motor_controller_message *message,
                                                                     rn1_firmware_put put,
                                                                     void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 2u;
     const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0xD1);
-    rn1_firmware_motor_controller_message_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0xD1);
+    rn1_firmware_motor_controller_message_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
@@ -1779,12 +1746,9 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_frame(const struct rn1_firmw
 
 enum rn1_firmware_result rn1_firmware_debug_numbers_send(const struct rn1_firmware_debug_numbers *message,
                                                          rn1_firmware_put put, void *user) {
-    struct rn1_firmware_writer writer;
     const size_t payload = 20u;
-    writer.put = put;
-    writer.user = user;
-    rn1_firmware_brain_send_head(writer, payload, 0xD2);
-    rn1_firmware_debug_numbers_put(message, writer);
+    rn1_firmware_brain_send_head(put, user, payload, 0xD2);
+    rn1_firmware_debug_numbers_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 

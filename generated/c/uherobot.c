@@ -208,30 +208,29 @@ static size_t uherobot_daemon_stuff(uint8_t *wire, uint8_t byte) {
 static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_payload(frame, payload) - 3;
     uint8_t *const tail = &content[3u + payload];
-    size_t size = 3u + payload + 0u;
     const uint16_t length = (uint16_t)(2u + payload);
-    size_t from;
-    size_t to;
+    const uint16_t stuffed = (uint16_t)(3u + payload + 0u);
+    uint16_t from = 1;
+    uint8_t *to = frame;
     (void)tail;
     content[0u] = 0x62;
     content[1u] = (uint8_t)length;
     content[2u] = (uint8_t)type;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    frame[0] = content[0];
-    from = 1;
-    to = 1;
-    for (; from < size; from++) {
+    *to = content[0];
+    to++;
+    for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
         const uint8_t high = (uint8_t)(byte >> 4);
         const uint8_t low = (uint8_t)(byte & 0x0Fu);
-        frame[to] = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
+        *to = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
         to++;
-        frame[to] = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+        *to = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
         to++;
     }
-    size = to;
-    frame[size + 0u] = 0x65;
-    return size + 1u;
+    *to = 0x65;
+    to++;
+    return (size_t)(to - frame);
 }
 
 /* --- frames, byte by byte ------------------------------------------------------------------------ */

@@ -81,6 +81,8 @@ class DrivenDecoder:
     name: str
     prefix: str
     all_events: bool
+    polls: bool
+    """Whether `push` returns which message is complete, instead of calling a handler."""
     parts: tuple[DrivenPart, ...]
     handlers: tuple[DrivenHandler, ...]
 
@@ -198,6 +200,7 @@ class Driver:
             decoder.name,
             decoder.prefix,
             decoder.all_events,
+            decoder.flat,
             tuple(DrivenPart(part.name, part.type) for part in decoder.parts),
             tuple(
                 DrivenHandler(item.function, item.message.struct, self.message(item.message.name))

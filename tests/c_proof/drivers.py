@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from protogen.model.fields import Field
 from protogen.model.messages import Message
@@ -20,7 +20,9 @@ _DECODE = re.compile(
 )
 _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
-_PUSH = re.compile(r"void (\w+)_decoder_push\(")
+_PUSH = re.compile(r"(?:void|enum \w+) (\w+)_decoder_push\(")
+_POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
+"""A decoder whose `push` returns which message is complete, and takes no handler."""
 
 _HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
 #include "{name}.c"
@@ -39,20 +41,38 @@ static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
     }}
 }}
 
-static void prove_{prefix}_push(void) {{
+{step}static void prove_{prefix}_push(void) {{
     struct {prefix}_decoder decoder;
     Frama_C_make_unknown((char *)&decoder, sizeof decoder);
-    {prefix}_decoder_init(&decoder, take_{prefix}, NULL);
+    {prefix}_decoder_init({init});
     //@ widen_hints global:"all", {bounds};
     while (any) {{
         if (any) {{
-            {prefix}_decoder_push(&decoder, Frama_C_unsigned_char_interval(0, 255));
+            {push}
         }} else {{
             {prefix}_decoder_flush(&decoder);
         }}
     }}
 }}
 """
+_CALLS = {
+    "step": "",
+    "init": "&decoder, take_{prefix}, NULL",
+    "push": "{prefix}_decoder_push(&decoder, Frama_C_unsigned_char_interval(0, 255));",
+}
+_POLLED = {
+    "step": """static void step_{prefix}(struct {prefix}_decoder *decoder) {{
+    struct {prefix}_event event; /* Nothing is in it but what `push` puts there with a message. */
+    const uint8_t byte = Frama_C_unsigned_char_interval(0, 255);
+    if ({prefix}_decoder_push(decoder, byte, &event) != {upper}_NO_MESSAGE) {{
+        take_{prefix}(NULL, &event);
+    }}
+}}
+
+""",
+    "init": "&decoder",
+    "push": "step_{prefix}(&decoder);",
+}
 _PAYLOAD = """
 static void prove_{prefix}_decode_of(size_t size) {{
     uint8_t bytes[{room}];
@@ -84,6 +104,8 @@ class Driver:
     text: str
     proves: tuple[str, ...]
     """The functions that it calls."""
+    options: tuple[str, ...] = ()
+    """What EVA has to be told."""
 
 
 def decode_driver(protocol: Protocol, header: str) -> Driver:
@@ -107,10 +129,27 @@ def push_driver(protocol: Protocol, header: str) -> Driver:
 
     The handler reads payloads. The decoder's memory holds anything before it is initialised.
     """
-    proofs = [f"{prefix}_push" for prefix in _PUSH.findall(header)]
-    bounds = _bounds(header)
-    parts = [_DECODER.format(prefix=p.removesuffix("_push"), bounds=bounds) for p in proofs]
-    return _driver([_HEAD.format(name=protocol.name, upper=protocol.name.upper()), *parts], proofs)
+    prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
+    upper, bounds = protocol.name.upper(), _bounds(header)
+    parts = [_decoder(prefix, upper, bounds, polls=prefix in polled) for prefix in prefixes]
+    head = _HEAD.format(name=protocol.name, upper=upper)
+    driver = _driver([head, *parts], [f"{prefix}_push" for prefix in prefixes])
+    return replace(driver, options=_apart(sorted(polled)))
+
+
+def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
+    """What keeps apart whether `push` returns a message: only then the event is filled."""
+    if not prefixes:
+        return ()
+    steps = [name for p in prefixes for name in (f"step_{p}", f"{p}_decoder_push", f"{p}_complete")]
+    depths = ",".join(f"{name}:64" for name in steps)
+    return ("-eva-split-return=full", f"-eva-slevel-function={depths}")
+
+
+def _decoder(prefix: str, upper: str, bounds: str, *, polls: bool) -> str:
+    calls = _POLLED if polls else _CALLS
+    given = {name: text.format(prefix=prefix, upper=upper) for name, text in calls.items()}
+    return _DECODER.format(prefix=prefix, bounds=bounds, **given)
 
 
 def _bounds(header: str) -> str:

@@ -1,6 +1,6 @@
 """Fuzzers for generated decoders: one program for each protocol, with frames to start from.
 
-    .venv/bin/python tests/fuzz/harness.py --runs 2100000 schemas/*.yaml
+    .venv/bin/python tests/fuzz/harness.py --runs 1050000 schemas/*.yaml
 
 prints how many inputs each one has tried, and what of the generated code they have reached.
 """
@@ -27,12 +27,13 @@ from corpus import material_of, stream_of
 from tooling import require_tool
 
 from protogen.model.protocol import Protocol
-from protogen.targets.c.options import COptions
+from protogen.targets.c.options import EVENTS, COptions, Events
 
 HERE = Path(__file__).resolve().parent
 SANITIZERS = "-fsanitize=fuzzer,address,undefined"
 SEEDS = 30
-_PUSH = re.compile(r"void (\w+)_decoder_push\(")
+_PUSH = re.compile(r"(void|enum \w+) (\w+)_decoder_push\(")
+"""A decoder that is polled returns which message is complete."""
 _DONE = re.compile(r"stat::number_of_executed_units: +(\d+)")
 
 _HEAD = """#include <stdint.h>
@@ -42,12 +43,16 @@ _HEAD = """#include <stdint.h>
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
+#define ALL_EVENTS {all_events:d}
+#define NO_MESSAGE {upper}_NO_MESSAGE
 #define REQUIRE(fact) do {{ if (!(fact)) {{ abort(); }} }} while (0)
 """
 _INCLUDE = """
 #define PREFIX {prefix}
+#define POLLS {polls:d}
 #include "{harness}"
 #undef PREFIX
+#undef POLLS
 """
 _ENTRY = """
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -65,11 +70,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {{
 
 def harness_of(name: str, header: str) -> str:
     """The source of a fuzzer that knows every decoder of the header."""
-    prefixes = _PUSH.findall(header)
-    includes = [_INCLUDE.format(prefix=p, harness=HERE / "harness.c") for p in prefixes]
-    runs = ", ".join(f"{prefix}_run" for prefix in prefixes)
-    entry = _ENTRY.format(runs=runs, count=len(prefixes))
-    return "".join([_HEAD.format(name=name), *includes, entry])
+    pushes = _PUSH.findall(header)
+    includes = [
+        _INCLUDE.format(prefix=prefix, polls=result != "void", harness=HERE / "harness.c")
+        for result, prefix in pushes
+    ]
+    runs = ", ".join(f"{prefix}_run" for _, prefix in pushes)
+    entry = _ENTRY.format(runs=runs, count=len(pushes))
+    all_events = "_event_kind kind;" in header
+    head = _HEAD.format(name=name, upper=name.upper(), all_events=all_events)
+    return "".join([head, *includes, entry])
 
 
 @dataclass(frozen=True)
@@ -91,9 +101,11 @@ class Fuzzer:
         return done.stderr
 
 
-def build(protocol: Protocol, seeds: Path, folder: Path, *flags: str) -> Fuzzer:
+def build(
+    protocol: Protocol, seeds: Path, folder: Path, *flags: str, events: Events = "all"
+) -> Fuzzer:
     """Compile the fuzzer of a protocol; its corpus begins with streams of the schema at `seeds`."""
-    made = generate(protocol, folder, COptions())
+    made = generate(protocol, folder, COptions(events=events))
     return build_from(made.header, protocol, seeds, *flags)
 
 
@@ -133,20 +145,21 @@ def main() -> None:
     """Fuzz the schemas that are named, and print a table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("schemas", nargs="+", type=Path)
-    parser.add_argument("--runs", type=int, default=2_100_000)
+    parser.add_argument("--runs", type=int, default=1_050_000)
+    parser.add_argument("--flag", action="append", default=[], help="for the compiler")
     given = parser.parse_args()
-    tell("| protocol | inputs | seconds | lines of the decoder reached | branches |")
-    tell("| --- | ---: | ---: | ---: | ---: |")
-    for path in given.schemas:
+    tell("| protocol | events | inputs | seconds | lines of the decoder reached | branches |")
+    tell("| --- | --- | ---: | ---: | ---: | ---: |")
+    for path, events in ((path, events) for path in given.schemas for events in EVENTS):
         with TemporaryDirectory(prefix="protogen-fuzz-") as folder:
             protocol = protocol_of(path.resolve())
-            fuzzer = build(protocol, path.resolve(), Path(folder))
+            fuzzer = build(protocol, path.resolve(), Path(folder), *given.flag, events=events)
             before = monotonic()
             said = fuzzer.run(f"-runs={given.runs}", "-seed=1", "-rss_limit_mb=4096")
             seconds = monotonic() - before
             lines, branches = coverage(protocol, fuzzer)
             count = f"{executions(said):,}"
-            tell(f"| {path.stem} | {count} | {seconds:.0f} | {lines} | {branches} |")
+            tell(f"| {path.stem} | {events} | {count} | {seconds:.0f} | {lines} | {branches} |")
 
 
 def tell(line: str) -> None:

@@ -482,6 +482,10 @@ class Check(Walk):
         if self._fixed:
             return
         self._settle()
+        size = type_.element.sizes.fixed
+        if size and not self._needs and not can_be_wrong(type_.element):
+            self._filling_of(size, extent)
+            return
         index = free_name("count", self._locals)
         self._locals.add(index)
         with self.lines.block(f"for (size_t {index} = 0; at < size; {index}++)"):
@@ -490,6 +494,19 @@ class Check(Walk):
             self.value(self.element(value, type_, index), scope)
             self._settle()
         self._ended = self._branches == 0
+        self._secured = 0
+
+    def _filling_of(self, size: int, extent: Fill) -> None:
+        """Elements of one size that can't be wrong: their number alone matters.
+
+        Small controllers do not divide.
+        """
+        self._refuse(f"size - at > {unsigned(extent.greatest * size)}", "SIZE")
+        if size > 1 and extent.greatest:
+            with self.lines.block("while (at < size)"):
+                self.lines.add(f"at += {size};")
+            self._refuse("at != size", "SIZE")
+        self._end()
         self._secured = 0
 
     # --- switches -------------------------------------------------------------------------------

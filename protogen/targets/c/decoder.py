@@ -446,6 +446,35 @@ class DecoderView:
         )
 
     @property
+    def only_size(self) -> int | None:
+        """The payload's size where a flat decoder knows messages of one fixed size alone.
+
+        Frames of other sizes are given up where they tell their size: nobody asks for them, and no
+        frame can start inside of them.
+        """
+        sizes = {group.fixed if len(group.messages) == 1 else None for group in self.groups}
+        return sizes.pop() if self.flat and len(sizes) == 1 else None
+
+    @property
+    def idle_member(self) -> str:
+        """The counter of a flat decoder that says that no candidate is open.
+
+        No byte gets into a candidate whose limit is nought, which is the shortest test; but only
+        where a limit is all that is in front of it can that not be mistaken for a payload's size.
+        """
+        is_size = self.head_size + self.tail_size > self.first_head
+        return "content" if is_size or self.only_size is not None else "limit"
+
+    @property
+    def idle_value(self) -> int:
+        """What that counter is then: nothing, or more than there is room for.
+
+        A frame that is complete but for its end has no room either, which is the same test.
+        """
+        is_bounded = self.only_size is not None and not self.end_size
+        return 0 if is_bounded or self.idle_member == "limit" else self.buffer_size + 1
+
+    @property
     def gives_up_high_bytes(self) -> bool:
         """Whether a high byte is either the identity of a frame, or ends what goes before it."""
         all_end = self.early_at_start and self.seven_bit and not self.end_size

@@ -107,6 +107,29 @@ class FrameView:
         text = self.region_begin.removesuffix("U")
         return int(text) if text.isdigit() and int(text) <= 4 else None
 
+    @property
+    def summed(self) -> ChecksumView | None:
+        """The checksum that is worked out while the bytes that it covers are stuffed.
+
+        It covers all that is stuffed, and nothing but its own bytes stands behind that.
+        """
+        stuffing = self.decoder.stuffing
+        if stuffing is None or stuffing.kind == "cobs" or len(self.decoder.checksums) != 1:
+            return None
+        checksum = self.decoder.checksums[0]
+        tail = [step for step in self.steps if not step.in_head]
+        covers = [(cover.first, cover.last, cover.literal) for cover in checksum.covers]
+        payload_end = f"{self.decoder.head_size}U + decoder->payload"
+        covers_all = covers == [(f"{self.begins_at}U", payload_end, "")]
+        is_alone = len(tail) == 1 and tail[0].checksum is checksum and not checksum.optional
+        fits = covers_all and is_alone and self.decoder.region_to_end and not checksum.over_wire
+        return checksum if fits else None
+
+    @property
+    def summed_bytes(self) -> tuple[str, ...]:
+        """What the checksum that is worked out with the stuffing puts behind the payload."""
+        return tuple(store.value for step in self.steps[-1:] for store in step.stores)
+
 
 @dataclass(frozen=True, slots=True)
 class MessageFrame:

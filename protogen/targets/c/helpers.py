@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from fractions import Fraction
 from math import inf, nextafter
 
-from protogen.model.types import Float, Integer
+from protogen.model.types import Float, Integer, Type
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import (
     Names,
@@ -36,6 +36,8 @@ class Helpers:
         self._is_public = False
         self.floats: set[int] = set()
         """Bits of the floats that were asked for."""
+        self.has_vectors = False
+        """Whether some function has a way for SSE2."""
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -93,6 +95,40 @@ class Helpers:
             for line in joined(type_, "at"):
                 body.add(line)
         self._define(f"{integer_type(type_)} {name}", (_AT,), body)
+        return name
+
+    def loads_runs(self, type_: Type) -> bool:
+        """Whether an array of such numbers is read by a function of its own."""
+        if not isinstance(type_, Integer) or type_.signed or self._is_public:
+            return False
+        is_pair = (type_.byte_bits, type_.bits, type_.size) == (7, 14, 2)
+        return is_pair and type_.byte_order == "little"
+
+    def load_run(self, type_: Integer) -> str:
+        """The function that reads an array of numbers of two seven-bit bytes."""
+        key = f"load_{layout_name(type_)}_run"
+        load = self.load(type_)
+        name = self._name(key)
+        if name is None:
+            return self._known[key]
+        self.has_vectors = True
+        body = Lines()
+        body.add("size_t i = 0;")
+        body.directive(f"#if {self._names.prefix.upper()}_SSE2")
+        with body.block("for (; count - i >= 8u; i += 8u)"):
+            body.add(
+                "const void *const from = &at[2u * i];",
+                "const __m128i pairs = _mm_loadu_si128((const __m128i *)from);",
+                "const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));",
+                "const __m128i next = _mm_srli_epi16(pairs, 1);",
+                "const __m128i high = _mm_and_si128(next, _mm_set1_epi16(0x3F80));",
+                "_mm_storeu_si128((__m128i *)(void *)&numbers[i], _mm_or_si128(low, high));",
+            )
+        body.directive("#endif")
+        with body.block("for (; i < count; i++)"):
+            body.add(f"numbers[i] = {load}(&at[2u * i]);")
+        arguments = (f"{integer_type(type_)} *numbers", _AT, "size_t count")
+        self._define(f"void {name}", arguments, body)
         return name
 
     def _raw_load(self, type_: Integer) -> str:
@@ -199,7 +235,7 @@ class Helpers:
             return self._known[key]
         body = Lines()
         for byte in parted(layout, "value"):
-            body.add(f"{self._names.prefix}_write(writer, {byte});")
+            body.add(f"{self._names.prefix}_write({self._names.writing}, {byte});")
         arguments = (self._names.writer,)
         self._define(f"void {name}", (*arguments, f"{unsigned_type(type_.bits)} value"), body)
         return name
@@ -212,7 +248,7 @@ class Helpers:
         body = Lines()
         body.add("const uint8_t *bytes = (const uint8_t *)from;")
         with body.block("for (size_t i = 0; i < size; i++)"):
-            body.add(f"{self._names.prefix}_write(writer, bytes[i]);")
+            body.add(f"{self._names.prefix}_write({self._names.writing}, bytes[i]);")
         arguments = (self._names.writer, "const void *from")
         self._define(f"void {name}", (*arguments, "size_t size"), body)
         return name
@@ -421,12 +457,21 @@ def parted(type_: Integer, value: str) -> tuple[str, ...]:
     items = []
     for place in range(size):
         shift = group * place
-        shifted = f"{value} >> {shift}" if shift else value
+        shifted = _shifted(type_, value, shift)
         mask = _mask(type_, place)
         if mask is not None:
             shifted = f"({shifted}) & {mask}" if shift else f"{shifted} & {mask}"
         items.append(f"(uint8_t)({shifted})" if shift or mask else f"(uint8_t){shifted}")
     return tuple(items if type_.byte_order == "little" else reversed(items))
+
+
+def _shifted(type_: Integer, value: str, shift: int) -> str:
+    """The number without its lowest bits."""
+    if (
+        shift == 7 and type_.bits <= 16
+    ):  # Seven steps on an 8-bit controller; this is one, and a byte.
+        return f"(uint16_t)({value} << 1) >> 8"
+    return f"{value} >> {shift}" if shift else value
 
 
 def _mask(type_: Integer, place: int) -> str | None:

@@ -29,6 +29,10 @@ class Lines:
         """Add lines at the current depth."""
         self._lines += [" " * (INDENT * self._depth) + line for line in lines]
 
+    def directive(self, line: str) -> None:
+        """Add a line of the preprocessor."""
+        self._lines.append(line)
+
     @contextmanager
     def block(self, head: str) -> Iterator[None]:
         """What stands between braces."""

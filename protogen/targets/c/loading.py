@@ -102,6 +102,12 @@ class Load(Walk):
         if not holds_values(type_.element):
             self._place.skip(times(count, size))
             return
+        if self.helpers.loads_runs(type_.element) and isinstance(type_.element, Integer):
+            run = self.helpers.load_run(type_.element)
+            amount = unsigned(count) if isinstance(count, int) else count
+            self.lines.add(f"{run}({value.expression}, {self._place.address()}, {amount});")
+            self._place.skip(times(count, size))
+            return
         several = not isinstance(type_.element, Integer | Float)
         self._place.catch_up()
         with self.loop(count) as index, self._place.element(size, index, several=several):

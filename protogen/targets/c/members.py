@@ -35,19 +35,22 @@ class Member:
 
 
 def members_of(view: DecoderView) -> tuple[Member, ...]:
-    """The members behind the handler and its `user`, the buffers last."""
+    """The members, behind the handler and its `user` where there is one; the buffers last."""
     return (*_counters(view), *_states(view), *_buffers(view))
 
 
-def memory_of(members: tuple[Member, ...]) -> int:
+def memory_of(view: DecoderView) -> int:
     """Bytes that the decoder takes on an 8-bit controller."""
-    return _POINTERS * _SMALL_POINTER + sum(member.size for member in members)
+    pointers = 0 if view.flat else _POINTERS
+    return pointers * _SMALL_POINTER + sum(member.size for member in members_of(view))
 
 
 def _counters(view: DecoderView) -> Iterator[Member]:
     type_ = view.counter
     if view.flat:
-        yield from (Member(type_, name) for name in ("content", "limit"))
+        yield Member(type_, "content")
+        if view.only_size is None:
+            yield Member(type_, "limit")
         return
     if view.all_events:
         yield Member("uint32_t", "offset")

@@ -30,7 +30,7 @@ from protogen.targets.c.storage import fills, is_stored
 from protogen.targets.c.storing import Put, Store
 from protogen.targets.c.validating import Validate, can_be_refused
 
-_PARAMETERS = ("message", "payload", "size", "need", "writer")
+_PARAMETERS = ("message", "payload", "size", "need", "writer", "put", "user")
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
 _OTHERS = ("frame", "send")
 """What else is called after a message."""
@@ -171,8 +171,13 @@ class MessagePrinter:
 
     @property
     def writer(self) -> str:
-        """The parameter of what writes into a writer."""
+        """The parameters of what writes into a writer."""
         return self._names.writer
+
+    @property
+    def writing(self) -> str:
+        """The arguments with which it hands a writer on."""
+        return self._names.writing
 
     @property
     def sinks(self) -> Helpers:
@@ -280,8 +285,8 @@ class _Codec:
     def put(self) -> str:
         """The function that hands the payload to a writer."""
         lines = Lines()
-        Put(self._printer.sinks, lines, self._prefix).message(self._item.fields)
-        writer = self._printer.writer
+        writer, writing = self._printer.writer, self._printer.writing
+        Put(self._printer.sinks, lines, self._prefix, writing).message(self._item.fields)
         return self._static("put", "void", [self._message, writer], lines)
 
     def _encode(self) -> str:
@@ -385,7 +390,8 @@ def _bounds(item: Message) -> tuple[int, int]:
 def _with_unused(lines: Lines, names: Sequence[str], arguments: Sequence[str]) -> Lines:
     """Say of parameters that are not used that they need not be."""
     text = "\n".join(lines.lines)
-    parameters = {argument.replace("*", " ").split()[-1] for argument in arguments}
+    each = ", ".join(arguments).split(", ")
+    parameters = {argument.replace("*", " ").split()[-1] for argument in each}
     found = Lines()
     for name in names:
         if name in parameters and not _is_used(name, text):

@@ -27,7 +27,7 @@ from protogen.targets.c.own_names import claim_own_names
 from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.storage import holds_values
-from protogen.targets.c.writers import writer_parameter
+from protogen.targets.c.writers import writer_argument, writer_parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +56,8 @@ class Module:
     helpers: tuple[str, ...]
     """Functions that the codecs share."""
     public_helpers: tuple[str, ...]
+    has_vectors: bool
+    """Whether some of these have a way for SSE2."""
     """Those of them that inline functions of the header call."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""
@@ -72,7 +74,7 @@ class Module:
 
 def view(protocol: Protocol, options: COptions) -> Module:
     """The module of a protocol."""
-    names = Names(protocol.name, writer_parameter(protocol))
+    names = Names(protocol.name, writer_parameter(protocol), writer_argument(protocol))
     claim_own_names(protocol, names)
     chosen = options.chosen(protocol)
     used = _Used(chosen)
@@ -97,6 +99,7 @@ def view(protocol: Protocol, options: COptions) -> Module:
         messages=messages,
         helpers=helpers.texts,
         public_helpers=helpers.public_texts,
+        has_vectors=helpers.has_vectors,
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
     )

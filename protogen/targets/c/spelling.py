@@ -16,10 +16,12 @@ class Names:
     number.
     """
 
-    def __init__(self, prefix: str, writer: str = "") -> None:
+    def __init__(self, prefix: str, writer: str = "", writing: str = "") -> None:
         self.prefix = prefix
         self.writer = writer
-        """The parameter of functions that send byte by byte."""
+        """The parameters of functions that send byte by byte."""
+        self.writing = writing
+        """What these hand on."""
         self._taken: set[str] = set()
 
     def claim(self, *words: str) -> str:

@@ -131,14 +131,15 @@ class Store(Walk):
 class Put(Walk):
     """Into a writer."""
 
-    def __init__(self, helpers: Helpers, lines: Lines, prefix: str) -> None:
+    def __init__(self, helpers: Helpers, lines: Lines, prefix: str, writing: str) -> None:
         super().__init__(helpers, lines)
         self._write = f"{prefix}_write"
+        self._writing = writing
 
     def constant(self, value: Value, scope: Scope) -> None:
         """Its bytes."""
         for byte in constant_bytes(value.field):
-            self.lines.add(f"{self._write}(writer, {hexadecimal(byte)});")
+            self.lines.add(f"{self._write}({self._writing}, {hexadecimal(byte)});")
 
     def scalar(self, value: Value, type_: Integer | Float) -> None:
         """A number."""
@@ -147,10 +148,10 @@ class Put(Walk):
             expression = f"{self.helpers.bits_of_float(type_)}({expression})"
             type_ = bits_of(type_)
         if type_.size == 1:
-            self.lines.add(f"{self._write}(writer, {byte_of(type_, expression)});")
+            self.lines.add(f"{self._write}({self._writing}, {byte_of(type_, expression)});")
         else:
             write = self.helpers.write(type_)
-            self.lines.add(f"{write}(writer, {raw_of(type_, expression)});")
+            self.lines.add(f"{write}({self._writing}, {raw_of(type_, expression)});")
 
     def bytes(self, value: Value, type_: Text | Octets, count: int | str) -> None:
         """A text, or bytes."""
@@ -158,7 +159,7 @@ class Put(Walk):
 
     def _bytes(self, expression: str, count: int | str) -> None:
         amount = unsigned(count) if isinstance(count, int) else count
-        self.lines.add(f"{self.helpers.write_bytes()}(writer, {expression}, {amount});")
+        self.lines.add(f"{self.helpers.write_bytes()}({self._writing}, {expression}, {amount});")
 
     def array(self, value: Value, type_: Array, count: int | str, scope: Scope) -> None:
         """Elements."""

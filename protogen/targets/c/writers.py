@@ -11,6 +11,16 @@ def is_stateless(protocol: Protocol) -> bool:
 
 
 def writer_parameter(protocol: Protocol) -> str:
-    """How functions take a writer: one without a state is two words, which stay in registers."""
-    by = "" if is_stateless(protocol) else "*"
-    return f"struct {protocol.name}_writer {by}writer"
+    """How functions take a writer.
+
+    One without a state is the function and what it is given: compilers see through two parameters
+    where they would not look into a struct, and can put the function in where it is called.
+    """
+    if is_stateless(protocol):
+        return f"{protocol.name}_put put, void *user"
+    return f"struct {protocol.name}_writer *writer"
+
+
+def writer_argument(protocol: Protocol) -> str:
+    """How functions that were given a writer hand it on."""
+    return "put, user" if is_stateless(protocol) else "writer"
