@@ -10,6 +10,30 @@ static void take(void *user, const struct matty_esp_event *event) {
     }
 }
 
+#if defined(BENCH_POLLS)
+static inline void subject_init(void) {
+    matty_esp_decoder_init(&decoder);
+}
+
+static inline void subject_push(uint8_t byte) {
+    struct matty_esp_event event;
+    if (matty_esp_decoder_push(&decoder, byte, &event) != MATTY_NO_MESSAGE) {
+        take(NULL, &event);
+    }
+}
+
+static inline void subject_feed(const uint8_t *data, size_t size) {
+    while (size != 0) {
+        struct matty_esp_event event;
+        const size_t used = matty_esp_decoder_feed(&decoder, data, size, &event);
+        if (event.message != MATTY_NO_MESSAGE) {
+            take(NULL, &event);
+        }
+        data += used;
+        size -= used;
+    }
+}
+#else
 static inline void subject_init(void) {
     matty_esp_decoder_init(&decoder, take, NULL);
 }
@@ -21,6 +45,7 @@ static inline void subject_push(uint8_t byte) {
 static inline void subject_feed(const uint8_t *data, size_t size) {
     matty_esp_decoder_feed(&decoder, data, size);
 }
+#endif
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     size_t size = 0;
