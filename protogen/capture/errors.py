@@ -1,0 +1,11 @@
+"""What goes wrong with captures, as exceptions whose text a user can read."""
+
+from __future__ import annotations
+
+
+class CaptureError(ValueError):
+    """A capture can't be read so: the text says why, and what would help."""
+
+
+class MissingPackageError(CaptureError, ImportError):
+    """A package is not installed that reading captures needs."""

@@ -1,0 +1,210 @@
+"""Fills tables from the events of the Python decoder."""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from protogen.capture.arrays import dtype_of, numpy
+from protogen.capture.schema import (
+    CaptureSchema,
+    Choice,
+    Column,
+    Dimension,
+    InvalidReason,
+    Number,
+    Record,
+    Shape,
+    TableSchema,
+    Text,
+)
+from protogen.capture.tables import Tables, rows
+from protogen.runtime.decoder import Decoder
+
+if TYPE_CHECKING:
+    from protogen.capture.tables import Rows
+    from protogen.runtime.events import Event
+
+Values = Sequence[Any]
+Scope = ChainMap[str, Values]
+"""What the columns in front hold, for each row: it counts and selects."""
+
+
+class PythonEngine:
+    """A stream that becomes tables, some bytes at a time."""
+
+    name = "python"
+
+    def __init__(self, schema: CaptureSchema, decoder: Decoder[Any, Any]) -> None:
+        self._schema = schema
+        self._decoder = decoder
+        self._fed = 0
+        self._offset = 0
+        self._sequence = 0
+
+    def feed(self, data: bytes | memoryview) -> Iterator[Tables]:
+        """Take the next bytes of the stream."""
+        self._fed += len(data)
+        yield self._tables(self._decoder.feed(data))
+
+    def flush(self) -> Iterator[Tables]:
+        """Take the end of the stream."""
+        yield self._tables(self._decoder.flush())
+
+    def _tables(self, events: Sequence[Event[Any, Any]]) -> Tables:
+        numbered = list(enumerate(events, self._sequence))
+        offset, sequence = self._offset, self._sequence
+        self._offset = self._fed - self._decoder.pending
+        self._sequence += len(events)
+        unknown: list[tuple[int, Any]] = [item for item in numbered if item[1].kind == "unknown"]
+        return Tables(
+            schema=self._schema,
+            engine=self.name,
+            messages=self._messages(numbered),
+            invalid=_invalid(self._schema.invalid, numbered),
+            unknown=_unknown(self._schema.unknown, unknown),
+            payloads=_octets(b"".join(event.payload for _, event in unknown)),
+            offset=offset,
+            size=self._offset - offset,
+            sequence=sequence,
+            events=len(events),
+        )
+
+    def _messages(self, numbered: Sequence[tuple[int, Any]]) -> dict[str, Rows]:
+        found: dict[str, list[tuple[int, Any]]] = {name: [] for name in self._schema.messages}
+        for item in numbered:
+            if item[1].kind == "message":
+                found[item[1].message.NAME].append(item)
+        return {name: _filled(self._schema.messages[name], item) for name, item in found.items()}
+
+
+def _octets(data: bytes) -> Rows:
+    found: Rows = numpy().frombuffer(data, "u1")
+    return found
+
+
+def _framed(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    """Rows with what tells about an event and its frame."""
+    found = rows(dtype_of(table), len(numbered))
+    found["offset"] = [event.offset for _, event in numbered]
+    found["sequence"] = [number for number, _ in numbered]
+    found["size"] = [event.size for _, event in numbered]
+    for column in table.columns:
+        if column.role == "part":
+            found[column.name] = [getattr(event.parts, column.source) for _, event in numbered]
+    return found
+
+
+def _invalid(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    chosen = [item for item in numbered if item[1].kind == "invalid"]
+    found = _framed(table, chosen)
+    found["reason"] = [InvalidReason[event.reason.upper()] for _, event in chosen]
+    return found
+
+
+def _unknown(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    found = _framed(table, numbered)
+    sizes = [len(event.payload) for _, event in numbered]
+    places = {"payload_size": sizes, "payload_offset": [0, *_running(sizes)][: len(sizes)]}
+    for column in table.columns:
+        if column.role == "payload":
+            found[column.name] = places[column.source]
+    return found
+
+
+def _running(sizes: Sequence[int]) -> Iterator[int]:
+    total = 0
+    for size in sizes:
+        total += size
+        yield total
+
+
+def _filled(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    found = _framed(table, numbered)
+    if numbered:
+        _fill(found, table.fields, [event.message for _, event in numbered], ChainMap())
+    return found
+
+
+# --- columns --------------------------------------------------------------------------------------
+
+
+def _fill(found: Rows, columns: Sequence[Column], records: Values, scope: Scope) -> None:
+    """Fill columns with the fields of these records."""
+    for column in columns:
+        values = [getattr(record, column.source) for record in records]
+        if column.role == "count":
+            found[column.name] = [len(value) for value in values]
+        else:
+            found[column.name] = _array(column, column.dimensions, values, scope)
+        scope[column.name] = values
+
+
+def _array(column: Column, dimensions: Sequence[Dimension], values: Values, scope: Scope) -> Rows:
+    """The values of a column, or of the arrays in it."""
+    if isinstance(column.shape, Text) and len(dimensions) == 1:
+        texts = [text.encode("latin-1") for text in values]
+        return numpy().array(texts, f"S{column.shape.size}")  # type: ignore[no-any-return]
+    if not dimensions:
+        return _plain(column.shape, values, scope)
+    sizes = numpy().array([len(value) for value in values], "i8")
+    inner = [element for value in values for element in value]
+    elements = _array(column, dimensions[1:], inner, _around(column.shape, scope, sizes))
+    capacity = dimensions[0].capacity
+    found = numpy().zeros((len(values), capacity, *elements.shape[1:]), elements.dtype)
+    found[numpy().arange(capacity) < sizes[:, None]] = elements
+    return found  # type: ignore[no-any-return]
+
+
+def _around(shape: Shape, scope: Scope, sizes: Values) -> Scope:
+    """What each element sees of the row around it."""
+    if isinstance(shape, Number | Text):
+        return Scope()
+    return Scope({name: _repeated(item, sizes) for name, item in scope.items()})
+
+
+def _repeated(values: Values, sizes: Values) -> Values:
+    return [value for value, size in zip(values, sizes, strict=True) for _ in range(size)]
+
+
+def _plain(shape: Shape, values: Values, scope: Scope) -> Rows:
+    match shape:
+        case Number(code=code):
+            return numpy().array(values, code)  # type: ignore[no-any-return]
+        case Record(columns=columns):
+            found = rows(dtype_of(TableSchema(row=shape)), len(values))
+            _fill(found, columns, values, scope.new_child())
+            return found
+        case Choice():
+            return _chosen(shape, values, scope)
+        case _:
+            raise AssertionError("text has a dimension")
+
+
+def _chosen(choice: Choice, values: Values, scope: Scope) -> Rows:
+    """The values of a switch: each row has that of its case."""
+    whole = Column(name="it", role="field", source="it", shape=choice)
+    found = rows(dtype_of(TableSchema(row=Record((whole,), choice.size, 1))), len(values))["it"]
+    selector = choice.selector
+    chosen = [selector] * len(values) if isinstance(selector, int) else scope[selector]
+    known: Mapping[int, Column] = dict(choice.cases)
+    for value in dict.fromkeys(map(int, chosen)):
+        places = [place for place, number in enumerate(chosen) if number == value]
+        inner = [values[place] for place in places]
+        seen = Scope({name: [item[place] for place in places] for name, item in scope.items()})
+        if value in known:
+            case = known[value]
+            found[case.name][places] = _array(case, case.dimensions, inner, seen)
+        elif value not in choice.empty and choice.rest is not None:
+            found[choice.rest.name][places] = _rest(choice.rest, inner)
+    return found
+
+
+def _rest(rest: Column, values: Values) -> Rows:
+    assert isinstance(rest.shape, Record)
+    found = rows(dtype_of(TableSchema(row=rest.shape)), len(values))
+    held = rest.shape.column("bytes")
+    found["size"] = [len(value) for value in values]
+    found["bytes"] = _array(held, held.dimensions, values, Scope())
+    return found

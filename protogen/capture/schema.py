@@ -1,0 +1,255 @@
+"""What the columns of a capture's tables are: where they lie in a row, and what they mean.
+
+A row is what generated C would hold of an event: `offset`, `sequence` and `size`, the frame's
+parts, then the struct of the message. Its members lie as a C compiler lays them out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from math import prod
+from typing import Literal
+
+from protogen.model.fields import Field
+from protogen.model.frame import NumberPart
+from protogen.model.messages import Message
+from protogen.model.types import Enum, Flags, Float, Integer, NamedValue, Type
+from protogen.runtime.errors import Reason
+
+Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]
+"""What a column is: about the event, a part of the frame, a field, the number of elements or bytes
+of the field behind it, the reason of invalid bytes, or the place of an unknown payload."""
+
+
+class InvalidReason(IntEnum):
+    """Why bytes are no frame, as the column `reason` says it."""
+
+    SIZE = 1
+    VALUE = 2
+    ENCODING = 3
+    NOISE = 4
+    CHECKSUM = 5
+    LENGTH = 6
+    STUFFING = 7
+    TRUNCATED = 8
+
+    @property
+    def word(self) -> Reason:
+        """The reason as events say it."""
+        found: Reason = self.name.lower()  # type: ignore[assignment]
+        return found
+
+
+# --- what a column holds --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number: `u` or `i` and its bytes, `f4`, `f8`, or `?` for a bool."""
+
+    code: str
+    size: int
+
+    @property
+    def alignment(self) -> int:
+        """Bytes."""
+        return self.size
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """ASCII of at most `size` bytes, filled up with NUL bytes.
+
+    A byte above 7F is the character of that number (Latin 1).
+    """
+
+    size: int
+    alignment: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A struct: columns inside of a column."""
+
+    columns: tuple[Column, ...]
+    size: int
+    alignment: int
+
+    def column(self, name: str) -> Column:
+        """The column of that name; raises KeyError."""
+        for column in self.columns:
+            if column.name == name:
+                return column
+        raise KeyError(name)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A switch. Its cases share the same bytes; only the one that the selector chooses is there.
+
+    `cases` gives the column of each value that has one, and `empty` the values whose case holds
+    nothing. Any other value has `rest`, a record of `size` and `bytes`; where that is None, it
+    can't be.
+    """
+
+    selector: str | int
+    """The column, found as that of a `Dimension`; a number where it is always that."""
+    cases: tuple[tuple[int, Column], ...]
+    empty: tuple[int, ...]
+    rest: Column | None
+    size: int
+    alignment: int
+
+
+Shape = Number | Text | Record | Choice
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """The elements of an array.
+
+    `capacity`: how many a row has room for; those that are not there are zero. `counted_by`: the
+    column that says how many there are, of the same record or, if that has none, of the one around
+    it; None: always as many as there is room for.
+    """
+
+    capacity: int
+    counted_by: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """A column of a table, or of a record in one."""
+
+    name: str
+    """In the table. Where the schema's name is taken there, `_` stands behind it."""
+    role: Role
+    source: str
+    """The name of the field or part; of what is counted."""
+    shape: Shape
+    dimensions: tuple[Dimension, ...] = ()
+    """The innermost one of bytes and text is their size."""
+    position: int = 0
+    """Bytes from the beginning of the row or record."""
+    field: Field | None = None
+    """The field: unit, scale, offset, special values, what is said about it."""
+    part: NumberPart | None = None
+    """The part of the frame."""
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Room for elements in each dimension of the array. Text has one less: it is one value."""
+        sizes = tuple(dimension.capacity for dimension in self.dimensions)
+        return sizes[:-1] if isinstance(self.shape, Text) else sizes
+
+    @property
+    def size(self) -> int:
+        """Bytes in a row."""
+        return self.shape.size * prod(self.counts)
+
+    @property
+    def type(self) -> Type | None:
+        """The type on the wire; None for what is not on it as a number or field."""
+        if self.role == "field" and self.field is not None:
+            return self.field.type
+        return None if self.part is None else self.part.type
+
+    @property
+    def element(self) -> Integer | Float | None:
+        """The type of the number, or of each one of the array; None if it holds no numbers."""
+        type_ = self.type
+        while type_ is not None and not isinstance(type_, Integer | Float):
+            type_ = getattr(type_, "element", None)
+        return type_
+
+    @property
+    def enum(self) -> Enum | None:
+        """The names of raw values, where they have some."""
+        return self.element.enum if isinstance(self.element, Integer) else None
+
+    @property
+    def flags(self) -> Flags | None:
+        """The names of bits, where they have some."""
+        return self.element.flags if isinstance(self.element, Integer) else None
+
+    @property
+    def unit(self) -> str | None:
+        """The unit of the physical value, which is raw x `field.scale` + `field.offset`."""
+        return self._meaning.unit if self._meaning else None
+
+    @property
+    def scaled(self) -> bool:
+        """Whether the physical value differs from the raw one."""
+        return self._meaning is not None and self._meaning.scaled
+
+    @property
+    def special(self) -> tuple[NamedValue, ...]:
+        """Raw values that stand for something else than a number."""
+        return self._meaning.special if self._meaning else ()
+
+    @property
+    def doc(self) -> str:
+        """What the schema says about it."""
+        about = self._meaning or self.part
+        return about.about.doc if about else ""
+
+    @property
+    def _meaning(self) -> Field | None:
+        return self.field if self.role == "field" else None
+
+    def at(self, position: int) -> Column:
+        """The same column at another place."""
+        return replace(self, position=position)
+
+
+# --- tables ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TableSchema:
+    """A table: its row."""
+
+    row: Record
+    message: Message | None = None
+    """The message whose table it is."""
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """In the order of the row."""
+        return self.row.columns
+
+    @property
+    def fields(self) -> tuple[Column, ...]:
+        """The message's columns alone."""
+        return tuple(item for item in self.columns if item.role in ("field", "count"))
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether all of every row is always written."""
+        return all(_is_fixed(item) for item in self.columns)
+
+
+def _is_fixed(column: Column) -> bool:
+    if any(dimension.counted_by is not None for dimension in column.dimensions):
+        return False
+    match column.shape:
+        case Record(columns=columns):
+            return all(_is_fixed(item) for item in columns)
+        case Choice():
+            return False
+        case _:
+            return True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaptureSchema:
+    """All tables of what one endpoint sends."""
+
+    protocol: str
+    sender: str
+    spec_hash: str
+    messages: dict[str, TableSchema]
+    """By the message's name, in the schema's order; what a decoder never yields is left out."""
+    invalid: TableSchema
+    unknown: TableSchema

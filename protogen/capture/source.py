@@ -1,0 +1,63 @@
+"""Where the bytes of a capture come from."""
+
+from __future__ import annotations
+
+import io
+import mmap
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from protogen.capture.errors import CaptureError
+
+Source = str | os.PathLike[str] | bytes | bytearray | memoryview | mmap.mmap | BinaryIO
+"""A file by its path, bytes, or an open binary file, which is read from where it is."""
+
+
+@contextmanager
+def opened(source: Source) -> Iterator[memoryview | BinaryIO]:
+    """The bytes, where they are in memory or in a file; else what they are read from."""
+    if isinstance(source, str | os.PathLike):
+        with _file(Path(source)) as file:
+            yield _mapped(file)
+    elif isinstance(source, io.BufferedReader | io.FileIO):
+        yield _mapped(source)
+    elif isinstance(source, bytes | bytearray | memoryview | mmap.mmap):
+        yield memoryview(source).cast("B")
+    elif hasattr(source, "read"):
+        yield source
+    else:
+        kind = type(source).__name__
+        raise CaptureError(f"a capture is a path, bytes or a binary file, not {kind}")
+
+
+def pieces(source: memoryview | BinaryIO, size: int) -> Iterator[bytes | memoryview]:
+    """The bytes, so many at a time at most."""
+    if isinstance(source, memoryview):
+        for start in range(0, len(source), size):
+            yield source[start : start + size]
+        return
+    while piece := source.read(size):
+        if not isinstance(piece, bytes):
+            raise CaptureError("the capture was opened as text; open it with mode 'rb'")
+        yield piece
+
+
+def _file(path: Path) -> io.FileIO:
+    try:
+        return io.FileIO(path)
+    except OSError as error:
+        raise CaptureError(f"{path}: {error.strerror}") from None
+
+
+def _mapped(file: io.BufferedReader | io.FileIO) -> memoryview | BinaryIO:
+    """The rest of a file as memory; a pipe, a device or an empty file as it is."""
+    try:
+        start = file.tell()
+        mapping = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except (OSError, ValueError):
+        return file
+    # Whoever still looks at a piece keeps the mapping; the last of them ends it.
+    return memoryview(mapping)[start:]

@@ -1,0 +1,110 @@
+"""Tables: the events of a capture as NumPy columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from protogen.capture.arrays import dtype_of, numpy
+from protogen.capture.schema import CaptureSchema
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Rows = np.ndarray[Any, np.dtype[Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tables:
+    """The events of a capture, or of a stretch of it: a table for each kind.
+
+    Every row begins with `offset` (of its first byte in the capture), `sequence` (the number of
+    the event among all events, from 0) and `size` (bytes on the wire).
+    """
+
+    schema: CaptureSchema
+    """What the columns mean."""
+    engine: str
+    """What filled them: `native` or `python`."""
+    messages: dict[str, Rows]
+    """A table for every message: the parts of its frame, then its fields as raw values."""
+    invalid: Rows
+    """Bytes that are no frame; `reason` is an `InvalidReason`."""
+    unknown: Rows
+    """Valid frames whose identity belongs to no message."""
+    payloads: Rows
+    """The bytes of the unknown payloads; `payload_offset` and `payload_size` say where."""
+    offset: int
+    """Of the first byte that these events cover."""
+    size: int
+    """How many bytes they cover: without gaps."""
+    sequence: int
+    """The number of the first event."""
+    events: int
+    """How many there are."""
+
+    def payload(self, row: Any) -> bytes:
+        """The payload of a row of `unknown`."""
+        start, size = int(row["payload_offset"]), int(row["payload_size"])
+        return self.payloads[start : start + size].tobytes()
+
+
+def empty_rows(schema: CaptureSchema) -> dict[str, Rows]:
+    """Of each message, no rows."""
+    return {name: rows(dtype_of(table)) for name, table in schema.messages.items()}
+
+
+def rows(dtype: np.dtype[Any], count: int = 0) -> Rows:
+    """Rows of zeros."""
+    found: Rows = numpy().zeros(count, dtype)
+    return found
+
+
+def joined(pieces: Iterable[Tables]) -> Tables:
+    """Tables of stretches that follow each other, as one. There has to be one at least."""
+    every = list(pieces)
+    first = every[0]
+    if len(every) == 1:
+        return first
+    return Tables(
+        schema=first.schema,
+        engine=first.engine,
+        messages={
+            name: _joined([item.messages[name] for item in every]) for name in first.messages
+        },
+        invalid=_joined([item.invalid for item in every]),
+        unknown=_joined(_moved(every)),
+        payloads=_joined([item.payloads for item in every]),
+        offset=first.offset,
+        size=sum(item.size for item in every),
+        sequence=first.sequence,
+        events=sum(item.events for item in every),
+    )
+
+
+def _joined(pieces: Sequence[Rows]) -> Rows:
+    """One behind another. Rows are copied whole, with what lies between their members."""
+    dtype = pieces[0].dtype
+    filled = [numpy().ascontiguousarray(item).view(f"V{dtype.itemsize}") for item in pieces]
+    found: Rows = numpy().concatenate(filled).view(dtype)
+    return found
+
+
+def _moved(pieces: Iterable[Tables]) -> list[Rows]:
+    """The rows of unknown frames, with the places that their payloads will have."""
+    found: list[Rows] = []
+    place = 0
+    for item in pieces:
+        moved = item.unknown
+        if place and len(moved):
+            moved = _joined([moved])
+            moved[_payload_column(item)] += place
+        found.append(moved)
+        place += len(item.payloads)
+    return found
+
+
+def _payload_column(tables: Tables) -> str:
+    columns = tables.schema.unknown.columns
+    return next(item.name for item in columns if item.source == "payload_offset")

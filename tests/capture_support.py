@@ -1,0 +1,205 @@
+"""Tables of captures, compared with each other and with the events of the Python decoder."""
+
+from __future__ import annotations
+
+import math
+from collections import ChainMap
+from pathlib import Path
+from typing import Any
+
+from compiled import module_at
+
+from protogen.capture import Column, Tables
+from protogen.capture.schema import Choice, Number, Record, Shape, Text
+
+Scope = ChainMap[str, Any]
+
+
+def assert_same_tables(found: Tables, expected: Tables) -> None:
+    """The same events, byte for byte, but for the bits of what is not a number."""
+    assert list(found.messages) == list(expected.messages)
+    for name, table in expected.messages.items():
+        assert_same_rows(found.messages[name], table, name)
+    assert_same_rows(found.invalid, expected.invalid, "invalid")
+    assert_same_rows(found.unknown, expected.unknown, "unknown")
+    assert found.payloads.tobytes() == expected.payloads.tobytes()
+    for word in ("offset", "size", "sequence", "events"):
+        assert getattr(found, word) == getattr(expected, word), word
+
+
+def assert_same_rows(found: Any, expected: Any, name: str) -> None:
+    assert found.dtype == expected.dtype
+    assert len(found) == len(expected), name
+    if found.tobytes() == expected.tobytes():
+        return
+    for number, (one, other) in enumerate(zip(found, expected, strict=True)):
+        assert same_values(one, other), f"{name}[{number}] is\n{one}, not\n{other}"
+
+
+def same_values(one: Any, other: Any) -> bool:
+    """Whether values of rows are equal, where one NaN is like another."""
+    if one.dtype.names:
+        return all(same_values(one[name], other[name]) for name in one.dtype.names)
+    if one.dtype.kind == "f":
+        return bool(((one == other) | ((one != one) & (other != other))).all())
+    return bool((one == other).all())
+
+
+# --- rows as what `to_dict` gives -----------------------------------------------------------------
+
+
+def fields_of(tables: Tables, name: str, row: Any) -> dict[str, Any]:
+    """The fields of a row, as the message's `to_dict` gives them, but for constants."""
+    return _record(tables.schema.messages[name].fields, row, Scope())
+
+
+def _record(columns: tuple[Column, ...], row: Any, around: Scope) -> dict[str, Any]:
+    scope = around.new_child()
+    for column in columns:
+        if isinstance(column.shape, Number) and not column.dimensions:
+            scope[column.name] = row[column.name].item()
+    return {
+        column.source: _value(column, row[column.name], 0, scope)
+        for column in columns
+        if column.role == "field"
+    }
+
+
+def _value(column: Column, value: Any, depth: int, scope: Scope) -> Any:
+    rest = column.dimensions[depth:]
+    if isinstance(column.shape, Text) and len(rest) == 1:
+        text = bytes(value).decode("latin-1")
+        count = rest[0].counted_by
+        return text if count is None else text.ljust(scope[count], "\0")
+    if not rest:
+        return _plain(column.shape, value, scope)
+    count = len(value) if rest[0].counted_by is None else int(scope[rest[0].counted_by])
+    found = [_value(column, value[place], depth + 1, scope) for place in range(count)]
+    octets = type(column.type).__name__ == "Octets" or _is_octets(column)
+    return bytes(found).hex() if octets and len(rest) == 1 else found
+
+
+def _is_octets(column: Column) -> bool:
+    type_ = column.type
+    while hasattr(type_, "element"):
+        type_ = type_.element
+    return type_ is None or type(type_).__name__ == "Octets"
+
+
+def _plain(shape: Shape, value: Any, scope: Scope) -> Any:
+    match shape:
+        case Record(columns=columns):
+            return _record(columns, value, scope)
+        case Choice():
+            return _choice(shape, value, scope)
+        case _:
+            number = value.item()
+            if isinstance(number, float) and not math.isfinite(number):
+                return "nan" if math.isnan(number) else "inf" if number > 0 else "-inf"
+            return number
+
+
+def _choice(choice: Choice, value: Any, scope: Scope) -> Any:
+    chosen = choice.selector if isinstance(choice.selector, int) else int(scope[choice.selector])
+    for number, case in choice.cases:
+        if number == chosen:
+            return _value(case, value[case.name], 0, scope)
+    if chosen in choice.empty or choice.rest is None:
+        return None
+    rest = value[choice.rest.name]
+    return bytes(rest["bytes"][: rest["size"]]).hex()
+
+
+def described(tables: Tables) -> list[tuple[Any, ...]]:
+    """Every event, in order: offset, size, and what it is."""
+    found: list[tuple[Any, ...]] = []
+    for name, table in tables.messages.items():
+        parts = [c for c in tables.schema.messages[name].columns if c.role == "part"]
+        for row in table:
+            shown = {c.source: row[c.name].item() for c in parts}
+            found.append((*_place(row), name, shown, fields_of(tables, name, row)))
+    found += [(*_place(row), "invalid", int(row["reason"])) for row in tables.invalid]
+    parts = [c for c in tables.schema.unknown.columns if c.role == "part"]
+    for row in tables.unknown:
+        shown = {c.source: row[c.name].item() for c in parts}
+        found.append((*_place(row), "unknown", shown, tables.payload(row)))
+    return sorted(found, key=lambda item: item[0])
+
+
+def _place(row: Any) -> tuple[int, int, int]:
+    return int(row["sequence"]), int(row["offset"]), int(row["size"])
+
+
+def expected_of(path: Path, sender: str, data: bytes) -> list[tuple[Any, ...]]:
+    """The same, from the events of the Python decoder."""
+    from dataclasses import asdict
+
+    from protogen.capture import InvalidReason
+
+    decoder = module_at(path).Decoder(sender)
+    found: list[tuple[Any, ...]] = []
+    for number, event in enumerate([*decoder.feed(data), *decoder.flush()]):
+        place = (number, event.offset, event.size)
+        match event.kind:
+            case "message":
+                values = _without_constants(event.message)
+                found.append((*place, event.message.NAME, asdict(event.parts), values))
+            case "unknown":
+                found.append((*place, "unknown", asdict(event.parts), event.payload))
+            case _:
+                found.append((*place, "invalid", int(InvalidReason[event.reason.upper()])))
+    return found
+
+
+def _without_constants(record: Any) -> dict[str, Any]:
+    return _stripped(type(record), record.to_dict())
+
+
+def _stripped(cls: Any, shown: dict[str, Any]) -> dict[str, Any]:
+    kept: dict[str, Any] = {}
+    for name, rule in cls.RULES:
+        if getattr(rule, "const", None) is not None:
+            continue
+        value = _stripped_value(rule, shown[name], shown)
+        if value is not ...:
+            kept[name] = value
+    return kept
+
+
+def _stripped_value(rule: Any, value: Any, shown: dict[str, Any]) -> Any:
+    """The value without constants; an ellipsis where nothing is left."""
+    match type(rule).__name__:
+        case "StructRule":
+            found = _stripped(rule.record, value)
+            return found or ...
+        case "ArrayRule":
+            each = [_stripped_value(rule.element, item, shown) for item in value]
+            probe = _holds(rule.element)
+            return each if probe else ...
+        case "SwitchRule":
+            return _stripped_case(rule, value, shown)
+        case _:
+            return value
+
+
+def _stripped_case(rule: Any, value: Any, shown: dict[str, Any]) -> Any:
+    if not isinstance(value, dict):
+        return value
+    for case in rule.cases.values():
+        if case is not None and type(case).__name__ == "StructRule":
+            names = {name for name, _ in case.record.RULES}
+            if names == set(value):
+                found = _stripped(case.record, value)
+                return found or None
+    return value
+
+
+def _holds(rule: Any) -> bool:
+    if type(rule).__name__ == "StructRule":
+        return any(
+            getattr(inner, "const", None) is None and _holds(inner)
+            for _, inner in rule.record.RULES
+        )
+    if type(rule).__name__ == "ArrayRule":
+        return _holds(rule.element)
+    return True
