@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from typing import Literal, Protocol
 
-from protogen.capture.errors import CaptureError
+from protogen.capture.errors import CaptureError, SlowCaptureWarning
 from protogen.capture.layout import capture_schema
 from protogen.capture.pure import PythonEngine
 from protogen.capture.tables import Tables
@@ -32,7 +33,29 @@ def engine_of(protocol: Model, sender: Sender, name: EngineName | None) -> Engin
     """
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
-    return _python(protocol, sender)
+    if name == "python":
+        return _python(protocol, sender)
+    from protogen.capture.native import NativeEngine, library_of
+    from protogen.native.errors import NativeError
+
+    try:
+        return NativeEngine(library_of(protocol, sender))
+    except NativeError as error:
+        if name == "native":
+            raise CaptureError(f"no native engine: {error}") from None
+        _warn(str(error))
+        return _python(protocol, sender)
+
+
+_warned: set[str] = set()
+
+
+def _warn(why: str) -> None:
+    """Say once that it is slow, and why."""
+    if why not in _warned:
+        _warned.add(why)
+        text = f"captures are read in Python, which is slow: {why}"
+        warnings.warn(text, SlowCaptureWarning, stacklevel=4)
 
 
 def _python(protocol: Model, sender: Sender) -> PythonEngine:

@@ -9,3 +9,7 @@ class CaptureError(ValueError):
 
 class MissingPackageError(CaptureError, ImportError):
     """A package is not installed that reading captures needs."""
+
+
+class SlowCaptureWarning(UserWarning):
+    """A capture is read in Python, because there is no native engine. Warned of once."""

@@ -104,7 +104,7 @@ def _place(name: str, shape: Number, others: Iterable[Column]) -> Column:
 
 
 def _table(framed: Sequence[Column], message: Message) -> TableSchema:
-    inner = record(_columns(message.fields, {}))
+    inner = message_record(message)
     base = record(framed)
     start = _aligned(_end(base.columns), inner.alignment)
     taken = [item.name for item in framed]
@@ -118,6 +118,11 @@ def _table(framed: Sequence[Column], message: Message) -> TableSchema:
     alignment = max(base.alignment, inner.alignment)
     size = _aligned(start + inner.size, alignment)
     return TableSchema(row=Record((*base.columns, *fields), size, alignment), message=message)
+
+
+def message_record(message: Message) -> Record:
+    """The message's own columns, under the names that the schema and C give them."""
+    return record(_columns(message.fields, {}))
 
 
 def _counted_anew(column: Column, renamed: dict[str, str]) -> Column:

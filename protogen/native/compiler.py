@@ -1,0 +1,64 @@
+"""The system's C compiler."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from protogen.native.errors import NativeError
+
+FLAGS = ("-std=c99", "-O2", "-w", "-fPIC", "-shared", "-fvisibility=hidden")
+_USUAL = ("cc", "gcc", "clang")
+_SECONDS = 300
+"""No compiler takes so long for one source."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compiler:
+    """How the compiler is called."""
+
+    command: tuple[str, ...]
+
+    @property
+    def identity(self) -> str:
+        """Changes whenever the compiler does."""
+        program = Path(self.command[0]).resolve()
+        status = program.stat()
+        words = (*self.command, program, status.st_size, status.st_mtime_ns, *FLAGS)
+        return " ".join(map(str, words))
+
+    def build(self, source: Path, library: Path) -> None:
+        """Compile a shared library. Raises NativeError with what the compiler says."""
+        command = [*self.command, *FLAGS, "-o", str(library), str(source)]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, check=False, timeout=_SECONDS
+            )
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise NativeError(f"{self.command[0]} does not run: {error}") from None
+        if done.returncode:
+            first = next(iter(done.stderr.strip().splitlines()), f"exit code {done.returncode}")
+            raise NativeError(f"{self.command[0]} does not compile the decoder: {first}")
+
+
+def compiler() -> Compiler:
+    """The one that `CC` names, else `cc`. Raises NativeError where there is none."""
+    given = os.environ.get("CC", "")
+    try:
+        words = shlex.split(given)
+    except ValueError:
+        raise NativeError(f"CC is no command: {given!r}") from None
+    if words:
+        program = shutil.which(words[0])
+        if program is None:
+            raise NativeError(f"there is no C compiler {words[0]!r}, as CC says")
+        return Compiler((program, *words[1:]))
+    for name in _USUAL:
+        program = shutil.which(name)
+        if program is not None:
+            return Compiler((program,))
+    raise NativeError("there is no C compiler: no cc, gcc or clang on the PATH")

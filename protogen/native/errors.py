@@ -1,0 +1,7 @@
+"""Why there is no native library."""
+
+from __future__ import annotations
+
+
+class NativeError(Exception):
+    """Native code can't be had here: the text says why."""

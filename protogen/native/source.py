@@ -1,0 +1,129 @@
+"""The C source that fills the tables of one sender: the generated decoder, and a driver."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from jinja2 import Environment
+
+from protogen.capture.layout import capture_schema, message_record
+from protogen.capture.schema import CaptureSchema, Choice, Column, Record, TableSchema
+from protogen.model.protocol import Protocol, Sender
+from protogen.targets.c.emit import texts, unit_of
+from protogen.targets.c.messages import MessageView
+from protogen.targets.c.options import COptions
+from protogen.targets.printing import environment
+
+_CALL = "decoder->handler(decoder->user, &event)"
+_DIRECT = "protogen_take(decoder->user, &event)"
+"""The decoder calls the driver by its name, so that the compiler can put it in its place."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    view: MessageView
+    is_fixed: bool
+    loads: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """A source to compile, and what is expected of the library."""
+
+    protocol: str
+    sender: str
+    text: str
+    schema: CaptureSchema
+    layout: tuple[int, ...]
+    """What the library's `protogen_layout` has to say."""
+
+
+def driver_of(protocol: Protocol, sender: Sender) -> Driver:
+    """The driver of what one endpoint sends."""
+    options = COptions(style="single", senders=(sender.name,))
+    header, source = texts(protocol, options)
+    unit = unit_of(protocol, options)
+    decoder = next(item for item in unit.framing.decoders if item.name == sender.name)
+    schema = capture_schema(protocol, sender)
+    tables = tuple(
+        _Table(
+            unit.module.message(name),
+            table.is_fixed,
+            any(column.role == "field" for column in table.columns),
+        )
+        for name, table in schema.messages.items()
+    )
+    layout = list(_layout(schema))
+    text = (
+        _environment()
+        .get_template("driver.c.j2")
+        .render(
+            p=decoder.prefix,
+            upper=unit.module.upper,
+            whole=decoder.whole,
+            parts=decoder.parts,
+            header=header,
+            source=source.replace(_CALL, _DIRECT),
+            tables=tables,
+            layout=[expression for expression, _ in layout],
+        )
+    )
+    return Driver(protocol.name, sender.name, text, schema, tuple(size for _, size in layout))
+
+
+@cache
+def _environment() -> Environment:
+    return environment("protogen.native")
+
+
+# --- layout ---------------------------------------------------------------------------------------
+
+
+def _layout(schema: CaptureSchema) -> Iterator[tuple[str, int]]:
+    """Expressions of C, and what they should be."""
+    rows = {
+        **{str(number): table for number, table in enumerate(schema.messages.values())},
+        "invalid": schema.invalid,
+        "unknown": schema.unknown,
+    }
+    for name, table in rows.items():
+        yield f"sizeof(struct protogen_row_{name})", table.row.size
+    for name, table in rows.items():
+        for path, position in _members(table):
+            yield f"offsetof(struct protogen_row_{name}, {path})", position
+
+
+def _members(table: TableSchema) -> Iterator[tuple[str, int]]:
+    for column in table.columns:
+        if column.role == "part":
+            yield f"part_{column.source}", column.position
+        elif column.role not in ("field", "count"):
+            yield column.source, column.position
+    if table.message is None or not table.fields:
+        return
+    # The struct's members have the names that the schema gives them.
+    inner = message_record(table.message)
+    base = table.fields[0].position - inner.columns[0].position
+    for path, position in _inside(inner):
+        yield f"message.{path}", base + position
+
+
+def _inside(record: Record) -> Iterator[tuple[str, int]]:
+    for column in record.columns:
+        yield from _within(column, column.name, column.position)
+
+
+def _within(column: Column, path: str, position: int) -> Iterator[tuple[str, int]]:
+    yield path, position
+    path += "[0]" * len(column.counts)
+    if isinstance(column.shape, Record):
+        for inner, place in _inside(column.shape):
+            yield f"{path}.{inner}", position + place
+    elif isinstance(column.shape, Choice):
+        cases = [case for _, case in column.shape.cases]
+        cases += [] if column.shape.rest is None else [column.shape.rest]
+        for case in cases:
+            for inner, place in _within(case, case.name, 0):
+                yield f"{path}.{inner}", position + place

@@ -1,0 +1,282 @@
+"""Generated C that fills columns, against the Python decoder; and where its libraries are kept."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from random import Random
+
+import handwritten_streams
+import pytest
+from capture_support import assert_same_tables
+from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
+from corpus import joined as pieces_joined
+from corpus import marks_of, material_of, stream_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_recovery import drawn_pieces
+from tooling import require_tool
+
+from protogen.capture import CaptureError, SlowCaptureWarning, Tables, batches, columns, engines
+from protogen.capture.native import NativeEngine, library_of
+from protogen.capture.tables import joined
+from protogen.native import build as building
+from protogen.native import cache, compiler
+from protogen.native.errors import NativeError
+from protogen.native.library import Library
+from protogen.native.source import driver_of
+
+RN1 = ROOT / "schemas" / "rn1.yaml"
+SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+SENDERS = [
+    (path, sender.name) for path in (*SCHEMAS, *SAMPLERS) for sender in protocol_of(path).senders
+]
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
+EXAMPLES = settings().max_examples
+SEEDS = range(max(4, EXAMPLES // 20))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _kept_apart(tmp_path_factory: pytest.TempPathFactory):
+    """A cache of the tests' own."""
+    require_tool("cc")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def python_tables(path: Path, sender: str, data: bytes) -> Tables:
+    return columns(data, protocol_of(path), sender, engine="python")
+
+
+def native_tables(path: Path, sender: str, data: bytes) -> Tables:
+    found = columns(data, protocol_of(path), sender, engine="native")
+    assert found.engine == "native"
+    return found
+
+
+def check(path: Path, sender: str, data: bytes) -> None:
+    assert_same_tables(native_tables(path, sender, data), python_tables(path, sender, data))
+
+
+# --- equality -------------------------------------------------------------------------------------
+
+
+@EVERY_SENDER
+def test_noisy_streams_have_the_tables_that_python_fills(path: Path, sender: str) -> None:
+    material = material_of(path, sender)
+    for seed in SEEDS:
+        dice = Random(f"{path.stem} {sender} {seed}")
+        check(path, sender, stream_of(material, dice, 80).data)
+
+
+@EVERY_SENDER
+def test_clean_streams_have_the_tables_that_python_fills(path: Path, sender: str) -> None:
+    frames = list(material_of(path, sender).frames)
+    Random(path.stem).shuffle(frames)
+    check(path, sender, b"".join(frames * 2))
+
+
+@EVERY_SENDER
+def test_telling_bytes_have_the_tables_that_python_fills(path: Path, sender: str) -> None:
+    marks = marks_of(path, sender)
+    spec = module_at(path).PROTOCOL.sender(sender)
+    for seed in SEEDS:
+        dice = Random(f"{path.stem} {sender} {seed}")
+        check(path, sender, bytes(dice.choice(marks) for _ in range(dice.randrange(500))))
+        check(path, sender, handwritten_streams.random_stream(spec, dice, 20))
+
+
+@EVERY_SENDER
+@settings(max_examples=max(6, EXAMPLES // 12))
+@given(data=st.data())
+def test_any_mixture_in_any_pieces_has_the_tables_that_python_fills(
+    path: Path, sender: str, data: st.DataObject
+) -> None:
+    stream = pieces_joined(data.draw(drawn_pieces(material_of(path, sender)))).data
+    chunk, budget = data.draw(st.integers(1, 300)), data.draw(st.sampled_from([1, 300, 1 << 20]))
+    engine = NativeEngine(library_of(protocol_of(path), protocol_of(path).sender(sender)), budget)
+    found = []
+    for start in range(0, len(stream), chunk):
+        found += engine.feed(stream[start : start + chunk])
+    assert_same_tables(joined([*found, *engine.flush()]), python_tables(path, sender, stream))
+
+
+def test_a_full_table_ends_a_batch() -> None:
+    sender = protocol_of(RN1).sender("brain")
+    data = stream_of(material_of(RN1, "brain"), Random(1), 3000).data
+    engine = NativeEngine(library_of(protocol_of(RN1), sender), 4096)
+    found = [*engine.feed(data), *engine.flush()]
+    assert len(found) > 20
+    greatest = max(table.nbytes for part in found for table in part.messages.values())
+    assert greatest <= 10 * found[0].messages["lidar"].dtype.itemsize
+    assert_same_tables(joined(found), python_tables(RN1, "brain", data))
+
+
+# --- the compiler ---------------------------------------------------------------------------------
+
+
+def test_without_a_compiler_python_fills_the_tables_and_says_so_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    data = stream_of(material_of(RN1, "brain"), Random(1), 50).data
+    monkeypatch.setattr(engines, "_warned", set())
+    monkeypatch.setenv("CC", "no-such-cc -m32")
+    with pytest.warns(SlowCaptureWarning, match="no C compiler 'no-such-cc'"):
+        found = columns(data, protocol_of(RN1), "brain")
+    assert found.engine == "python"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert next(batches(data, protocol_of(RN1), "brain")).engine == "python"
+    with pytest.raises(CaptureError, match="no native engine: there is no C compiler"):
+        columns(data, protocol_of(RN1), "brain", engine="native")
+
+
+@pytest.mark.parametrize(
+    ("given", "problem"),
+    [
+        ("'", "CC is no command"),
+        ("false", "false does not compile the decoder: exit code 1"),
+        ("cc --no-such-option", "does not compile the decoder: .*no-such-option"),
+    ],
+)
+def test_a_compiler_that_does_not_work_is_named(
+    given: str, problem: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", given)
+    with pytest.raises(NativeError, match=problem):
+        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+
+
+def test_a_compiler_that_does_not_run_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = tmp_path / "broken-cc"
+    broken.write_bytes(b"\x7fELF")
+    broken.chmod(0o755)
+    monkeypatch.setenv("CC", str(broken))
+    with pytest.raises(NativeError, match="broken-cc does not run"):
+        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+
+
+def test_the_usual_names_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CC", raising=False)
+    assert compiler.compiler().command[0].startswith("/")
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(NativeError, match="no cc, gcc or clang"):
+        compiler.compiler()
+
+
+# --- the cache ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    return tmp_path / "protogen" / "native"
+
+
+def build(path: Path = RN1, sender: str = "host") -> building.Built:
+    return building.build(protocol_of(path), protocol_of(path).sender(sender))
+
+
+def test_a_library_is_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = build()
+    assert (first.is_new, first.path.parent) == (True, folder)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    second = build()
+    assert (second.is_new, second.path) == (False, first.path)
+    assert build(sender="brain").path != first.path
+    monkeypatch.setattr(building, "VERSION", "9.9.9")
+    assert build().is_new
+    monkeypatch.setenv("CC", "cc -O1")
+    assert build().is_new
+    assert [item.suffix for item in folder.iterdir()] == [".so"] * 4
+    assert len(cache.libraries()) == 4
+    assert cache.clean() == 4
+    assert cache.libraries() == []
+
+
+def test_two_processes_may_build_at_once(folder: Path) -> None:
+    program = (
+        "import protogen; from protogen.capture import columns;"
+        "print(columns(b'', protogen.load('schemas/rn1.yaml'), 'host').engine)"
+    )
+    command = [sys.executable, "-W", "error", "-c", program]
+    each = [
+        subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) for _ in range(3)
+    ]
+    assert [one.communicate()[0].strip() for one in each] == ["native"] * 3
+    assert len(list(folder.iterdir())) == 1
+
+
+def test_code_that_others_could_have_put_there_is_not_loaded(folder: Path) -> None:
+    path = build().path
+    path.chmod(0o777)
+    with pytest.raises(NativeError, match=r"others can write to .*code from there is not loaded"):
+        build()
+    path.chmod(0o700)
+    folder.chmod(0o770)
+    with pytest.raises(NativeError, match="others can write to"):
+        build()
+    folder.chmod(0o700)
+    folder.parent.chmod(0o777)
+    with pytest.raises(NativeError, match="others can write to"):
+        build()
+    folder.parent.chmod(0o1777)
+    assert not build().is_new
+
+
+def test_code_of_somebody_else_is_not_loaded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    build()
+    monkeypatch.setattr(cache.os, "geteuid", lambda: 12345)
+    with pytest.raises(NativeError, match="belongs to somebody else"):
+        build()
+
+
+def test_a_folder_that_can_not_be_made_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    with pytest.raises(NativeError, match=r"file/protogen/native: Not a directory"):
+        build()
+    with pytest.raises(NativeError, match="No such file"):
+        cache.check(tmp_path / "nothing")
+
+
+def test_each_platform_has_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative/is/ignored")
+    monkeypatch.setenv("HOME", "/home/me")
+    monkeypatch.setenv("LOCALAPPDATA", "/local")
+    usual = {"linux": "/home/me/.cache", "darwin": "/home/me/Library/Caches", "win32": "/local"}
+    for platform, expected in usual.items():
+        monkeypatch.setattr(cache.sys, "platform", platform)
+        assert cache.cache_folder() == Path(expected, "protogen", "native")
+    cache.check(Path("/no/such/file"))  # Nothing is asked on Windows.
+
+
+def test_a_user_without_a_home_has_no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
+    def home() -> Path:
+        raise RuntimeError
+
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setattr(cache.Path, "home", home)
+    with pytest.raises(NativeError, match="no home folder"):
+        cache.cache_folder()
+
+
+def test_a_library_that_is_none_or_another_is_not_used(tmp_path: Path) -> None:
+    protocol = protocol_of(RN1)
+    driver = driver_of(protocol, protocol.sender("host"))
+    file = tmp_path / "broken.so"
+    file.write_bytes(b"nothing")
+    with pytest.raises(NativeError, match=r"broken\.so can't be loaded"):
+        Library(file, driver)
+    other = driver_of(protocol, protocol.sender("brain"))
+    assert other.layout != driver.layout
+    with pytest.raises(NativeError, match="lays structs out"):
+        Library(build().path, other)
