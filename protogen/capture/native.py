@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,10 +20,8 @@ if TYPE_CHECKING:
 
     from protogen.capture.tables import Rows
 
-BUDGET = 8 << 20
+BUDGET = 16 << 20
 """Bytes of a table that is full. A batch ends there."""
-
-
 _LIBRARIES: dict[Path, Library] = {}
 """Those that were loaded: nobody unloads them."""
 
@@ -50,8 +49,38 @@ class Dtypes:
         self.empty: list[Rows] = [numpy().zeros(0, dtype) for dtype in self.each]
 
 
+class Memory:
+    """Memory for rows. What nobody looks at any more is used again.
+
+    Fresh pages cost more than decoding into them does.
+    """
+
+    def __init__(self) -> None:
+        self._blocks: list[Rows] = []
+
+    def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
+        """Rows of any content."""
+        size = count * dtype.itemsize
+        for block in self._blocks:
+            # The list, the loop and the call know it.
+            if sys.getrefcount(block) == _UNUSED and size <= block.nbytes <= 2 * size:
+                break
+        else:
+            self._blocks = [item for item in self._blocks if sys.getrefcount(item) > _UNUSED]
+            block = numpy().empty(size, "u1")
+            self._blocks.append(block)
+        found: Rows = block[:size].view(dtype)
+        return found
+
+
+_UNUSED = 3
+
+
 class NativeEngine:
-    """A stream that becomes tables, some bytes at a time."""
+    """A stream that becomes tables, some bytes at a time.
+
+    C writes rows where they stay: each batch lends it as much memory as the last one needed.
+    """
 
     name = "native"
 
@@ -59,6 +88,9 @@ class NativeEngine:
         self._schema = library.schema
         self._decoder = Decoder(library, budget)
         self._dtypes = Dtypes(library.schema)
+        self._budget = budget
+        self._needed = [0] * library.tables
+        self._memory = Memory()
         self._offset = 0
         self._sequence = 0
 
@@ -68,22 +100,40 @@ class NativeEngine:
             return
         address, taken = address_of(data), 0
         while taken < len(data):
+            lent = self._lend()
             taken += self._decoder.feed(address + taken, len(data) - taken)
-            yield self._tables()
+            found = self._tables(lent)
+            del lent  # So that memory which the caller lets go is used again.
+            yield found
+            del found
 
     def flush(self) -> Iterator[Tables]:
         """Take the end of the stream."""
         self._decoder.flush()
-        yield self._tables()
+        yield self._tables({})
 
-    def _tables(self) -> Tables:
+    def _lend(self) -> dict[int, Rows]:
+        found: dict[int, Rows] = {}
+        for number, needed in enumerate(self._needed):
+            if needed:
+                dtype = self._dtypes.each[number]
+                most = max(1, self._budget // dtype.itemsize)
+                found[number] = self._memory.rows(dtype, min(most, needed + needed // 8 + 8))
+                self._decoder.lend(number, found[number])
+        return found
+
+    def _tables(self, lent: dict[int, Rows]) -> Tables:
         decoder = self._decoder
-        every = [
-            copied(table, dtype) if table.count else empty
-            for table, dtype, empty in zip(
-                decoder.tables, self._dtypes.each, self._dtypes.empty, strict=True
-            )
-        ]
+        every = list(self._dtypes.empty)
+        self._needed = [0] * len(every)
+        for number, in_lent, in_own, own in decoder.filled():
+            rows = lent[number][:in_lent] if in_lent else every[number]
+            if in_own:
+                rows = appended(rows, own, in_own)
+            elif len(rows) * 2 < len(lent[number]):
+                rows = appended(rows, 0, 0)
+            every[number] = rows
+            self._needed[number] = len(rows)
         found = tables_of(
             self._schema,
             every,
@@ -114,8 +164,10 @@ def tables_of(
     )
 
 
-def copied(table: Any, dtype: np.dtype[Any]) -> Rows:
-    """The rows of a table of C."""
-    found: Rows = numpy().empty(table.count, dtype)
-    ctypes.memmove(found.ctypes.data, table.rows, found.nbytes)
+def appended(rows: Rows, address: int, count: int) -> Rows:
+    """The rows, and behind them those at an address."""
+    found: Rows = numpy().empty(len(rows) + count, rows.dtype)
+    ctypes.memmove(found.ctypes.data, rows.ctypes.data, rows.nbytes)
+    behind = found.ctypes.data + rows.nbytes
+    ctypes.memmove(behind, address, count * rows.dtype.itemsize)
     return found

@@ -12,7 +12,7 @@ from protogen.capture.source import Source, opened, pieces
 from protogen.capture.tables import Tables, joined
 from protogen.model.protocol import Protocol
 
-CHUNK = 4 << 20
+CHUNK = 1 << 20
 """Bytes of a capture that are decoded at once."""
 
 

@@ -225,21 +225,34 @@ class TableSchema:
         return tuple(item for item in self.columns if item.role in ("field", "count"))
 
     @property
-    def is_fixed(self) -> bool:
-        """Whether all of every row is always written."""
-        return all(_is_fixed(item) for item in self.columns)
+    def holes(self) -> tuple[range, ...] | None:
+        """Bytes of a row that no member has; None where it depends on the row what there is."""
+        return _holes(self.row)
 
 
-def _is_fixed(column: Column) -> bool:
+def _holes(record: Record) -> tuple[range, ...] | None:
+    found: list[range] = []
+    end = 0
+    for column in record.columns:
+        inner = _holes_in(column)
+        if inner is None:
+            return None
+        found.append(range(end, column.position))
+        found += [
+            range(column.position + hole.start, column.position + hole.stop) for hole in inner
+        ]
+        end = column.position + column.size
+    found.append(range(end, record.size))
+    return tuple(filter(None, found))
+
+
+def _holes_in(column: Column) -> tuple[range, ...] | None:
     if any(dimension.counted_by is not None for dimension in column.dimensions):
-        return False
-    match column.shape:
-        case Record(columns=columns):
-            return all(_is_fixed(item) for item in columns)
-        case Choice():
-            return False
-        case _:
-            return True
+        return None
+    if isinstance(column.shape, Choice):
+        return None
+    inner = _holes(column.shape) if isinstance(column.shape, Record) else ()
+    return None if inner and column.counts else inner
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from protogen.native.errors import NativeError
 
-FLAGS = ("-std=c99", "-O2", "-w", "-fPIC", "-shared", "-fvisibility=hidden")
+FLAGS = ("-std=c99", "-O3", "-w", "-fPIC", "-shared", "-fvisibility=hidden")
 _USUAL = ("cc", "gcc", "clang")
 _SECONDS = 300
 """No compiler takes so long for one source."""

@@ -4,21 +4,34 @@ from __future__ import annotations
 
 import ctypes
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
+from protogen.capture.arrays import numpy
 from protogen.native.errors import NativeError
 from protogen.native.source import Driver
 
+if TYPE_CHECKING:
+    from protogen.capture.tables import Rows
 
-class Table(ctypes.Structure):
-    """`struct protogen_table`."""
+
+_TABLE = [
+    (name, "uintp")
+    for name in ("rows", "count", "room", "lent", "lent_count", "own", "own_capacity")
+]
+"""`struct protogen_table`."""
+
+
+class State(ctypes.Structure):
+    """What stands in `struct protogen_capture` behind the tables."""
 
     _fields_ = (
-        ("rows", ctypes.c_void_p),
-        ("count", ctypes.c_size_t),
-        ("soft", ctypes.c_size_t),
-        ("capacity", ctypes.c_size_t),
+        ("offset", ctypes.c_uint64),
+        ("sequence", ctypes.c_uint64),
+        ("payloads", ctypes.c_uint64),
+        ("budget", ctypes.c_uint64),
+        ("is_full", ctypes.c_uint32),
+        ("failed", ctypes.c_uint32),
     )
 
 
@@ -42,20 +55,16 @@ class Library:
         self.start = _function(library, "protogen_start", None, pointer, long, long)
         self.feed = _function(library, "protogen_feed", size, pointer, pointer, size)
         self.flush = _function(library, "protogen_flush", None, pointer)
+        self.lend = _function(library, "protogen_lend", None, pointer, size, pointer, size)
         self.clear = _function(library, "protogen_clear", None, pointer)
 
 
-def _function(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> Any:
-    function = getattr(library, name)
-    function.restype, function.argtypes = result, arguments
-    return function
-
-
 class Decoder:
-    """A stream that becomes rows in tables of C.
+    """A stream that becomes rows of tables: those of the messages, invalid, unknown, payloads.
 
-    A table is full at `budget` bytes; it then takes what the bytes at hand still bring, and `feed`
-    returns.
+    Rows go into memory that was lent for them, and behind its end into memory of the table's own.
+    Then, or when that has `budget` bytes, the table is full: it takes what the bytes at hand still
+    bring, and `feed` returns.
     """
 
     def __init__(self, library: Library, budget: int) -> None:
@@ -64,11 +73,19 @@ class Decoder:
         if not self._pointer:
             raise MemoryError
         finalize(self, library.free, self._pointer)
-        self._state = _state(library.tables).from_address(self._pointer)
+        dtype = numpy().dtype(_TABLE)
+        size = library.tables * dtype.itemsize
+        memory = (ctypes.c_uint8 * size).from_address(self._pointer)
+        self._tables = numpy().frombuffer(memory, dtype)
+        self._state = State.from_address(self._pointer + size)
 
     def start(self, offset: int, sequence: int) -> None:
         """Begin a stream: offset of its first byte, number of its first event."""
         self._library.start(self._pointer, offset, sequence)
+
+    def lend(self, number: int, memory: Rows) -> None:
+        """Lend memory for the rows of a table; until `clear`, which forgets it."""
+        self._library.lend(self._pointer, number, memory.ctypes.data, len(memory))
 
     def feed(self, address: int, size: int) -> int:
         """Take bytes at an address until a table is full. Returns how many were taken."""
@@ -82,7 +99,7 @@ class Decoder:
         self._check()
 
     def clear(self) -> None:
-        """Forget the rows."""
+        """Forget the rows, and what was lent."""
         self._library.clear(self._pointer)
 
     @property
@@ -95,27 +112,24 @@ class Decoder:
         """The number of the next event."""
         return int(self._state.sequence)
 
-    @property
-    def tables(self) -> Any:
-        """All tables: of the messages, invalid, unknown, payloads."""
-        return self._state.tables
+    def filled(self) -> list[tuple[int, int, int, int]]:
+        """The tables with rows: number, rows in lent memory, rows in its own, and where that is."""
+        tables = self._tables
+        in_lent = (tables["lent"] != 0) & (tables["rows"] == tables["lent"])
+        lent = numpy().where(in_lent, tables["count"], tables["lent_count"])
+        own = numpy().where(in_lent, 0, tables["count"])
+        numbers = numpy().flatnonzero(lent + own)
+        return [
+            (number, int(lent[number]), int(own[number]), int(tables["own"][number]))
+            for number in numbers.tolist()
+        ]
 
     def _check(self) -> None:
         if self._state.failed:
             raise MemoryError
 
 
-def _state(tables: int) -> type[ctypes.Structure]:
-    """What `struct protogen_capture` begins with."""
-
-    class State(ctypes.Structure):
-        _fields_ = (
-            ("tables", Table * tables),
-            ("offset", ctypes.c_uint64),
-            ("sequence", ctypes.c_uint64),
-            ("budget", ctypes.c_uint64),
-            ("is_full", ctypes.c_uint32),
-            ("failed", ctypes.c_uint32),
-        )
-
-    return State
+def _function(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> Any:
+    function = getattr(library, name)
+    function.restype, function.argtypes = result, arguments
+    return function

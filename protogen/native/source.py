@@ -11,6 +11,7 @@ from jinja2 import Environment
 from protogen.capture.layout import capture_schema, message_record
 from protogen.capture.schema import CaptureSchema, Choice, Column, Record, TableSchema
 from protogen.model.protocol import Protocol, Sender
+from protogen.targets.c.decoder import DecoderView
 from protogen.targets.c.emit import texts, unit_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
@@ -20,12 +21,29 @@ _CALL = "decoder->handler(decoder->user, &event)"
 _DIRECT = "protogen_take(decoder->user, &event)"
 """The decoder calls the driver by its name, so that the compiler can put it in its place."""
 
+_SMALL = 64
+"""Clearing so many bytes costs no more than finding the few between the members."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Table:
     view: MessageView
-    is_fixed: bool
+    clears: bool
+    """Whether the row is cleared before it is filled."""
+    holes: tuple[range, ...]
+    """Else, the bytes that lie between its members."""
     loads: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Direct:
+    """A message whose frame is one byte that tells all, and a payload of 7-bit bytes."""
+
+    key: str
+    fixed: int
+    checks: str
+    number: int
+    """Of its table."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,20 +58,29 @@ class Driver:
     """What the library's `protogen_layout` has to say."""
 
 
+_KEPT: dict[tuple[int, str], tuple[Protocol, Driver]] = {}
+"""By the identity of the model, which stays what it is as long as it is kept here."""
+_MOST_KEPT = 16
+
+
 def driver_of(protocol: Protocol, sender: Sender) -> Driver:
-    """The driver of what one endpoint sends."""
+    """The driver of what one endpoint sends. It is printed once for a model."""
+    key = id(protocol), sender.name
+    if key not in _KEPT:
+        while len(_KEPT) >= _MOST_KEPT:
+            del _KEPT[next(iter(_KEPT))]
+        _KEPT[key] = protocol, _driver(protocol, sender)
+    return _KEPT[key][1]
+
+
+def _driver(protocol: Protocol, sender: Sender) -> Driver:
     options = COptions(style="single", senders=(sender.name,))
     header, source = texts(protocol, options)
     unit = unit_of(protocol, options)
     decoder = next(item for item in unit.framing.decoders if item.name == sender.name)
     schema = capture_schema(protocol, sender)
     tables = tuple(
-        _Table(
-            unit.module.message(name),
-            table.is_fixed,
-            any(column.role == "field" for column in table.columns),
-        )
-        for name, table in schema.messages.items()
+        _table(unit.module.message(name), table) for name, table in schema.messages.items()
     )
     layout = list(_layout(schema))
     text = (
@@ -66,11 +93,40 @@ def driver_of(protocol: Protocol, sender: Sender) -> Driver:
             parts=decoder.parts,
             header=header,
             source=source.replace(_CALL, _DIRECT),
+            module=unit.module.name,
+            direct=_direct(decoder, list(schema.messages)),
             tables=tables,
             layout=[expression for expression, _ in layout],
         )
     )
     return Driver(protocol.name, sender.name, text, schema, tuple(size for _, size in layout))
+
+
+def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:
+    """The messages that the driver takes by itself: there is nothing to verify but bits."""
+    is_bare = (
+        decoder.whole
+        and decoder.stuffing is None
+        and decoder.seven_bit
+        and decoder.known_by_identity
+        and decoder.start == "set"
+        and (decoder.head_size, decoder.tail_size, decoder.end_size) == (1, 0, 0)
+        and not any(item.seven_bit or item.padding for item in decoder.head_numbers)
+    )
+    if not is_bare:
+        return []
+    return [
+        _Direct(group.key, group.fixed, group.messages[0].checks, tables.index(message.name))
+        for group in decoder.groups
+        for message in group.messages
+        if group.fixed and len(group.messages) == 1
+    ]
+
+
+def _table(view: MessageView, table: TableSchema) -> _Table:
+    holes = table.holes
+    clears = holes is None or table.row.size <= _SMALL
+    return _Table(view, clears, () if clears else holes or (), bool(table.fields))
 
 
 @cache
