@@ -17,9 +17,9 @@ from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from corpus import material_of, stream_of
 
 from protogen.capture import CaptureError, InvalidReason, batches, columns
+from protogen.capture.gather import gathered
 from protogen.capture.layout import capture_schema
 from protogen.capture.schema import Number, TableSchema
-from protogen.capture.tables import joined
 from protogen.targets.c.struct_sizes import NATURAL, StructSizes
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
@@ -49,7 +49,7 @@ def test_batches_joined_are_the_columns(path: Path, sender: str) -> None:
     parts = list(batches(data, protocol, sender, chunk=97, engine="python"))
     assert len(parts) > 5
     whole = columns(data, protocol, sender, engine="python")
-    assert_same_tables(joined(parts), whole)
+    assert_same_tables(gathered(parts, None, 1), whole)
     end = count = 0
     for part in parts:
         assert (part.offset, part.sequence) == (end, count)

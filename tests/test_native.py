@@ -20,8 +20,8 @@ from test_recovery import drawn_pieces
 from tooling import require_tool
 
 from protogen.capture import CaptureError, SlowCaptureWarning, Tables, batches, columns, engines
+from protogen.capture.gather import gathered
 from protogen.capture.native import NativeEngine, library_of
-from protogen.capture.tables import joined
 from protogen.native import build as building
 from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
@@ -101,7 +101,9 @@ def test_any_mixture_in_any_pieces_has_the_tables_that_python_fills(
     found = []
     for start in range(0, len(stream), chunk):
         found += engine.feed(stream[start : start + chunk])
-    assert_same_tables(joined([*found, *engine.flush()]), python_tables(path, sender, stream))
+    assert_same_tables(
+        gathered([*found, *engine.flush()], None, 1), python_tables(path, sender, stream)
+    )
 
 
 def test_a_full_table_ends_a_batch() -> None:
@@ -112,7 +114,7 @@ def test_a_full_table_ends_a_batch() -> None:
     assert len(found) > 20
     greatest = max(table.nbytes for part in found for table in part.messages.values())
     assert greatest <= 2 * 4096
-    assert_same_tables(joined(found), python_tables(RN1, "brain", data))
+    assert_same_tables(gathered(found, None, 1), python_tables(RN1, "brain", data))
 
 
 # --- the compiler ---------------------------------------------------------------------------------

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
-from typing import Literal, Protocol
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, Literal, Protocol
 
 from protogen.capture.errors import CaptureError, SlowCaptureWarning
 from protogen.capture.layout import capture_schema
@@ -26,25 +27,29 @@ class Engine(Protocol):
         """Take the end of the stream."""
 
 
-def engine_of(protocol: Model, sender: Sender, name: EngineName | None) -> Engine:
-    """The engine of that name; None: the fastest one that there is.
+Maker = Callable[[], Any]
+"""Makes an `Engine`; a native one can do what reading in parts needs, too."""
 
-    Raises CaptureError if there is no such engine, or it can't be had.
+
+def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Maker, bool]:
+    """What makes engines of that name, and whether several can read parts of a capture at once.
+
+    Without a name they are the fastest that there are. Raises CaptureError if there is no such
+    engine, or it can't be had.
     """
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
-    if name == "python":
-        return _python(protocol, sender)
-    from protogen.capture.native import NativeEngine, library_of
-    from protogen.native.errors import NativeError
+    if name != "python":
+        from protogen.capture.native import NativeEngine, library_of
+        from protogen.native.errors import NativeError
 
-    try:
-        return NativeEngine(library_of(protocol, sender))
-    except NativeError as error:
-        if name == "native":
-            raise CaptureError(f"no native engine: {error}") from None
-        _warn(str(error))
-        return _python(protocol, sender)
+        try:
+            return partial(NativeEngine, library_of(protocol, sender)), True
+        except NativeError as error:
+            if name == "native":
+                raise CaptureError(f"no native engine: {error}") from None
+            _warn(str(error))
+    return partial(_python, protocol, sender), False
 
 
 _warned: set[str] = set()
@@ -55,7 +60,7 @@ def _warn(why: str) -> None:
     if why not in _warned:
         _warned.add(why)
         text = f"captures are read in Python, which is slow: {why}"
-        warnings.warn(text, SlowCaptureWarning, stacklevel=4)
+        warnings.warn(text, SlowCaptureWarning, stacklevel=5)
 
 
 def _python(protocol: Model, sender: Sender) -> PythonEngine:

@@ -94,18 +94,30 @@ class NativeEngine:
         self._offset = 0
         self._sequence = 0
 
+    def start(self, offset: int) -> None:
+        """Begin a stream at this byte of the capture; events are numbered from 0."""
+        self._decoder.start(offset, 0)
+        self._offset, self._sequence = offset, 0
+
+    def renumber(self, more: int) -> None:
+        """The numbers of the next events are greater by so many."""
+        self._sequence += more
+        self._decoder.renumber(more)
+
     def feed(self, data: bytes | memoryview) -> Iterator[Tables]:
         """Take the next bytes of the stream."""
-        if not len(data):
-            return
-        address, taken = address_of(data), 0
-        while taken < len(data):
-            lent = self._lend()
-            taken += self._decoder.feed(address + taken, len(data) - taken)
-            found = self._tables(lent)
-            del lent  # So that memory which the caller lets go is used again.
+        view, taken = memoryview(data), 0
+        while taken < len(view):
+            count, found = self.step(view[taken:])
+            taken += count
             yield found
-            del found
+            del found  # So that memory which the caller lets go is used again.
+
+    def step(self, data: bytes | memoryview) -> tuple[int, Tables]:
+        """Take some of the next bytes, until a table is full: how many, and what came of them."""
+        lent = self._lend()
+        taken = self._decoder.feed(address_of(data), len(data))
+        return taken, self._tables(lent)
 
     def flush(self) -> Iterator[Tables]:
         """Take the end of the stream."""

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import BinaryIO
 
 from protogen.capture.arrays import numpy
-from protogen.capture.engines import Engine, EngineName, engine_of
+from protogen.capture.engines import Engine, EngineName, Maker, makers
+from protogen.capture.gather import gathered
+from protogen.capture.parallel import PART, Parts
 from protogen.capture.protocols import protocol_of, sender_of
 from protogen.capture.source import Source, opened, pieces
-from protogen.capture.tables import Tables, joined
+from protogen.capture.tables import Tables
 from protogen.model.protocol import Protocol
 
 CHUNK = 1 << 20
@@ -29,11 +34,13 @@ def columns(
     `source` is a path, whose file is mapped into memory, bytes, or an open binary file. `protocol`
     is a schema's name or path, or the resolved protocol. `engine` is `native`, generated C that the
     system's compiler compiles once, or `python`; None: native where there is a compiler. `workers`
-    is how many threads the native engine uses; the result is always the same.
+    is how many threads decode, where the engine is native and the capture is in memory or in a
+    file; the result is always the same.
 
     Raises CaptureError, SchemaError, and MissingPackageError where NumPy is not installed.
     """
-    return joined(batches(source, protocol, sender, engine=engine))
+    with _reading(source, protocol, sender, engine) as reading:
+        return gathered(reading.tables(None, workers), reading.total, workers)
 
 
 def batches(
@@ -41,21 +48,54 @@ def batches(
     protocol: Protocol | str | os.PathLike[str],
     sender: str,
     *,
-    chunk: int = CHUNK,
+    chunk: int | None = None,
     engine: EngineName | None = None,
+    workers: int = 1,
 ) -> Iterator[Tables]:
     """The same tables in stretches of at most about `chunk` bytes of the capture, in order.
 
-    There is one at least. Joined they are what `columns` gives: offsets and sequence count on.
+    There is one at least. Put together they are what `columns` gives: offsets and numbers count
+    on. Memory stays bounded, whatever the capture; a stretch is kept only as long as the caller
+    keeps it.
     """
+    with _reading(source, protocol, sender, engine) as reading:
+        yield from reading.tables(chunk, workers)
+
+
+@contextmanager
+def _reading(
+    source: Source,
+    protocol: Protocol | str | os.PathLike[str],
+    sender: str,
+    name: EngineName | None,
+) -> Iterator[_Reading]:
     numpy()
     model = protocol_of(protocol)
-    found = engine_of(model, sender_of(model, sender), engine)
-    return _batches(source, found, chunk)
-
-
-def _batches(source: Source, engine: Engine, chunk: int) -> Iterator[Tables]:
+    maker, in_parts = makers(model, sender_of(model, sender), name)
     with opened(source) as capture:
-        for piece in pieces(capture, chunk):
+        yield _Reading(capture, maker, in_parts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """A capture, and what decodes it."""
+
+    capture: memoryview | BinaryIO
+    maker: Maker
+    in_parts: bool
+
+    @property
+    def total(self) -> int | None:
+        """Bytes of the capture, if that is known."""
+        return len(self.capture) if isinstance(self.capture, memoryview) else None
+
+    def tables(self, chunk: int | None, workers: int) -> Iterator[Tables]:
+        """All tables, in order."""
+        if workers > 1 and self.in_parts and isinstance(self.capture, memoryview):
+            engines = [self.maker() for _ in range(workers + 2)]
+            yield from Parts(self.capture, engines, chunk or PART).tables(workers)
+            return
+        engine: Engine = self.maker()
+        for piece in pieces(self.capture, chunk or CHUNK):
             yield from engine.feed(piece)
         yield from engine.flush()

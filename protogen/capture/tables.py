@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -44,6 +44,12 @@ class Tables:
     events: int
     """How many there are."""
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all rows."""
+        every = (*self.messages.values(), self.invalid, self.unknown, self.payloads)
+        return sum(rows.nbytes for rows in every)
+
     def payload(self, row: Any) -> bytes:
         """The payload of a row of `unknown`."""
         start, size = int(row["payload_offset"]), int(row["payload_size"])
@@ -61,29 +67,7 @@ def rows(dtype: np.dtype[Any], count: int = 0) -> Rows:
     return found
 
 
-def joined(pieces: Iterable[Tables]) -> Tables:
-    """Tables of stretches that follow each other, as one. There has to be one at least."""
-    every = list(pieces)
-    first = every[0]
-    if len(every) == 1:
-        return first
-    return Tables(
-        schema=first.schema,
-        engine=first.engine,
-        messages={
-            name: _joined([item.messages[name] for item in every]) for name in first.messages
-        },
-        invalid=_joined([item.invalid for item in every]),
-        unknown=_joined(_moved(every)),
-        payloads=_joined([item.payloads for item in every]),
-        offset=first.offset,
-        size=sum(item.size for item in every),
-        sequence=first.sequence,
-        events=sum(item.events for item in every),
-    )
-
-
-def _joined(pieces: Sequence[Rows]) -> Rows:
+def concatenated(pieces: Sequence[Rows]) -> Rows:
     """One behind another. Rows are copied whole, with what lies between their members."""
     dtype = pieces[0].dtype
     filled = [numpy().ascontiguousarray(item).view(f"V{dtype.itemsize}") for item in pieces]
@@ -91,20 +75,7 @@ def _joined(pieces: Sequence[Rows]) -> Rows:
     return found
 
 
-def _moved(pieces: Iterable[Tables]) -> list[Rows]:
-    """The rows of unknown frames, with the places that their payloads will have."""
-    found: list[Rows] = []
-    place = 0
-    for item in pieces:
-        moved = item.unknown
-        if place and len(moved):
-            moved = _joined([moved])
-            moved[_payload_column(item)] += place
-        found.append(moved)
-        place += len(item.payloads)
-    return found
-
-
-def _payload_column(tables: Tables) -> str:
-    columns = tables.schema.unknown.columns
+def payload_column(schema: CaptureSchema) -> str:
+    """The column of unknown frames that says where their payloads begin."""
+    columns = schema.unknown.columns
     return next(item.name for item in columns if item.source == "payload_offset")

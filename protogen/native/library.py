@@ -102,6 +102,10 @@ class Decoder:
         """Forget the rows, and what was lent."""
         self._library.clear(self._pointer)
 
+    def renumber(self, more: int) -> None:
+        """The numbers of the next events are greater by so many, which may be less than none."""
+        self._state.sequence += more
+
     @property
     def offset(self) -> int:
         """Of the first byte that no event covers yet."""

@@ -1,0 +1,87 @@
+"""Cuts tables at an event, so that stretches of a capture fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from protogen.capture.arrays import numpy
+from protogen.capture.tables import Tables, payload_column
+
+if TYPE_CHECKING:
+    from protogen.capture.tables import Rows
+
+Frame = tuple[int, int]
+"""Offset and size of a valid frame."""
+
+
+def frames_of(tables: Tables, low: int, high: int) -> dict[Frame, int]:
+    """The valid frames that start from `low` on, before `high`, and their numbers."""
+    found: dict[Frame, int] = {}
+    for rows in (*tables.messages.values(), tables.unknown):
+        if len(rows):
+            first, last = numpy().searchsorted(rows["offset"], (low, high)).tolist()
+            chosen = rows[first:last]
+            places = zip(chosen["offset"].tolist(), chosen["size"].tolist(), strict=True)
+            found |= dict(zip(places, chosen["sequence"].tolist(), strict=True))
+    return found
+
+
+def until(tables: Tables, number: int, end: int) -> Tables:
+    """The events up to that one, which ends in front of the byte `end`."""
+    found = _cut(tables, lambda rows: rows[: _behind(rows, number)])
+    kept = 0
+    if len(found.unknown):
+        column = payload_column(tables.schema)
+        kept = int(found.unknown[-1][column]) + int(found.unknown[-1]["payload_size"])
+    return replace(
+        found,
+        payloads=tables.payloads[:kept],
+        size=end - tables.offset,
+        events=number + 1 - tables.sequence,
+    )
+
+
+def behind(tables: Tables, number: int, end: int) -> Tables:
+    """The events behind that one, which ends in front of the byte `end`."""
+    found = _cut(tables, lambda rows: rows[_behind(rows, number) :])
+    start = len(tables.payloads)
+    if len(found.unknown):
+        column = payload_column(tables.schema)
+        start = int(found.unknown[0][column])
+        found.unknown[column] -= start
+    return replace(
+        found,
+        payloads=tables.payloads[start:],
+        offset=end,
+        size=tables.offset + tables.size - end,
+        sequence=number + 1,
+        events=tables.sequence + tables.events - number - 1,
+    )
+
+
+def renumbered(tables: Tables, more: int) -> Tables:
+    """The same tables, whose events have numbers that are greater by `more`. Changes the rows."""
+    for rows in each(tables):
+        if len(rows) and more:
+            rows["sequence"] += numpy().uint64(more % (1 << 64))
+    return replace(tables, sequence=tables.sequence + more)
+
+
+def each(tables: Tables) -> Iterable[Rows]:
+    """All tables of events."""
+    return (*tables.messages.values(), tables.invalid, tables.unknown)
+
+
+def _behind(rows: Rows, number: int) -> int:
+    return int(numpy().searchsorted(rows["sequence"], number, side="right"))
+
+
+def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> Tables:
+    return replace(
+        tables,
+        messages={name: cut(rows) for name, rows in tables.messages.items()},
+        invalid=cut(tables.invalid),
+        unknown=cut(tables.unknown),
+    )

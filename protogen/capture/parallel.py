@@ -1,0 +1,177 @@
+"""Decodes parts of a capture on several cores. The tables are those of one decoder.
+
+A part's decoder starts at any byte, and what it finds there may be wrong. But two decoders that
+have both completed the same frame are in the same state: a frame is decided by its bytes alone,
+and what follows it by the bytes behind it. So the decoder of the part in front runs on past its
+end until it completes a frame that the part's own decoder has, too; from there on the part's own
+events count. If there is no such frame, it runs on through the whole part. Invalid bytes are no
+such sign: where they begin and end depends on what was before.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
+from protogen.capture.tables import Tables
+
+PART = 4 << 20
+"""Bytes of a part."""
+ROOM = 64 << 20
+"""Bytes of rows that a part may have before its turn has come."""
+_WINDOW = 1 << 10
+"""Bytes at least that a decoder runs on at a time to find a frame of the next part."""
+
+
+class Engine(Protocol):
+    """A decoder that can begin anywhere."""
+
+    def start(self, offset: int) -> None:
+        """Begin a stream at this byte of the capture; events are numbered from 0."""
+
+    def renumber(self, more: int) -> None:
+        """The numbers of the next events are greater by so many."""
+
+    def step(self, data: memoryview) -> tuple[int, Tables]:
+        """Take some of the next bytes: how many, and what came of them."""
+
+    def flush(self) -> Iterator[Tables]:
+        """Take the end of the capture."""
+
+
+@dataclass(slots=True)
+class _Run:
+    """A decoder, how far it has come, and what it found that is not delivered yet."""
+
+    engine: Engine
+    position: int
+    found: deque[Tables] = field(default_factory=deque)
+
+
+@dataclass(frozen=True, slots=True)
+class _Meeting:
+    """A frame that two decoders have completed: its number for each of them, and its end."""
+
+    number: int
+    other: int
+    end: int
+
+
+class Parts:
+    """Reads a capture in parts, some of them ahead."""
+
+    def __init__(
+        self, data: memoryview, engines: Sequence[Engine], part: int = PART, room: int = ROOM
+    ) -> None:
+        """`engines`: one for each part that is decoded at a time, and one more at least.
+
+        A part whose rows take more than `room` bytes is decoded on only when its turn has come.
+        """
+        self._data = data
+        self._free = list(engines)
+        self._part = part
+        self._room = room
+
+    def tables(self, workers: int) -> Iterator[Tables]:
+        """All tables, in order."""
+        starts = iter(range(0, max(1, len(self._data)), self._part))
+        ahead: deque[Future[_Run]] = deque()
+        with ThreadPoolExecutor(workers, "protogen-capture") as pool:
+            try:
+                self._decode_ahead(pool, starts, ahead)
+                run = ahead.popleft().result()
+                yield from self._deliver(run)
+                while ahead:
+                    run = yield from self._seam(run, ahead.popleft().result())
+                    self._decode_ahead(pool, starts, ahead)
+                    yield from self._deliver(run)
+                yield from run.engine.flush()
+            finally:
+                for future in ahead:
+                    future.cancel()
+
+    def _decode_ahead(
+        self, pool: ThreadPoolExecutor, starts: Iterator[int], ahead: deque[Future[_Run]]
+    ) -> None:
+        while self._free and (start := next(starts, None)) is not None:
+            ahead.append(pool.submit(self._decode, self._free.pop(), start))
+
+    def _end(self, position: int) -> int:
+        """Of the part that begins there, or that the byte is in."""
+        return min(len(self._data), (position // self._part + 1) * self._part)
+
+    def _decode(self, engine: Engine, start: int) -> _Run:
+        """Decode a part as if a stream began there."""
+        engine.start(start)
+        run = _Run(engine, start)
+        end, size = self._end(start), 0
+        while run.position < end and size <= self._room:
+            tables = self._step(run, end)
+            run.found.append(tables)
+            size += tables.nbytes
+        return run
+
+    def _step(self, run: _Run, end: int) -> Tables:
+        taken, tables = run.engine.step(self._data[run.position : end])
+        run.position += taken
+        return tables
+
+    def _deliver(self, run: _Run) -> Iterator[Tables]:
+        """What was found, and the rest of a part that was not decoded to its end."""
+        while run.found:
+            yield run.found.popleft()
+        end = -(-run.position // self._part) * self._part
+        while run.position < min(end, len(self._data)):
+            yield self._step(run, end)
+
+    def _seam(self, run: _Run, other: _Run) -> Generator[Tables, None, _Run]:
+        """Run on to where both agree, or through the part; then that which goes on is left."""
+        start, window = run.position, _WINDOW
+        end = self._end(start)
+        while run.position < end:
+            stop = min(end, run.position + window)
+            while run.position < stop:
+                tables = self._step(run, stop)
+                met = _meeting(tables, other.found, start)
+                if met is not None:
+                    yield until(tables, met.number, met.end)
+                    _take_over(other, met)
+                    self._free.append(run.engine)
+                    return other
+                yield tables
+            window *= 2
+        self._free.append(other.engine)
+        return run
+
+
+def _meeting(tables: Tables, others: Sequence[Tables], start: int) -> _Meeting | None:
+    """The first frame from the byte `start` on that both have."""
+    mine = frames_of(tables, start, 1 << 63)
+    last = max((offset for offset, _ in mine), default=-1)
+    theirs: dict[Frame, int] = {}
+    for item in others:
+        if item.offset > last:
+            break
+        theirs |= frames_of(item, start, last + 1)
+    both = [frame for frame in mine if frame in theirs]
+    if not both:
+        return None
+    frame = min(both)
+    return _Meeting(mine[frame], theirs[frame], sum(frame))
+
+
+def _take_over(run: _Run, met: _Meeting) -> None:
+    """Forget all up to the frame, and number what is behind it on."""
+    kept: deque[Tables] = deque()
+    more = met.number - met.other
+    for tables in run.found:
+        if tables.sequence > met.other:
+            kept.append(renumbered(tables, more))
+        elif tables.sequence + tables.events > met.other + 1:
+            kept.append(renumbered(behind(tables, met.other, met.end), more))
+    run.found = kept
+    run.engine.renumber(more)
