@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -21,8 +22,7 @@ def frames_of(tables: Tables, low: int, high: int) -> dict[Frame, int]:
     found: dict[Frame, int] = {}
     for rows in (*tables.messages.values(), tables.unknown):
         if len(rows):
-            first, last = numpy().searchsorted(rows["offset"], (low, high)).tolist()
-            chosen = rows[first:last]
+            chosen = rows[_place(rows, "offset", low) : _place(rows, "offset", high)]
             places = zip(chosen["offset"].tolist(), chosen["size"].tolist(), strict=True)
             found |= dict(zip(places, chosen["sequence"].tolist(), strict=True))
     return found
@@ -75,7 +75,13 @@ def each(tables: Tables) -> Iterable[Rows]:
 
 
 def _behind(rows: Rows, number: int) -> int:
-    return int(numpy().searchsorted(rows["sequence"], number, side="right"))
+    return _place(rows, "sequence", number + 1)
+
+
+def _place(rows: Rows, column: str, least: int) -> int:
+    """The first row whose value is so great. Looks at a few, where NumPy would copy the column."""
+    values = rows[column]
+    return bisect_left(range(len(rows)), least, key=lambda place: int(values[place]))
 
 
 def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> Tables:

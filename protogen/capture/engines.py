@@ -40,11 +40,12 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
     if name != "python":
-        from protogen.capture.native import NativeEngine, library_of
+        from protogen.capture.native import Memory, NativeEngine, library_of
         from protogen.native.errors import NativeError
 
         try:
-            return partial(NativeEngine, library_of(protocol, sender)), True
+            library = library_of(protocol, sender)
+            return partial(NativeEngine, library, memory=Memory()), True
         except NativeError as error:
             if name == "native":
                 raise CaptureError(f"no native engine: {error}") from None

@@ -6,6 +6,7 @@ import ctypes
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
@@ -56,41 +57,54 @@ class Memory:
     """
 
     def __init__(self) -> None:
+        self.rates: list[float] = []
+        """Rows of each table for a byte of the capture, as far as is known."""
         self._blocks: list[Rows] = []
+        self._lock = Lock()
 
     def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
         """Rows of any content."""
         size = count * dtype.itemsize
-        for block in self._blocks:
-            # The list, the loop and the call know it.
-            if sys.getrefcount(block) == _UNUSED and size <= block.nbytes <= 2 * size:
-                break
-        else:
-            self._blocks = [item for item in self._blocks if sys.getrefcount(item) > _UNUSED]
-            block = numpy().empty(size, "u1")
-            self._blocks.append(block)
-        found: Rows = block[:size].view(dtype)
+        if size < _LITTLE:
+            return numpy().empty(count, dtype)  # type: ignore[no-any-return]
+        with self._lock:
+            found: Rows = self._block(size)[:size].view(dtype)
         return found
 
+    def _block(self, size: int) -> Rows:
+        for block in self._blocks:
+            if sys.getrefcount(block) == _UNUSED and size <= block.nbytes <= 4 * size:
+                return block
+        self._blocks = [item for item in self._blocks if sys.getrefcount(item) > _UNUSED]
+        fresh: Rows = numpy().empty(size + size // 4, "u1")
+        self._blocks.append(fresh)
+        return fresh
 
+
+_LITTLE = 1 << 17
+"""Bytes that come out of the process's own heap."""
 _UNUSED = 3
+"""The list, the loop and the question itself refer to a block that nobody uses."""
+_TELLING = 1 << 13
+"""Bytes of a capture that tell how many rows there will be in as many again."""
 
 
 class NativeEngine:
     """A stream that becomes tables, some bytes at a time.
 
-    C writes rows where they stay: each batch lends it as much memory as the last one needed.
+    C writes rows where they stay: it is lent as much memory as the last bytes needed.
     """
 
     name = "native"
 
-    def __init__(self, library: Library, budget: int = BUDGET) -> None:
+    def __init__(
+        self, library: Library, budget: int = BUDGET, memory: Memory | None = None
+    ) -> None:
         self._schema = library.schema
         self._decoder = Decoder(library, budget)
         self._dtypes = Dtypes(library.schema)
         self._budget = budget
-        self._needed = [0] * library.tables
-        self._memory = Memory()
+        self._memory = memory or Memory()
         self._offset = 0
         self._sequence = 0
 
@@ -115,37 +129,38 @@ class NativeEngine:
 
     def step(self, data: bytes | memoryview) -> tuple[int, Tables]:
         """Take some of the next bytes, until a table is full: how many, and what came of them."""
-        lent = self._lend()
+        lent = self._lend(len(data))
         taken = self._decoder.feed(address_of(data), len(data))
-        return taken, self._tables(lent)
+        return taken, self._tables(lent, taken)
 
     def flush(self) -> Iterator[Tables]:
         """Take the end of the stream."""
         self._decoder.flush()
-        yield self._tables({})
+        yield self._tables({}, 0)
 
-    def _lend(self) -> dict[int, Rows]:
+    def _lend(self, size: int) -> dict[int, Rows]:
+        """Memory for what so many bytes may bring."""
         found: dict[int, Rows] = {}
-        for number, needed in enumerate(self._needed):
-            if needed:
+        for number, rate in enumerate(self._memory.rates):
+            if rate:
                 dtype = self._dtypes.each[number]
                 most = max(1, self._budget // dtype.itemsize)
-                found[number] = self._memory.rows(dtype, min(most, needed + needed // 8 + 8))
+                found[number] = self._memory.rows(dtype, min(most, int(rate * size * 1.1) + 8))
                 self._decoder.lend(number, found[number])
         return found
 
-    def _tables(self, lent: dict[int, Rows]) -> Tables:
+    def _tables(self, lent: dict[int, Rows], taken: int) -> Tables:
         decoder = self._decoder
         every = list(self._dtypes.empty)
-        self._needed = [0] * len(every)
         for number, in_lent, in_own, own in decoder.filled():
             rows = lent[number][:in_lent] if in_lent else every[number]
             if in_own:
                 rows = appended(rows, own, in_own)
-            elif len(rows) * 2 < len(lent[number]):
+            elif len(rows) * 4 < len(lent[number]):
                 rows = appended(rows, 0, 0)
             every[number] = rows
-            self._needed[number] = len(rows)
+        if taken >= _TELLING:
+            self._memory.rates = [len(rows) / taken for rows in every]
         found = tables_of(
             self._schema,
             every,

@@ -22,6 +22,10 @@ _TABLE = [
 """`struct protogen_table`."""
 
 
+_FEW = 1 << 12
+"""Bytes that take some microseconds at most."""
+
+
 class State(ctypes.Structure):
     """What stands in `struct protogen_capture` behind the tables."""
 
@@ -41,6 +45,8 @@ class Library:
     def __init__(self, path: Path, driver: Driver) -> None:
         try:
             library = ctypes.CDLL(str(path))
+            # What is done at once keeps the GIL: to get it back may take longer.
+            quick = ctypes.PyDLL(str(path))
         except OSError as error:
             raise NativeError(f"{path} can't be loaded: {error}") from None
         self.schema = driver.schema
@@ -50,13 +56,14 @@ class Library:
             raise NativeError("the compiler lays structs out in a way of its own")
         self.tables = len(self.schema.messages) + 3
         pointer, size, long = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint64
-        self.new = _function(library, "protogen_new", pointer, long)
-        self.free = _function(library, "protogen_free", None, pointer)
-        self.start = _function(library, "protogen_start", None, pointer, long, long)
+        self.new = _function(quick, "protogen_new", pointer, long)
+        self.free = _function(quick, "protogen_free", None, pointer)
+        self.start = _function(quick, "protogen_start", None, pointer, long, long)
         self.feed = _function(library, "protogen_feed", size, pointer, pointer, size)
+        self.feed_few = _function(quick, "protogen_feed", size, pointer, pointer, size)
         self.flush = _function(library, "protogen_flush", None, pointer)
-        self.lend = _function(library, "protogen_lend", None, pointer, size, pointer, size)
-        self.clear = _function(library, "protogen_clear", None, pointer)
+        self.lend = _function(quick, "protogen_lend", None, pointer, size, pointer, size)
+        self.clear = _function(quick, "protogen_clear", None, pointer)
 
 
 class Decoder:
@@ -89,7 +96,8 @@ class Decoder:
 
     def feed(self, address: int, size: int) -> int:
         """Take bytes at an address until a table is full. Returns how many were taken."""
-        taken: int = self._library.feed(self._pointer, address, size)
+        feed = self._library.feed_few if size <= _FEW else self._library.feed
+        taken: int = feed(self._pointer, address, size)
         self._check()
         return taken
 

@@ -1,0 +1,139 @@
+"""Captures that several cores decode in parts: the tables of one decoder, wherever they are cut."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from random import Random
+
+import handwritten_streams
+import pytest
+from capture_support import assert_same_tables
+from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
+from corpus import joined as pieces_joined
+from corpus import marks_of, material_of, stream_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_recovery import drawn_pieces
+from tooling import require_tool
+
+from protogen.capture import batches, columns
+from protogen.capture.gather import gathered
+from protogen.capture.native import Memory, NativeEngine, library_of
+from protogen.capture.parallel import ROOM, Parts
+
+RN1 = ROOT / "schemas" / "rn1.yaml"
+SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+SENDERS = [
+    (path, sender.name) for path in (*SCHEMAS, *SAMPLERS) for sender in protocol_of(path).senders
+]
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
+EXAMPLES = settings().max_examples
+SEEDS = range(max(8, EXAMPLES // 10))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _kept_apart(tmp_path_factory: pytest.TempPathFactory):
+    """A cache of the tests' own."""
+    require_tool("cc")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def check(
+    path: Path, sender: str, data: bytes, part: int, *, budget: int = 1 << 20, room: int = ROOM
+) -> None:
+    library = library_of(protocol_of(path), protocol_of(path).sender(sender))
+    memory = Memory()
+    engines = [NativeEngine(library, budget, memory) for _ in range(4)]
+    found = gathered(Parts(memoryview(data), engines, part, room).tables(2), len(data), 2)
+    whole = NativeEngine(library)
+    expected = gathered([*whole.feed(data), *whole.flush()], None, 1)
+    assert_same_tables(found, expected)
+
+
+@EVERY_SENDER
+def test_parts_of_noisy_streams_fit_together(path: Path, sender: str) -> None:
+    material = material_of(path, sender, greatest=3000)
+    for seed in SEEDS:
+        dice = Random(f"{path.stem} {sender} {seed}")
+        stream = stream_of(material, dice, 100).data
+        check(path, sender, stream, dice.choice([13, 64, 300, 1000, 5000]))
+
+
+@EVERY_SENDER
+def test_parts_of_telling_bytes_fit_together(path: Path, sender: str) -> None:
+    """Delimiters and escapes everywhere: decoders agree late, or never."""
+    marks = marks_of(path, sender)
+    spec = module_at(path).PROTOCOL.sender(sender)
+    for seed in SEEDS:
+        dice = Random(f"{path.stem} {sender} {seed}")
+        data = bytes(dice.choice(marks) for _ in range(dice.randrange(1500)))
+        check(path, sender, data, dice.choice([7, 100, 700]))
+        data = handwritten_streams.random_stream(spec, dice, 40)
+        check(path, sender, data, dice.choice([1, 5, 20]), budget=dice.choice([1, 1 << 20]))
+
+
+@EVERY_SENDER
+@settings(max_examples=max(10, EXAMPLES // 6))
+@given(data=st.data())
+def test_parts_of_any_mixture_fit_together(path: Path, sender: str, data: st.DataObject) -> None:
+    stream = pieces_joined(data.draw(drawn_pieces(material_of(path, sender)))).data
+    part = data.draw(st.integers(1, max(1, len(stream))))
+    budget = data.draw(st.sampled_from([1, 300, 1 << 20]))
+    check(
+        path, sender, stream, part, budget=budget, room=data.draw(st.sampled_from([0, 100, ROOM]))
+    )
+
+
+def test_workers_give_what_one_gives(tmp_path: Path) -> None:
+    protocol = protocol_of(RN1)
+    data = stream_of(material_of(RN1, "brain"), Random(5), 4000).data
+    capture = tmp_path / "run.bin"
+    capture.write_bytes(data)
+    expected = columns(data, protocol, "brain", engine="native")
+    for source in (capture, data, io.BytesIO(data)):  # What is not in memory is read by one.
+        assert_same_tables(columns(source, protocol, "brain", workers=3), expected)
+    parts = list(batches(capture, protocol, "brain", chunk=10_000, workers=3))
+    assert len(parts) > 20
+    assert_same_tables(gathered(parts, None, 1), expected)
+    assert columns(b"", protocol, "brain", workers=2).events == 0
+
+
+def test_a_reader_that_stops_early_waits_for_nobody() -> None:
+    data = stream_of(material_of(RN1, "brain"), Random(5), 2000).data
+    reading = batches(data, protocol_of(RN1), "brain", chunk=1000, workers=2)
+    assert next(reading).events
+    reading.close()
+
+
+def test_memory_is_used_again_when_nobody_looks_at_it() -> None:
+    memory, dtype = Memory(), material_dtype()
+    first = memory.rows(dtype, 1 << 18)
+    place = first.ctypes.data
+    second = memory.rows(dtype, 1 << 18)
+    assert second.ctypes.data != place
+    view = first[5:]
+    del first
+    assert memory.rows(dtype, 1 << 18).ctypes.data != place
+    del view
+    assert memory.rows(dtype, 1 << 18).ctypes.data == place
+
+
+def material_dtype():
+    import numpy as np
+
+    return np.dtype("u4")
+
+
+def test_rows_that_were_not_foreseen_get_memory_of_their_own() -> None:
+    """A capture that goes on otherwise than it began: of each table there are several blocks."""
+    frames = material_of(RN1, "brain").frames
+    early = b"".join(frame for frame in frames if len(frame) < 20) * 5
+    late = b"".join(frame for frame in frames if len(frame) > 100) * 50
+    engine = NativeEngine(library_of(protocol_of(RN1), protocol_of(RN1).sender("brain")))
+    pieces = [tables for piece in (early, late, early) for tables in engine.feed(piece)]
+    pieces += engine.flush()
+    expected = columns(early + late + early, protocol_of(RN1), "brain", engine="python")
+    assert_same_tables(gathered(pieces, len(early), 1), expected)
