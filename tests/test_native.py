@@ -11,6 +11,7 @@ from random import Random
 import handwritten_streams
 import pytest
 from capture_support import assert_same_tables
+from cli_support import run
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
 from corpus import joined as pieces_joined
 from corpus import marks_of, material_of, stream_of
@@ -25,7 +26,7 @@ from protogen.capture.native import NativeEngine, library_of
 from protogen.native import build as building
 from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
-from protogen.native.library import Library
+from protogen.native.library import Decoder, Library
 from protogen.native.source import driver_of
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
@@ -282,3 +283,46 @@ def test_a_library_that_is_none_or_another_is_not_used(tmp_path: Path) -> None:
     assert other.layout != driver.layout
     with pytest.raises(NativeError, match="lays structs out"):
         Library(build().path, other)
+
+
+# --- the command ----------------------------------------------------------------------------------
+
+
+def test_the_command_builds_ahead_finds_and_removes(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert run("native", "path").output.strip() == str(folder)
+    assert "rn1 brain: compiled" in run("native", "build", "schemas/rn1.yaml").output
+    again = run("native", "build", "schemas/rn1.yaml")
+    assert again.output.splitlines() == ["rn1 host: is there", "rn1 brain: is there"]
+    assert not build().is_new
+    assert run("native", "clean").output.strip() == "removed 2 libraries"
+    assert run("native", "clean").output.strip() == "removed 0 libraries"
+
+
+def test_the_command_says_why_it_can_not(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("CC", "no-such-cc")
+    result = run("native", "build", "schemas/rn1.yaml")
+    assert result.exit_code == 2
+    assert "there is no C compiler 'no-such-cc'" in result.output
+    assert "captures can still be read in Python" in result.output
+
+    def home() -> Path:
+        raise RuntimeError
+
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setattr(cache.Path, "home", home)
+    assert "no home folder" in run("native", "path").output
+
+
+def test_memory_that_is_not_there_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    decoder = Decoder(library, 1)
+    decoder._state.failed = 1
+    with pytest.raises(MemoryError):
+        decoder.flush()
+    monkeypatch.setattr(library, "new", lambda budget: None)
+    with pytest.raises(MemoryError):
+        Decoder(library, 1)

@@ -24,6 +24,7 @@ from protogen.cli import (
     generate,
     init,
     lock,
+    native,
     rules,
     schema_json,
     size,
@@ -54,6 +55,14 @@ app.command("breaking", cls=Command, epilog=breaking.EXAMPLE)(guarded(breaking.b
 app.command("lock", cls=Command, epilog=lock.EXAMPLE)(guarded(lock.lock))
 app.command("rules", cls=Command, epilog=rules.EXAMPLE)(guarded(rules.rules))
 app.command("size", cls=Command, epilog=size.EXAMPLE)(guarded(size.size))
+native_app = typer.Typer(
+    help="Compiled decoders that read captures fast: build them ahead, find them, remove them.",
+    no_args_is_help=True,
+)
+native_app.command("build", cls=Command, epilog=native.BUILD_EXAMPLE)(guarded(native.build))
+native_app.command("path", cls=Command, epilog=native.PATH_EXAMPLE)(guarded(native.path))
+native_app.command("clean", cls=Command, epilog=native.CLEAN_EXAMPLE)(guarded(native.clean))
+app.add_typer(native_app, name="native")
 app.command("schema-json", cls=Command, epilog=schema_json.EXAMPLE)(
     guarded(schema_json.schema_json)
 )

@@ -1,0 +1,66 @@
+"""`protogen native`: the compiled decoders that read captures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, UsageError
+
+BUILD_EXAMPLE = "Example: protogen native build schemas"
+PATH_EXAMPLE = "Example: du -sh $(protogen native path)"
+CLEAN_EXAMPLE = "Example: protogen native clean"
+
+
+def build(
+    schemas: Annotated[
+        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
+    ],
+) -> int:
+    """Compile what reads captures of these schemas fast, ahead of its first use.
+
+    Uses the compiler that CC names, else cc. Libraries are kept in a cache that only you can write
+    to; what is there already is not compiled again.
+    """
+    from protogen.cli.schemas import open_protocol, schema_files
+    from protogen.native.build import build as build_library
+    from protogen.native.errors import NativeError
+
+    protocols = [open_protocol(file) for file in schema_files(schemas)]
+    for protocol in protocols:
+        for sender in protocol.senders:
+            try:
+                built = build_library(protocol, sender)
+            except NativeError as error:
+                raise UsageError(str(error), "captures can still be read in Python") from None
+            state = "compiled" if built.is_new else "is there"
+            typer.echo(f"{protocol.name} {sender.name}: {state}")
+    return CLEAN
+
+
+def path() -> int:
+    """Print the folder that the compiled libraries are kept in."""
+    typer.echo(str(_folder()))
+    return CLEAN
+
+
+def clean() -> int:
+    """Remove all compiled libraries. They are compiled again when they are used."""
+    from protogen.native.cache import clean as clean_cache
+
+    _folder()
+    count = clean_cache()
+    typer.echo(f"removed {count} {'library' if count == 1 else 'libraries'}")
+    return CLEAN
+
+
+def _folder() -> Path:
+    from protogen.native.cache import cache_folder
+    from protogen.native.errors import NativeError
+
+    try:
+        return cache_folder()
+    except NativeError as error:
+        raise UsageError(str(error)) from None
