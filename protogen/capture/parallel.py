@@ -26,6 +26,9 @@ ROOM = 64 << 20
 _WINDOW = 1 << 10
 """Bytes at least that a decoder runs on at a time to find a frame of the next part."""
 
+_SAMPLE = 1 << 16
+"""Bytes that tell how many rows there will be."""
+
 
 class Engine(Protocol):
     """A decoder that can begin anywhere."""
@@ -78,6 +81,7 @@ class Parts:
 
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
+        self._sample()
         starts = iter(range(0, max(1, len(self._data)), self._part))
         ahead: deque[Future[_Run]] = deque()
         with ThreadPoolExecutor(workers, "protogen-capture") as pool:
@@ -93,6 +97,13 @@ class Parts:
             finally:
                 for future in ahead:
                     future.cancel()
+
+    def _sample(self) -> None:
+        """Let a decoder see how many rows there will be, before memory is got for all."""
+        if len(self._data) > self._part:
+            engine = self._free[0]
+            engine.start(0)
+            engine.step(self._data[: min(self._part, _SAMPLE)])
 
     def _decode_ahead(
         self, pool: ThreadPoolExecutor, starts: Iterator[int], ahead: deque[Future[_Run]]
