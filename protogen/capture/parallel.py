@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
+from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
 PART = 4 << 20
@@ -135,6 +136,7 @@ class Parts:
         """What was found, and the rest of a part that was not decoded to its end."""
         while run.found:
             yield run.found.popleft()
+        forget(self._data, max(0, run.position - self._part), run.position)
         end = -(-run.position // self._part) * self._part
         while run.position < min(end, len(self._data)):
             yield self._step(run, end)

@@ -38,11 +38,31 @@ def pieces(source: memoryview | BinaryIO, size: int) -> Iterator[bytes | memoryv
     if isinstance(source, memoryview):
         for start in range(0, len(source), size):
             yield source[start : start + size]
+            forget(source, start, start + size)
         return
     while piece := source.read(size):
         if not isinstance(piece, bytes):
             raise CaptureError("the capture was opened as text; open it with mode 'rb'")
         yield piece
+
+
+class _Mapping(mmap.mmap):
+    """A file that was mapped here: only to be read, and by nobody else."""
+
+
+def forget(source: memoryview, start: int, stop: int) -> None:
+    """Give back the memory of bytes that were read. What is read again comes from the file again.
+
+    Else the pages of a mapped file count as the process's memory, until all of it does.
+    """
+    mapping = source.obj
+    if not isinstance(mapping, _Mapping) or not hasattr(mmap, "MADV_DONTNEED"):
+        return
+    before = len(mapping) - len(source)
+    first = (before + start) // mmap.PAGESIZE * mmap.PAGESIZE
+    last = min(len(mapping), before + stop) // mmap.PAGESIZE * mmap.PAGESIZE
+    if last > first:
+        mapping.madvise(mmap.MADV_DONTNEED, first, last - first)
 
 
 def _file(path: Path) -> io.FileIO:
@@ -56,7 +76,7 @@ def _mapped(file: io.BufferedReader | io.FileIO) -> memoryview | BinaryIO:
     """The rest of a file as memory; a pipe, a device or an empty file as it is."""
     try:
         start = file.tell()
-        mapping = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        mapping = _Mapping(file.fileno(), 0, access=mmap.ACCESS_READ)
     except (OSError, ValueError):
         return file
     # Whoever still looks at a piece keeps the mapping; the last of them ends it.
