@@ -28,6 +28,7 @@ from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
 from protogen.native.library import Decoder, Library
 from protogen.native.source import driver_of
+from protogen.runtime.assembly import encode_frame
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -116,6 +117,17 @@ def test_a_full_table_ends_a_batch() -> None:
     greatest = max(table.nbytes for part in found for table in part.messages.values())
     assert greatest <= 2 * 4096
     assert_same_tables(gathered(found, None, 1), python_tables(RN1, "brain", data))
+
+
+def test_a_signalling_nan_means_the_same_in_both() -> None:
+    """C keeps its bits, Python makes it a quiet one; in a union other members show them."""
+    path = ROOT / "tests" / "framings" / "cobs.yaml"
+    spec = module_at(path).PROTOCOL.sender("station")
+    frame = encode_frame(spec, (0xB5,), bytes.fromhex("62 30 B5 FF A0"), {}, strict=False)
+    for bits in ("62 01 00 A0 7F", "62 00 00 C0 7F", "62 00 00 80 FF"):
+        frame += encode_frame(spec, (0xB5,), bytes.fromhex(bits), {}, strict=False)
+    check(path, "station", frame)
+    assert len(native_tables(path, "station", frame).messages["sensor"]) == 4
 
 
 # --- the compiler ---------------------------------------------------------------------------------
