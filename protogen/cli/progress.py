@@ -33,10 +33,12 @@ def _bar(title: str, total: int | None, *, in_bytes: bool) -> Iterator[Advance]:
     from protogen.cli.console import error_console
 
     amount = rich_progress.DownloadColumn() if in_bytes else rich_progress.MofNCompleteColumn()
+    rate = (rich_progress.TransferSpeedColumn(),) if in_bytes else ()
     columns = (
         rich_progress.TextColumn("{task.description}"),
         rich_progress.BarColumn(),
         amount,
+        *rate,
         rich_progress.TimeRemainingColumn(),
     )
     with rich_progress.Progress(*columns, console=error_console(), transient=True) as shown:

@@ -1,0 +1,138 @@
+"""`protogen convert`: captures -> tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
+from protogen.convert.inputs import InputKind
+from protogen.convert.writers import OutputFormat
+
+if TYPE_CHECKING:
+    from protogen.convert.run import Job, Result
+
+EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
+
+OUTPUT = Path("converted")
+
+_MOST_COMPLAINTS = 20
+"""So many lines of all captures are complained of one by one."""
+
+
+def convert(  # noqa: PLR0913 - each option is one argument
+    schema: SchemaFile,
+    captures: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="CAPTURE...|-",
+            help="Files or URLs that fsspec knows: raw bytes, recordings, text logs with times,"
+            " hex digits, also compressed by gzip or zstd; - is standard input.",
+        ),
+    ],
+    to: Annotated[OutputFormat, typer.Option("--to", help="What tables are written as.")],
+    sender: SenderOfBytes = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Where the tables go.")
+    ] = OUTPUT,
+    input: Annotated[
+        InputKind | None,
+        typer.Option(
+            "--input", help="What captures are written in; without it, that is found out."
+        ),
+    ] = None,
+    force: Annotated[
+        bool,
+        typer.Option(
+            "--force", help="Do what is done again, and replace files that somebody else made."
+        ),
+    ] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Make tables of captures: one for each message, with raw and physical values.
+
+    Files appear whole or not at all. After an interruption the same command goes on with the first
+    capture that is not done. Exits with 1 if a line or record of a log can't be used, as its bytes
+    are lost.
+    """
+    from protogen.cli.codec import open_codec
+    from protogen.convert.run import Job
+
+    codec = open_codec(schema)
+    name = codec.sender_of_bytes(sender)
+    sent = codec.protocol.sender(name)
+    job = Job(codec.protocol, codec.runtime, sent, to, output, input, force)
+    complaints = _Complaints()
+    results = _run(job, captures, complaints)
+    if not quiet:
+        for result in results:
+            _print_result(result, output)
+    complaints.report()
+    return FINDINGS if any(result.lost_lines for result in results) else CLEAN
+
+
+class _Complaints:
+    """Prints what can't be used, up to a number of lines."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def add(self, problem: str) -> None:
+        self._count += 1
+        if self._count <= _MOST_COMPLAINTS:
+            typer.echo(f"warning: {problem}", err=True)
+
+    def report(self) -> None:
+        silent = self._count - _MOST_COMPLAINTS
+        if silent > 0:
+            typer.echo(f"warning: {silent} more lines can't be used", err=True)
+
+
+def _run(job: Job, captures: Sequence[str], complaints: _Complaints) -> list[Result]:
+    from protogen.cli.progress import progress
+    from protogen.convert.errors import ConvertError
+    from protogen.convert.run import convert, plan
+
+    try:
+        named = plan(job, captures)
+        with progress("converting", _total(job, captures), in_bytes=True) as advance:
+            return list(convert(job, named, complaints.add, advance))
+    except ConvertError as error:
+        raise UsageError(str(error), error.hint) from None
+
+
+def _total(job: Job, captures: Sequence[str]) -> int | None:
+    """The size of all captures together, where it is known."""
+    from protogen.convert.inputs import Source
+
+    sizes = [Source(place).stamp()[0] for place in captures]
+    return None if None in sizes else sum(size or 0 for size in sizes)
+
+
+# --- the summary ----------------------------------------------------------------------------------
+
+
+def _print_result(result: Result, folder: Path) -> None:
+    if result.was_done:
+        typer.echo(f"{result.place}: done before, nothing has changed since")
+    else:
+        typer.echo(f"{result.place}: {result.format}, {result.tally.bytes} bytes")
+    for name, amount in _amounts(result):
+        typer.echo(f"  {name:<24} {amount}")
+    if not result.was_done:
+        tables = [file for file in result.files if not file.endswith(".columns.json")]
+        typer.echo(f"  wrote {len(tables)} files in {folder}")
+
+
+def _amounts(result: Result) -> list[tuple[str, str]]:
+    tally = result.tally
+    amounts = [(name, f"{count:>12}") for name, count in sorted(tally.messages.items())]
+    if tally.unknown:
+        amounts.append(("unknown frames", f"{tally.unknown:>12}"))
+    for reason, count in sorted(tally.invalid.items()):
+        amounts.append((f"invalid: {reason}", f"{count:>12} bytes"))
+    return amounts

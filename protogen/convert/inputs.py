@@ -1,0 +1,342 @@
+"""What a capture is written in, found out from its first bytes and its name, and how it is read.
+
+    bytes in front of the rest            it is
+    1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd; then what is inside
+    50 47 52 45 43 00 01 0A (`PGREC`)     a recorded capture, see `protogen/capture/record.py`
+    `(1700000000.25) ...`                 a log of text with times, see `textlog.py`
+
+A name that ends in `.hex` means hex digits. Digits alone do not: there are protocols whose raw
+bytes are hex digits. All else is the raw bytes of the line.
+"""
+
+from __future__ import annotations
+
+import codecs
+import gzip
+import os
+import stat
+import sys
+import zlib
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+from io import BufferedReader
+from pathlib import Path, PurePosixPath
+from typing import BinaryIO, cast
+
+from protogen.capture.record import MAGIC
+from protogen.cli.hexinput import HexError, HexReader
+from protogen.convert.chunks import PIECE, Chunk, joined
+from protogen.convert.errors import ConvertError, needed
+from protogen.convert.recorded import record_pieces
+from protogen.convert.textlog import LINE, Complain, log_pieces
+
+STANDARD_INPUT = "-"
+_HEAD = 1 << 12
+"""So many bytes are looked at to find out what a capture is."""
+_READ = 1 << 18
+"""The most bytes that are read at once."""
+_LONGEST_LINE = 1 << 24
+
+
+class InputKind(StrEnum):
+    """What the bytes of the line are written in."""
+
+    RAW = "raw"
+    HEX = "hex"
+    LOG = "log"
+    RECORD = "record"
+
+
+class Packing(StrEnum):
+    """How a file is compressed."""
+
+    NONE = ""
+    GZIP = "gzip"
+    ZSTD = "zstd"
+
+
+_WORDS = {
+    InputKind.RAW: "raw bytes",
+    InputKind.HEX: "hex digits",
+    InputKind.LOG: "a text log with times",
+    InputKind.RECORD: "a recorded capture",
+}
+_MAGIC = {Packing.GZIP: b"\x1f\x8b", Packing.ZSTD: b"\x28\xb5\x2f\xfd"}
+_SUFFIX = {".gz": Packing.GZIP, ".zst": Packing.ZSTD}
+_KINDS = {".hex": InputKind.HEX}
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a capture comes from: a path, a URL that fsspec knows, or `-`."""
+
+    place: str
+
+    @property
+    def is_standard_input(self) -> bool:
+        """Whether the capture comes through a pipe."""
+        return self.place == STANDARD_INPUT
+
+    @property
+    def is_url(self) -> bool:
+        """Whether fsspec has to open it."""
+        return "://" in self.place
+
+    @property
+    def name(self) -> str:
+        """The name that its tables get, if no other capture has it: that of the file, bare."""
+        if self.is_standard_input:
+            return "stdin"
+        path = PurePosixPath(self.place.partition("://")[2] or self.place)
+        if path.suffix in _SUFFIX:
+            path = path.with_suffix("")
+        return path.stem or "capture"
+
+    def stamp(self) -> tuple[int | None, int | None]:
+        """Size in bytes, and the time in ns of the last change; None where that is not known.
+
+        Raises ConvertError where nothing is there.
+        """
+        if self.is_standard_input:
+            return None, None
+        with _translated(self.place):
+            if self.is_url:
+                return _url_size(self.place), None
+            status = Path(self.place).stat()
+        known = stat.S_ISREG(status.st_mode)
+        return (status.st_size, status.st_mtime_ns) if known else (None, None)
+
+
+@contextmanager
+def _translated(place: str) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, EOFError) as error:
+        reason = getattr(error, "strerror", None) or str(error) or "can't be read"
+        raise ConvertError(f"{place}: {reason}") from None
+    except zlib.error as error:
+        raise ConvertError(f"{place}: its compression is damaged: {error}") from None
+    except HexError as error:
+        raise ConvertError(f"{place}: {error}") from None
+    except Exception as error:
+        # The package is optional, so its exception has no name here.
+        if type(error).__name__ != "ZstdError":
+            raise
+        raise ConvertError(f"{place}: its compression is damaged: {error}") from None
+
+
+def _url_size(url: str) -> int | None:
+    fsspec = needed("fsspec.core", f"reading {url}")
+    try:
+        filesystem, path = fsspec.url_to_fs(url)
+        return cast(int | None, filesystem.size(path))
+    except (ValueError, ImportError) as error:
+        raise ConvertError(f"{url}: {error}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """What a capture is written in."""
+
+    kind: InputKind
+    packing: Packing
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the file's bytes are those of the line, so that any part can be read alone."""
+        return self.kind is InputKind.RAW and self.packing is Packing.NONE
+
+    def __str__(self) -> str:
+        packed = f", {self.packing}" if self.packing else ""
+        return f"{_WORDS[self.kind]}{packed}"
+
+
+@dataclass(slots=True)
+class Capture:
+    """A capture that was opened: what it is, and its bytes."""
+
+    format: Format
+    chunks: Iterator[Chunk]
+
+
+@contextmanager
+def opened(
+    source: Source,
+    kind: InputKind | None,
+    sender: str,
+    senders: Collection[str],
+    complain: Complain,
+    advance: Callable[[int], None] = lambda amount: None,
+) -> Iterator[Capture]:
+    """Open a capture, of the given kind or what it turns out to be, and read it piece by piece.
+
+    `advance` is told of the bytes that were read from the file. Raises ConvertError.
+    """
+    with _translated(source.place), open_stream(source.place) as stream:
+        counted = _Counted(stream, advance)
+        head = counted.peek(_HEAD)
+        packing = _packing(head)
+        unpacked = _Counted(_unpacking(counted, packing))
+        found = kind or _kind(unpacked.peek(_HEAD), source.place)
+        chunks = _chunks(_pieces(unpacked), found, sender, senders, complain)
+        yield Capture(Format(found, packing), _named(chunks, source.place))
+
+
+@contextmanager
+def open_stream(place: str) -> Iterator[BinaryIO]:
+    """The bytes of a path, a URL or standard input."""
+    if place == STANDARD_INPUT:
+        yield cast(BinaryIO, sys.stdin.buffer)
+        return
+    if "://" in place:
+        fsspec = needed("fsspec", f"reading {place}")
+        try:
+            file = fsspec.open(place, "rb")
+        except (ValueError, ImportError) as error:
+            raise ConvertError(f"{place}: {error}") from None
+        with file as stream:
+            yield stream
+        return
+    with Path(place).open("rb", buffering=0) as stream:
+        yield stream
+
+
+def format_of(source: Source, kind: InputKind | None) -> Format:
+    """What a capture is, without reading more of it than its start. Raises ConvertError."""
+    with opened(source, kind, "", (), lambda problem: None) as capture:
+        return capture.format
+
+
+class _Counted(BufferedReader):
+    """A stream that can be looked at before it is read, and tells how much was read."""
+
+    def __init__(
+        self, stream: BinaryIO, advance: Callable[[int], None] = lambda amount: None
+    ) -> None:
+        super().__init__(stream, _READ)  # type: ignore[arg-type]
+        self._advance = advance
+
+    def read1(self, size: int = -1, /) -> bytes:
+        data = super().read1(size)
+        self._advance(len(data))
+        return data
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        self._advance(len(data))
+        return data
+
+    def readinto(self, buffer: object, /) -> int:
+        size = super().readinto(buffer)  # type: ignore[arg-type]
+        self._advance(size)
+        return size
+
+    def close(self) -> None:
+        """Leave the stream open: who opened it closes it."""
+
+
+def _packing(head: bytes) -> Packing:
+    return next(
+        (packing for packing, magic in _MAGIC.items() if head.startswith(magic)), Packing.NONE
+    )
+
+
+def _unpacking(stream: BufferedReader, packing: Packing) -> BinaryIO:
+    if packing is Packing.GZIP:
+        return cast(BinaryIO, gzip.GzipFile(fileobj=stream))
+    if packing is Packing.ZSTD:
+        zstandard = needed("zstandard", "a capture that zstd has compressed")
+        decompressor = zstandard.ZstdDecompressor()
+        return cast(BinaryIO, decompressor.stream_reader(stream, read_across_frames=True))
+    return cast(BinaryIO, stream)
+
+
+def _kind(head: bytes, place: str) -> InputKind:
+    if head.startswith(MAGIC):
+        return InputKind.RECORD
+    if LINE.match(head.lstrip(b"\xef\xbb\xbf \t\r\n")):
+        return InputKind.LOG
+    path = PurePosixPath(place)
+    suffix = path.with_suffix("").suffix if path.suffix in _SUFFIX else path.suffix
+    return _KINDS.get(suffix, InputKind.RAW)
+
+
+def _pieces(stream: BufferedReader) -> Iterator[bytes]:
+    while piece := stream.read1(_READ):
+        yield piece
+
+
+def _chunks(
+    pieces: Iterator[bytes],
+    kind: InputKind,
+    sender: str,
+    senders: Collection[str],
+    complain: Complain,
+) -> Iterator[Chunk]:
+    match kind:
+        case InputKind.RAW:
+            return _large(pieces)
+        case InputKind.HEX:
+            return _large(_hex(pieces))
+        case InputKind.LOG:
+            return joined(log_pieces(_lines(pieces), sender, senders, complain))
+        case InputKind.RECORD:
+            return joined(record_pieces(pieces, complain))
+
+
+def _large(pieces: Iterable[bytes]) -> Iterator[Chunk]:
+    data = bytearray()
+    for piece in pieces:
+        data += piece
+        if len(data) >= PIECE:
+            yield Chunk(bytes(data))
+            data.clear()
+    if data:
+        yield Chunk(bytes(data))
+
+
+def _named(chunks: Iterator[Chunk], place: str) -> Iterator[Chunk]:
+    """Let what goes wrong while reading say which capture it was."""
+    with _translated(place):
+        yield from chunks
+
+
+def _hex(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
+    reader = HexReader()
+    for piece in pieces:
+        yield reader.feed(decode(piece))
+    yield reader.finish()
+
+
+def _lines(pieces: Iterable[bytes]) -> Iterator[str]:
+    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
+    rest = ""
+    for piece in pieces:
+        *whole, rest = (rest + decode(piece)).split("\n")
+        yield from whole
+        if len(rest) > _LONGEST_LINE:
+            raise ConvertError(f"a line has over {_LONGEST_LINE} characters: this is no text")
+    if rest:
+        yield rest
+
+
+def names_of(sources: Iterable[Source]) -> list[str]:
+    """A name for each capture that no other has: that of its file, with folders where it must."""
+    given = list(sources)
+    plain = [source.name for source in given]
+    names = [
+        source.name if plain.count(source.name) == 1 else _long_name(source.place)
+        for source in given
+    ]
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise ConvertError(f"{given[index].place} is given twice")
+    return names
+
+
+def _long_name(place: str) -> str:
+    path = os.path.normpath(place.partition("://")[2] or place)
+    return path.strip("/.").replace("/", "-").replace(os.sep, "-")

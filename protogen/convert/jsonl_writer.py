@@ -1,0 +1,21 @@
+"""JSON lines: those of `protogen decode --format jsonl`, so that `protogen encode` takes them."""
+
+from __future__ import annotations
+
+from protogen.convert.batches import Batch
+from protogen.convert.outputs import Pending
+
+
+class JsonlWriter:
+    """Writes one file."""
+
+    def __init__(self, name: str, pending: Pending) -> None:
+        self._file = pending.path(f"{name}.jsonl").open("wb")
+
+    def write(self, batch: Batch) -> None:
+        """Write the events of a batch."""
+        self._file.write(batch.lines())
+
+    def close(self) -> None:
+        """Write what is left."""
+        self._file.close()

@@ -1,0 +1,154 @@
+"""One run: captures in, files in their places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from protogen.convert.batches import Batch, BatchDecoder, EventDecoder, Tally
+from protogen.convert.errors import ConvertError
+from protogen.convert.inputs import InputKind, Source, names_of, opened
+from protogen.convert.outputs import Pending, remove
+from protogen.convert.state import Done, State
+from protogen.convert.tables import Tables, tables_of
+from protogen.convert.writers import OutputFormat, open_writer, require
+from protogen.model.protocol import Protocol, Sender
+from protogen.runtime.codec import Protocol as RuntimeProtocol
+
+Complain = Callable[[str], None]
+Advance = Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What is wanted: whose bytes, written in what, converted to what, and where it goes."""
+
+    protocol: Protocol
+    runtime: RuntimeProtocol[Any, Any]
+    sender: Sender
+    format: OutputFormat
+    folder: Path
+    input: InputKind | None = None
+    """None: what the capture turns out to be."""
+    force: bool = False
+    """Whether files that no earlier run made may be replaced, and what is done is done again."""
+    tables: Tables = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "tables", tables_of(self.protocol, self.sender))
+
+    def decoder(self, start: int = 0) -> BatchDecoder:
+        """A decoder of bytes from `start` on."""
+        return EventDecoder(self.tables, self.runtime.sender(self.sender.name), start)
+
+    def stamp(self, source: Source) -> dict[str, Any]:
+        """All that the result depends on, to see whether an earlier one still holds."""
+        size, changed = source.stamp()
+        return {
+            "capture": source.place,
+            "size": size,
+            "changed_ns": changed,
+            "input": self.input and self.input.value,
+            "protocol": self.protocol.name,
+            "sender": self.sender.name,
+            "spec_hash": self.protocol.spec_hash,
+            "version": self.tables.invalid.facts["protogen.version"],
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What became of one capture."""
+
+    place: str
+    format: str
+    """What it was written in, in words."""
+    tally: Tally
+    files: Sequence[str]
+    was_done: bool = False
+    """Whether an earlier run did it."""
+    lost_lines: int = 0
+    """Lines or records that could not be used."""
+
+
+def plan(job: Job, places: Sequence[str]) -> list[tuple[str, Source]]:
+    """The captures, each with the name of its files. Raises ConvertError."""
+    require(job.format)
+    sources = [Source(place) for place in places]
+    names = names_of(sources)
+    for source in sources:
+        source.stamp()
+    return list(zip(names, sources, strict=True))
+
+
+def convert(
+    job: Job, named: Sequence[tuple[str, Source]], complain: Complain, advance: Advance
+) -> Iterator[Result]:
+    """Convert one capture after another. Raises ConvertError and OSError."""
+    state = State(job.folder)
+    for name, source in named:
+        key = f"{name}.{job.format}"
+        stamp = job.stamp(source)
+        done = None if source.is_standard_input or job.force else state.finished(key, stamp)
+        if done is None:
+            done = _convert_one(job, name, source, state, complain, advance)
+            state.record(key, done)
+            yield Result(
+                source.place, done.format, done.tally, done.files, lost_lines=done.lost_lines
+            )
+        else:
+            advance(stamp["size"] or 0)
+            lost = done.lost_lines
+            yield Result(source.place, done.format, done.tally, done.files, True, lost)
+
+
+def _convert_one(
+    job: Job, name: str, source: Source, state: State, complain: Complain, advance: Advance
+) -> Done:
+    lost = 0
+
+    def lose(problem: str) -> None:
+        nonlocal lost
+        lost += 1
+        complain(f"{source.place}: {problem}")
+
+    stamp = job.stamp(source)
+    pending = Pending(job.folder)
+    tally = Tally()
+    senders = [sender.name for sender in job.protocol.senders]
+    try:
+        with opened(source, job.input, job.sender.name, senders, lose, advance) as capture:
+            writer = open_writer(job.format, name, pending, job.tables)
+            try:
+                for batch in _batches(job.decoder(), capture.chunks):
+                    tally.add(batch.tally)
+                    writer.write(batch)
+            finally:
+                writer.close()
+            _make_room(job, f"{name}.{job.format}", pending.relatives, state)
+            files = pending.commit()
+    except BaseException:
+        pending.discard()
+        raise
+    return Done(stamp, files, tally, str(capture.format), lost)
+
+
+def _batches(decoder: BatchDecoder, chunks: Any) -> Iterator[Batch]:
+    for chunk in chunks:
+        yield decoder.feed(chunk)
+    yield decoder.flush()
+
+
+def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
+    """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
+    for file in files:
+        if (job.folder / file).exists() and not (job.force or state.owns(file)):
+            raise ConvertError(
+                f"{job.folder / file} is there already, and no earlier run made it",
+                "name another folder with --output, or replace it with --force",
+            )
+    stale = [file for file in state.files(key) if file not in files]
+    state.expect(key, files)
+    remove(job.folder, stale)

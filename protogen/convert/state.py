@@ -1,0 +1,96 @@
+"""What earlier runs finished in a folder, so that a run that was interrupted can go on.
+
+A capture is done when its files stand in their places and this record says so; it is written last.
+What was not done is done again from the capture's start, so a resumed run gives what one run gives.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from protogen.convert.batches import Tally
+from protogen.convert.outputs import write_whole
+
+RECORD = ".protogen-convert.json"
+"""The file's name in the output folder."""
+_VERSION = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A capture that was converted: from what, to which files, and what was in it."""
+
+    stamp: Mapping[str, Any]
+    files: Sequence[str]
+    tally: Tally
+    format: str
+    lost_lines: int = 0
+
+
+class State:
+    """The record of a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._path = folder / RECORD
+        self._done = _read(self._path)
+
+    def finished(self, key: str, stamp: Mapping[str, Any]) -> Done | None:
+        """What became of a capture, if nothing has changed since and its files are there."""
+        done = self._done.get(key)
+        if done is None or dict(done.stamp) != dict(stamp):
+            return None
+        return done if all((self._folder / file).is_file() for file in done.files) else None
+
+    def files(self, key: str) -> Sequence[str]:
+        """The files that an earlier run made of a capture."""
+        return self._done[key].files if key in self._done else ()
+
+    def owns(self, file: str) -> bool:
+        """Whether a file is one that an earlier run made."""
+        return any(file in done.files for done in self._done.values())
+
+    def record(self, key: str, done: Done) -> None:
+        """Take note that a capture is done. Raises OSError."""
+        self._done[key] = done
+        captures = {name: _as_json(item) for name, item in sorted(self._done.items())}
+        text = json.dumps({"version": _VERSION, "captures": captures}, indent=1) + "\n"
+        write_whole(self._path, text.encode())
+
+    def expect(self, key: str, files: Sequence[str]) -> None:
+        """Take note that files are about to come, so that they are known to be ours if they do."""
+        self.record(key, Done({}, files, Tally(), ""))
+
+
+def _as_json(done: Done) -> dict[str, Any]:
+    return {
+        "stamp": dict(done.stamp),
+        "files": list(done.files),
+        "tally": done.tally.as_json(),
+        "format": done.format,
+        "lost_lines": done.lost_lines,
+    }
+
+
+def _read(path: Path) -> dict[str, Done]:
+    """The record; nothing where there is none that can be read."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data["version"] != _VERSION:
+            return {}
+        return {
+            name: Done(
+                item["stamp"],
+                item["files"],
+                Tally.from_json(item["tally"]),
+                item["format"],
+                item["lost_lines"],
+            )
+            for name, item in data["captures"].items()
+        }
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}

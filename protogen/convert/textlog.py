@@ -1,0 +1,47 @@
+"""Logs of text with a time in each line, as `candump -l` writes them.
+
+    (1700000000.123456) can0 123#55020141BC
+    (1700000000.124) ttyUSB0 55 02 01 41 BC
+    (1700000000.124) esp 55 02 01 41 BC
+
+In parentheses stand seconds since 1970-01-01, behind them, if one likes, a word that is no hex
+number: an interface, or the sender, and only the wanted sender's lines count where it is one. The
+identifier of a CAN frame is no part of the bytes. Empty lines and comments behind `#` say nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator
+
+Complain = Callable[[str], None]
+"""Take note of a line that can't be used."""
+
+LINE = re.compile(rb"\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S")
+"""How a file of this kind begins."""
+
+_SPLIT = re.compile(
+    r"\((?P<seconds>\d{1,12})(?:\.(?P<fraction>\d{1,9}))?\)"
+    r"(?:\s+(?P<name>(?![0-9A-Fa-f]+(?:\s|$))[^\s#]+)(?=\s|$))?"
+    r"(?:\s+[0-9A-Fa-f]+\#(?:\#[0-9A-Fa-f])?)?"
+    r"\s*(?P<hex>(?:[0-9A-Fa-f]{2}\s*)*)(?:\s[RT]x?)?"
+)
+
+
+def log_pieces(
+    lines: Iterable[str], sender: str, senders: Collection[str], complain: Complain
+) -> Iterator[tuple[bytes, int]]:
+    """The bytes of each line that is not another sender's, with its time in nanoseconds.
+
+    A line that can't be read is complained of, and its bytes are lost.
+    """
+    for number, line in enumerate(lines, start=1):
+        text = line.strip()
+        if not text or text.startswith("#"):
+            continue
+        found = _SPLIT.fullmatch(text)
+        if found is None or not (found["hex"] or "#" in text):
+            complain(f"line {number}: not `(SECONDS) [NAME] HEX`: {text[:40]!r}")
+        elif found["name"] not in senders or found["name"] == sender:
+            fraction = (found["fraction"] or "").ljust(9, "0")
+            yield bytes.fromhex(found["hex"]), int(found["seconds"]) * 10**9 + int(fraction)

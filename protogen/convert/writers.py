@@ -1,0 +1,79 @@
+"""The formats that captures are converted to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import StrEnum
+from typing import Protocol
+
+from protogen.convert.batches import Batch
+from protogen.convert.errors import needed
+from protogen.convert.outputs import Pending
+from protogen.convert.tables import Tables
+
+
+class OutputFormat(StrEnum):
+    """What tables are written as."""
+
+    JSONL = "jsonl"
+    CSV = "csv"
+    PARQUET = "parquet"
+    ARROW = "arrow"
+    MCAP = "mcap"
+
+
+_NEEDS = {
+    OutputFormat.PARQUET: ("pyarrow", "writing Parquet"),
+    OutputFormat.ARROW: ("pyarrow", "writing Arrow"),
+    OutputFormat.MCAP: ("mcap", "writing MCAP"),
+}
+
+
+class Writer(Protocol):
+    """Writes the tables of one capture."""
+
+    def write(self, batch: Batch) -> None:
+        """Take the next batch."""
+
+    def close(self) -> None:
+        """Write what is left."""
+
+
+def require(format: OutputFormat) -> None:
+    """Raise ConvertError where the package that writes the format is missing."""
+    if format in _NEEDS:
+        needed(*_NEEDS[format])
+
+
+def open_writer(format: OutputFormat, name: str, pending: Pending, tables: Tables) -> Writer:
+    """A writer of the tables of the capture called `name`."""
+    match format:
+        case OutputFormat.JSONL:
+            from protogen.convert.jsonl_writer import JsonlWriter
+
+            return JsonlWriter(name, pending)
+        case OutputFormat.CSV:
+            from protogen.convert.csv_writer import CsvWriter
+
+            return CsvWriter(name, pending)
+        case OutputFormat.PARQUET:
+            from protogen.convert.arrow_writers import ParquetWriter
+
+            return ParquetWriter(name, pending)
+        case OutputFormat.ARROW:
+            from protogen.convert.arrow_writers import ArrowWriter
+
+            return ArrowWriter(name, pending)
+        case OutputFormat.MCAP:
+            from protogen.convert.mcap_writer import McapWriter
+
+            return McapWriter(name, pending, tables)
+
+
+def write_all(writer: Writer, batches: Iterable[Batch]) -> None:
+    """Write every batch, and close the writer whatever happens."""
+    try:
+        for batch in batches:
+            writer.write(batch)
+    finally:
+        writer.close()

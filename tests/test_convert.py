@@ -1,0 +1,354 @@
+"""Captures as tables: what the real readers find in them is what the decoder yields."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from cli_support import SINK, run, start
+from compiled import DOCUMENTS, module_at, name_of, protocol_of
+from test_json_lines import capture_of
+
+from protogen.convert.errors import ConvertError, needed
+from protogen.convert.tables import tables_of
+
+pytest.importorskip("pyarrow")
+mcap_reader = pytest.importorskip("mcap.reader")
+parquet = pytest.importorskip("pyarrow.parquet")
+ipc = pytest.importorskip("pyarrow.ipc")
+
+FORMATS = ("jsonl", "csv", "parquet", "arrow", "mcap")
+DOCUMENT_SENDERS = [
+    (path, sender.name) for path in DOCUMENTS for sender in protocol_of(path).senders
+]
+
+
+@pytest.fixture(scope="module")
+def sink(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("schema") / "sink.yaml"
+    path.write_text(SINK)
+    return path
+
+
+def convert(
+    schema: Path, sender: str, capture: Path, to: str, folder: Path, *more: str
+) -> list[str]:
+    """The lines that the command prints."""
+    arguments = [str(schema), "--sender", sender, str(capture), "--to", to, "-o", str(folder)]
+    done = run("convert", *arguments, *more)
+    assert done.exit_code == 0, done.output
+    return done.output.splitlines()
+
+
+def events_of(schema: Path, sender: str, data: bytes) -> list[Any]:
+    decoder = module_at(schema).Decoder(sender)
+    return [*decoder.feed(data), *decoder.flush()]
+
+
+def rows_of(folder: Path, name: str, to: str) -> dict[str, list[dict[str, Any]]]:
+    """The rows of each table, as the format's own reader has them."""
+    tables = {}
+    for path in sorted(folder.glob(f"*/{name}.{to}")):
+        if to == "parquet":
+            tables[path.parent.name] = parquet.read_table(path).to_pylist()
+        else:
+            with path.open("rb") as file:
+                tables[path.parent.name] = ipc.open_file(file).read_all().to_pylist()
+    return tables
+
+
+def frame_facts(events: list[Any]) -> dict[str, list[tuple[int, int]]]:
+    """Offset and size of each event, by the table that it belongs to."""
+    found: dict[str, list[tuple[int, int]]] = {}
+    for event in events:
+        name = {"unknown": "unknown_frames", "invalid": "invalid_spans"}.get(event.kind)
+        name = name or event.message.NAME
+        found.setdefault(name, []).append((event.offset, event.size))
+    return found
+
+
+@pytest.mark.parametrize(("path", "sender"), DOCUMENT_SENDERS, ids=name_of)
+@pytest.mark.parametrize("to", ["parquet", "arrow"])
+def test_tables_hold_every_event(path: Path, sender: str, to: str, tmp_path: Path) -> None:
+    data = capture_of(path, sender, 1)
+    (tmp_path / "run.bin").write_bytes(data)
+    convert(path, sender, tmp_path / "run.bin", to, tmp_path / "out")
+    tables = rows_of(tmp_path / "out", "run", to)
+    events = events_of(path, sender, data)
+    names = {
+        name: [("_" if kind in _fields(path, name) else "") + kind for kind in ("offset", "size")]
+        for name in tables
+    }
+    shown = {
+        name: [tuple(row[key] for key in names[name]) for row in rows]
+        for name, rows in tables.items()
+    }
+    assert shown == frame_facts(events)
+    for name, rows in tables.items():
+        if name in ("unknown_frames", "invalid_spans"):
+            continue
+        messages = [
+            event.message
+            for event in events
+            if event.kind == "message" and name == event.message.NAME
+        ]
+        for row, message in zip(rows, messages, strict=True):
+            for field, value in message.to_dict().items():
+                if field in row and not isinstance(value, dict | str):
+                    assert row[field] == value
+
+
+def _fields(path: Path, message: str) -> set[str]:
+    protocol = protocol_of(path)
+    return {
+        field.name for item in protocol.messages if item.name == message for field in item.fields
+    }
+
+
+@pytest.mark.parametrize("sender", ["pc", "board"])
+def test_every_kind_of_value_has_a_column(sink: Path, sender: str, tmp_path: Path) -> None:
+    data = capture_of(sink, sender, 3, 200)
+    (tmp_path / "run.bin").write_bytes(data)
+    convert(sink, sender, tmp_path / "run.bin", "parquet", tmp_path / "out")
+    tables = rows_of(tmp_path / "out", "run", "parquet")
+    events = [event for event in events_of(sink, sender, data) if event.kind == "message"]
+    numbers = [event for event in events if event.message.NAME == "numbers"]
+    assert len(numbers) > 20
+    for row, event in zip(tables["numbers"], numbers, strict=True):
+        message = event.message
+        assert row["@number"] == event.parts.number
+        assert row["mode"] == message.mode
+        assert row["mode_name"] == {0: "idle", 7: "run"}.get(message.mode)
+        assert row["angle_deg"] == message.angle_deg
+        assert row["flags"] == message.flags
+        assert row["on_line"] is message.on_line
+        assert _same(row["ratio"], message.ratio)
+        assert _same(row["ratio_v"], message.ratio_v)
+    if sender == "board":
+        choices = [event.message for event in events if event.message.NAME == "choice"]
+        for row, message in zip(tables["choice"], choices, strict=True):
+            assert [row[name] for name in row if name.startswith("value.")] == _choice(message)
+    else:
+        lists = [event.message for event in events if event.message.NAME == "lists"]
+        for row, message in zip(tables["lists"], lists, strict=True):
+            assert row["points"] == [{"x": point.x, "y": point.y} for point in message.points]
+            assert row["levels"] == message.levels
+            assert (row["name"], row["rest"]) == (message.name, message.rest)
+            assert (row["size"], "_size" in row) == (message.size, True)
+
+
+def _choice(message: Any) -> list[Any]:
+    """What a switch has in its columns: the number, the text and the byte of a word, the rest."""
+    value = message.value
+    match int(message.what):
+        case 0:
+            return [None, None, None, None]
+        case 1:
+            return [getattr(value, "value", value), None, None, None]
+        case 2:
+            return [None, value.text, value.more, None]
+        case _:
+            return [None, None, None, value]
+
+
+def _same(one: float, other: float) -> bool:
+    return one == other or (math.isnan(one) and math.isnan(other))
+
+
+def test_metadata_says_what_columns_mean(sink: Path, tmp_path: Path) -> None:
+    (tmp_path / "run.bin").write_bytes(capture_of(sink, "pc", 3, 100))
+    convert(sink, "pc", tmp_path / "run.bin", "parquet", tmp_path / "out")
+    schema = parquet.read_schema(tmp_path / "out" / "numbers" / "run.parquet")
+    protocol = protocol_of(sink)
+    assert schema.metadata[b"protogen.spec_hash"].decode() == protocol.spec_hash
+    assert schema.metadata[b"protogen.message"] == b"numbers"
+    assert schema.metadata[b"protogen.capture"] == b"run"
+    angle = schema.field("angle").metadata
+    assert angle[b"protogen.unit"] == b"deg"
+    assert angle[b"protogen.scale"] == b"1/16"
+    assert json.loads(angle[b"protogen.special"]) == {"missing": 0x7FFF}
+    assert schema.field("angle_deg").metadata[b"protogen.of"] == b"angle"
+    assert json.loads(schema.field("mode").metadata[b"protogen.values"]) == {"idle": 0, "run": 7}
+    assert json.loads(schema.field("flags").metadata[b"protogen.flags"])["wet"] == 7
+    assert json.loads(schema.field("control").metadata[b"protogen.bits"])["gear"] == [6, 7]
+
+
+@pytest.mark.parametrize(("path", "sender"), DOCUMENT_SENDERS, ids=name_of)
+def test_json_lines_are_those_of_decode(path: Path, sender: str, tmp_path: Path) -> None:
+    capture = tmp_path / "run.bin"
+    capture.write_bytes(capture_of(path, sender, 2))
+    convert(path, sender, capture, "jsonl", tmp_path / "out")
+    lines = (tmp_path / "out" / "run.jsonl").read_text("utf-8")
+    decoded = run("decode", str(path), "--sender", sender, str(capture), "--format", "jsonl")
+    assert lines == decoded.output
+    back = start("encode", str(path), "--format", "raw", input=lines.encode())
+    assert back.stdout == capture.read_bytes()
+
+
+def test_csv_shows_lists_as_json_and_bytes_as_digits(sink: Path, tmp_path: Path) -> None:
+    (tmp_path / "run.bin").write_bytes(capture_of(sink, "pc", 3, 100))
+    convert(sink, "pc", tmp_path / "run.bin", "csv", tmp_path / "out")
+    convert(sink, "pc", tmp_path / "run.bin", "arrow", tmp_path / "out")
+    rows = rows_of(tmp_path / "out", "run", "arrow")
+    for name, expected in rows.items():
+        with (tmp_path / "out" / name / "run.csv").open(encoding="utf-8", newline="") as file:
+            found = list(csv.DictReader(file))
+        assert len(found) == len(expected)
+        for row, other in zip(found, expected, strict=True):
+            assert list(row) == list(other)
+            assert row["offset"] == str(other["offset"])
+        if name == "lists":
+            assert [json.loads(row["levels"]) for row in found] == [
+                row["levels"] for row in rows[name]
+            ]
+            assert [bytes.fromhex(row["rest"]) for row in found] == [
+                row["rest"] for row in rows[name]
+            ]
+        if name == "numbers":
+            angles = [float(row["angle_deg"]) if row["angle_deg"] else None for row in found]
+            assert angles == [row["angle_deg"] for row in rows[name]]
+    facts = json.loads((tmp_path / "out" / "numbers" / "run.columns.json").read_text("utf-8"))
+    assert facts["columns"]["angle"]["unit"] == "deg"
+    assert facts["table"]["protogen.message"] == "numbers"
+
+
+@pytest.mark.parametrize("sender", ["pc", "board"])
+def test_mcap_has_a_topic_with_a_json_schema_for_each_message(
+    sink: Path, sender: str, tmp_path: Path
+) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    data = capture_of(sink, sender, 3, 150)
+    (tmp_path / "run.bin").write_bytes(data)
+    convert(sink, sender, tmp_path / "run.bin", "mcap", tmp_path / "out")
+    found: dict[str, list[tuple[int, int]]] = {}
+    offsets = []
+    with (tmp_path / "out" / "run.mcap").open("rb") as file:
+        reader = mcap_reader.make_reader(file)
+        (metadata,) = reader.iter_metadata()
+        assert metadata.metadata["protogen.spec_hash"] == protocol_of(sink).spec_hash
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
+            row = json.loads(message.data, parse_constant=pytest.fail)
+            jsonschema.validate(row, json.loads(schema.data))
+            _, _, by, name = channel.topic.split("/")
+            assert by == sender
+            size = row["_size"] if name == "lists" else row["size"]
+            found.setdefault(name, []).append((row["offset"], size))
+            # 9600 baud, ten bit times a byte
+            assert message.log_time == (row["offset"] + size) * 10 * 10**9 // 9600
+            offsets.append(row["offset"])
+    assert found == frame_facts(events_of(sink, sender, data))
+    assert offsets == sorted(offsets)
+
+
+def test_the_summary_counts_messages_and_invalid_bytes(sink: Path, tmp_path: Path) -> None:
+    data = capture_of(sink, "pc", 3, 100)
+    (tmp_path / "run.bin").write_bytes(data)
+    lines = convert(sink, "pc", tmp_path / "run.bin", "jsonl", tmp_path / "out")
+    assert lines[0] == f"{tmp_path / 'run.bin'}: raw bytes, {len(data)} bytes"
+    events = events_of(sink, "pc", data)
+    invalid: dict[str, int] = {}
+    for event in events:
+        if event.kind == "invalid":
+            invalid[event.reason] = invalid.get(event.reason, 0) + event.size
+    shown = dict(line.strip().rsplit("  ", 1) for line in lines[1:-1])
+    shown = {name.strip(): text.strip() for name, text in shown.items()}
+    for reason, size in invalid.items():
+        assert shown[f"invalid: {reason}"] == f"{size} bytes"
+    assert shown["numbers"] == str(
+        sum(event.kind == "message" and event.message.NAME == "numbers" for event in events)
+    )
+    again = convert(sink, "pc", tmp_path / "run.bin", "jsonl", tmp_path / "out")
+    assert again[0].endswith("done before, nothing has changed since")
+    assert again[1:] == lines[1:-1]
+
+
+def test_quiet_prints_nothing(sink: Path, tmp_path: Path) -> None:
+    (tmp_path / "run.bin").write_bytes(b"noise")
+    assert not convert(sink, "pc", tmp_path / "run.bin", "csv", tmp_path / "out", "--quiet")
+
+
+class TestNames:
+    def test_tables_of_no_message_make_way_for_messages(self) -> None:
+        from cli_support import compiled
+
+        text = SINK.replace("  empty:", "  unknown_frames:").replace("  lists:", "  invalid_spans:")
+        protocol = compiled(text)
+        tables = tables_of(protocol, protocol.sender("pc"))
+        assert tables.unknown.name == "_unknown_frames"
+        assert tables.invalid.name == "_invalid_spans"
+
+    def test_columns_of_the_frame_make_way_for_fields(self) -> None:
+        from cli_support import compiled
+
+        text = SINK.replace("mode:", "angle_deg:").replace("letter:", "t_ns:")
+        protocol = compiled(text)
+        columns = tables_of(protocol, protocol.sender("pc")).messages["numbers"].all_columns
+        names = [column.name for column in columns]
+        assert len(names) == len(set(names))
+        assert {"_t_ns", "t_ns", "angle_deg", "angle_deg_value", "angle_deg_name"} <= set(names)
+
+    def test_captures_of_one_name_are_told_apart_by_their_folders(
+        self, sink: Path, tmp_path: Path
+    ) -> None:
+        for folder in ("a", "b"):
+            (tmp_path / folder).mkdir()
+            (tmp_path / folder / "run.bin").write_bytes(b"x")
+        places = [str(tmp_path / folder / "run.bin") for folder in ("a", "b")]
+        out = tmp_path / "out"
+        arguments = ["--sender", "pc", "--to", "jsonl", "-o", str(out)]
+        assert run("convert", str(sink), *places, *arguments).exit_code == 0
+        written = sorted(path.name for path in out.glob("*.jsonl"))
+        assert [name[-11:] for name in written] == ["a-run.bin.jsonl"[-11:]] * 2
+        assert len(written) == 2
+        twice = run("convert", str(sink), places[0], places[0], *arguments)
+        assert twice.exit_code == 2
+        assert "is given twice" in twice.output
+
+
+class TestErrors:
+    def test_a_missing_package_is_named_with_its_extra(self, monkeypatch: Any) -> None:
+        monkeypatch.setitem(__import__("sys").modules, "pyarrow", None)
+        with pytest.raises(ConvertError, match="package pyarrow") as caught:
+            needed("pyarrow", "writing Parquet")
+        assert caught.value.hint == "pip install 'protogen-serial[parquet]'"
+
+    def test_the_command_says_so_before_it_reads_anything(
+        self, sink: Path, tmp_path: Path, monkeypatch: Any
+    ) -> None:
+        monkeypatch.setitem(__import__("sys").modules, "mcap", None)
+        arguments = ["--sender", "pc", "--to", "mcap", "-o", str(tmp_path / "out")]
+        done = run("convert", str(sink), "-", *arguments)
+        assert done.exit_code == 2
+        assert "pip install 'protogen-serial[mcap]'" in done.output
+        assert not (tmp_path / "out").exists()
+
+    def test_a_capture_that_is_not_there(self, sink: Path, tmp_path: Path) -> None:
+        done = run("convert", str(sink), "--sender", "pc", "nowhere.bin", "--to", "csv")
+        assert done.exit_code == 2
+        assert "nowhere.bin: No such file" in done.output
+
+    def test_a_file_of_somebody_else_stays(self, sink: Path, tmp_path: Path) -> None:
+        (tmp_path / "run.bin").write_bytes(b"noise")
+        theirs = tmp_path / "out" / "run.jsonl"
+        theirs.parent.mkdir()
+        theirs.write_text("mine")
+        arguments = ["--sender", "pc", "--to", "jsonl", "-o", str(tmp_path / "out")]
+        done = run("convert", str(sink), str(tmp_path / "run.bin"), *arguments)
+        assert done.exit_code == 2
+        assert "no earlier run made it" in done.output
+        assert theirs.read_text() == "mine"
+        assert [path.name for path in theirs.parent.iterdir()] == ["run.jsonl"]
+        forced = run("convert", str(sink), str(tmp_path / "run.bin"), *arguments, "--force")
+        assert forced.exit_code == 0
+        assert json.loads(theirs.read_text())["raw"] == b"noise".hex()
+
+    def test_an_error_survives_a_trip_to_another_process(self) -> None:
+        import pickle
+
+        error = pickle.loads(pickle.dumps(ConvertError("what", "mend")))
+        assert (str(error), error.hint) == ("what", "mend")

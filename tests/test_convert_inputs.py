@@ -1,0 +1,267 @@
+"""What a capture is written in is found out, and its bytes and times are those that went in."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from cli_support import SINK, run, start
+
+from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
+from protogen.convert.chunks import Chunk, Clock
+from protogen.convert.errors import ConvertError
+from protogen.convert.inputs import InputKind, Packing, Source, format_of, names_of, opened
+from protogen.convert.recorded import record_pieces
+from protogen.convert.textlog import log_pieces
+
+FRAME = bytes.fromhex("1B 02 45 00 00 45 1B 03")  # `empty` with number 0
+SECOND = bytes.fromhex("1B 02 45 01 00 44 1B 03")
+
+
+def read(
+    path: Path | str, kind: InputKind | None = None
+) -> tuple[str, bytes, list[int], list[int]]:
+    """What it is, its bytes, where runs of bytes end, and their times."""
+    with opened(Source(str(path)), kind, "pc", ("pc", "board"), pytest.fail) as capture:
+        data, ends, times = b"", [], []
+        for chunk in capture.chunks:
+            ends += [len(data) + end for end in chunk.ends]
+            data += chunk.data
+            times += chunk.times
+        return str(capture.format), data, ends, times
+
+
+def packed(data: bytes) -> bytes:
+    """The same bytes in every process."""
+    return gzip.compress(data, mtime=0)
+
+
+def zstd(data: bytes) -> bytes:
+    return pytest.importorskip("zstandard").compress(data)
+
+
+class TestDetection:
+    @pytest.mark.parametrize(
+        ("name", "content", "expected"),
+        [
+            ("run.bin", FRAME, "raw bytes"),
+            ("run.bin.gz", packed(FRAME), "raw bytes, gzip"),
+            ("no_extension", packed(FRAME), "raw bytes, gzip"),
+            ("run.hex", FRAME.hex(" ").encode(), "hex digits"),
+            ("run.hex.gz", packed(FRAME.hex(" ").encode()), "hex digits, gzip"),
+            ("run.log", b"(1.5) can0 123#" + FRAME.hex().encode(), "a text log with times"),
+            ("run", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME, "a recorded capture"),
+        ],
+        ids=lambda value: value if isinstance(value, str) else "",
+    )
+    def test_by_content_and_name(
+        self, name: str, content: bytes, expected: str, tmp_path: Path
+    ) -> None:
+        (tmp_path / name).write_bytes(content)
+        assert read(tmp_path / name)[:2] == (expected, FRAME)
+
+    def test_zstd(self, tmp_path: Path) -> None:
+        (tmp_path / "run.zst").write_bytes(zstd(FRAME[:3]) + zstd(FRAME[3:]))
+        assert read(tmp_path / "run.zst")[:2] == ("raw bytes, zstd", FRAME)
+
+    def test_digits_alone_are_raw_bytes(self, tmp_path: Path) -> None:
+        (tmp_path / "run.bin").write_bytes(FRAME.hex().encode())
+        assert read(tmp_path / "run.bin")[:2] == ("raw bytes", FRAME.hex().encode())
+        assert read(tmp_path / "run.bin", InputKind.HEX)[:2] == ("hex digits", FRAME)
+
+    def test_only_the_start_is_looked_at(self, tmp_path: Path) -> None:
+        (tmp_path / "run.gz").write_bytes(gzip.compress(MAGIC + HEADER.pack(0, 1) + b"x"))
+        found = format_of(Source(str(tmp_path / "run.gz")), None)
+        assert (found.kind, found.packing, found.is_plain) == (
+            InputKind.RECORD,
+            Packing.GZIP,
+            False,
+        )
+
+    def test_names_of_captures(self) -> None:
+        places = ["a/run.bin.gz", "s3://robots/7/run2.zst", "-", "a/.hidden", "a/x.bin", "b/x.bin"]
+        assert names_of(map(Source, places)) == [
+            "run", "run2", "stdin", ".hidden", "a-x.bin", "b-x.bin",
+        ]  # fmt: skip
+
+
+class TestLogs:
+    def test_lines_give_bytes_and_nanoseconds(self, tmp_path: Path) -> None:
+        log = (
+            "(1700000000.000000001) can0 7DF#1B02\n\n# note\n"
+            "(1700000001) 45 00\r\n(2.5) tty0 00451B03\n"
+        )
+        (tmp_path / "run.log").write_text(log)
+        assert read(tmp_path / "run.log") == (
+            "a text log with times",
+            FRAME,
+            [2, 4, 8],
+            [1_700_000_000_000_000_001, 1_700_000_001_000_000_000, 2_500_000_000],
+        )
+
+    def test_lines_of_another_sender_are_left_out(self) -> None:
+        lines = ["(1) pc 01", "(2) board 02", "(3) can0 03", "(4) pc 04"]
+        found = list(log_pieces(lines, "pc", ("pc", "board"), pytest.fail))
+        assert b"".join(data for data, _ in found) == b"\x01\x03\x04"
+
+    @pytest.mark.parametrize("line", ["(1) 5", "(1) can0 5G", "5502", "(x) 55", "(1) zz"])
+    def test_what_is_no_line_is_complained_of(self, line: str) -> None:
+        complaints: list[str] = []
+        assert not list(log_pieces([line], "pc", (), complaints.append))
+        assert complaints[0].startswith("line 1: not `(SECONDS) [NAME] HEX`")
+
+    def test_a_frame_without_bytes_is_none(self) -> None:
+        assert list(log_pieces(["(1) can0 123#"], "pc", (), pytest.fail)) == [(b"", 10**9)]
+
+
+class TestRecorder:
+    def test_what_was_recorded_comes_back(self, tmp_path: Path) -> None:
+        with Recorder(tmp_path / "run.rec", clock=iter([10, 20]).__next__) as recorder:
+            recorder.write(FRAME[:5])
+            recorder.write(FRAME[5:])
+            recorder.write(b"", t_ns=30)
+            recorder.write(b"!", t_ns=-5)
+        found = read(tmp_path / "run.rec")
+        assert found == ("a recorded capture", FRAME + b"!", [5, 8, 9], [10, 20, -5])
+
+    def test_a_stream_stays_open(self) -> None:
+        stream = io.BytesIO()
+        recorder = Recorder(stream)
+        recorder.write(b"x", t_ns=1)
+        recorder.close()
+        assert stream.getvalue() == MAGIC + b"\x01" + b"\0" * 7 + b"\x01\0\0\0x"
+
+    def test_a_long_piece_is_several_records(self) -> None:
+        stream = io.BytesIO()
+        Recorder(stream).write(bytes(GREATEST + 1), t_ns=1)
+        sizes = [len(data) for data, _ in record_pieces([stream.getvalue()], pytest.fail)]
+        assert sizes == [GREATEST, 1]
+
+    @pytest.mark.parametrize(
+        ("damage", "left", "problem"),
+        [
+            (lambda data: data[:-2], b"abc", "ends inside a record, 2 bytes too early"),
+            (lambda data: data[:-8], b"", "ends inside the head of a record, at byte 17"),
+            (lambda data: data[:16] + b"\xff" * 4 + data[20:], b"", "no record of 4294967295"),
+            (lambda data: b"?" + data, b"", "this is no recorded capture"),
+        ],
+    )
+    def test_damage_ends_the_capture(self, damage: Any, left: bytes, problem: str) -> None:
+        data = MAGIC + HEADER.pack(1, 5) + b"abcde"
+        complaints: list[str] = []
+        pieces = (bytes((byte,)) for byte in damage(data))
+        found = b"".join(piece for piece, _ in record_pieces(pieces, complaints.append))
+        assert found == left
+        assert complaints[0].startswith(problem)
+
+
+class TestClock:
+    def test_a_byte_has_the_time_of_its_run(self) -> None:
+        clock = Clock()
+        clock.take(Chunk(b"abcd", [2, 4], [10, 20]))
+        clock.take(Chunk(b"ef", [2], [30]))
+        assert clock.at([0, 1, 2, 3, 4, 5, 6]) == [10, 10, 20, 20, 30, 30, None]
+        clock.forget(4)
+        assert clock.at([4, 5]) == [30, 30]
+
+    def test_without_times_there_is_none(self) -> None:
+        clock = Clock()
+        clock.take(Chunk(b"abcd"))
+        assert clock.at([0, 3]) == [None, None]
+
+
+class TestCommand:
+    @pytest.fixture
+    def schema(self, tmp_path: Path) -> Path:
+        (tmp_path / "sink.yaml").write_text(SINK)
+        return tmp_path / "sink.yaml"
+
+    def lines(self, schema: Path, name: str) -> list[dict[str, Any]]:
+        text = (schema.parent / "out" / f"{name}.jsonl").read_text("utf-8")
+        return [json.loads(line) for line in text.splitlines()]
+
+    def options(self, schema: Path) -> list[str]:
+        return ["--sender", "pc", "--to", "jsonl", "-o", str(schema.parent / "out")]
+
+    def test_a_row_has_the_time_of_its_last_byte(self, schema: Path) -> None:
+        recording = schema.parent / "run.rec"
+        with Recorder(recording) as recorder:
+            recorder.write(FRAME[:5], t_ns=100)
+            recorder.write(FRAME[5:] + SECOND[:1], t_ns=200)
+            recorder.write(SECOND[1:], t_ns=300)
+        run("convert", str(schema), str(recording), *self.options(schema))
+        shown = [(line["offset"], line["t_ns"]) for line in self.lines(schema, "run")]
+        assert shown == [(0, 200), (8, 300)]
+        run("convert", str(schema), str(recording), "--to", "mcap", *self.options(schema)[:2],
+            "-o", str(schema.parent / "out"))  # fmt: skip
+        reader = pytest.importorskip("mcap.reader")
+        with (schema.parent / "out" / "run.mcap").open("rb") as file:
+            messages = [item for _, _, item in reader.make_reader(file).iter_messages()]
+        assert [item.log_time for item in messages] == [200, 300]
+
+    def test_standard_input(self, schema: Path) -> None:
+        data = packed(FRAME)
+        done = start("convert", str(schema), "-", *self.options(schema), input=data)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.splitlines()[0] == b"-: raw bytes, gzip, 8 bytes"
+        assert [line["message"] for line in self.lines(schema, "stdin")] == ["empty"]
+        again = start("convert", str(schema), "-", *self.options(schema), input=FRAME + SECOND)
+        assert b"done before" not in again.stdout
+        assert len(self.lines(schema, "stdin")) == 2
+
+    def test_a_lost_line_is_complained_of_and_exits_with_1(self, schema: Path) -> None:
+        log = schema.parent / "run.log"
+        log.write_text(f"(1) {FRAME.hex()}\n" + "oops\n" * 25)
+        for _ in range(2):
+            done = run("convert", str(schema), str(log), *self.options(schema))
+            assert done.exit_code == 1
+        first = run("convert", str(schema), str(log), *self.options(schema), "--force")
+        assert f"warning: {log}: line 2: not `(SECONDS) [NAME] HEX`: 'oops'" in first.output
+        assert "warning: 5 more lines can't be used" in first.output
+
+    @pytest.mark.parametrize(
+        ("name", "content", "problem"),
+        [
+            ("run.gz", packed(FRAME)[:-9], "Compressed file ended"),
+            ("run.gz", packed(FRAME)[:10] + b"\x07" * 20, "its compression is damaged"),
+            ("run.hex", b"1B\n0", "line 2, column 1: `0` has an odd number"),
+        ],
+        ids=["cut", "damaged", "odd"],
+    )
+    def test_a_damaged_file_is_told_by_name(
+        self, schema: Path, name: str, content: bytes, problem: str
+    ) -> None:
+        path = schema.parent / name
+        path.write_bytes(content)
+        done = run("convert", str(schema), str(path), *self.options(schema))
+        assert done.exit_code == 2
+        assert f"{path}: {problem}" in done.output
+        assert not list((schema.parent / "out").rglob("*.jsonl"))
+
+    def test_damaged_zstd_is_told_by_name(self, schema: Path) -> None:
+        path = schema.parent / "run.zst"
+        path.write_bytes(zstd(FRAME)[:6] + b"\xff" * 20)
+        done = run("convert", str(schema), str(path), *self.options(schema))
+        assert (done.exit_code, "its compression is damaged" in done.output) == (2, True)
+
+    def test_a_url(self, schema: Path) -> None:
+        pytest.importorskip("fsspec")
+        (schema.parent / "run.bin").write_bytes(FRAME)
+        url = f"file://{schema.parent / 'run.bin'}"
+        done = run("convert", str(schema), url, *self.options(schema))
+        assert done.exit_code == 0, done.output
+        assert len(self.lines(schema, "run")) == 1
+        wrong = run("convert", str(schema), "nowhere://x", *self.options(schema))
+        assert wrong.exit_code == 2
+        assert "nowhere://x: Protocol not known" in wrong.output
+
+
+def test_endless_lines_are_no_text() -> None:
+    from protogen.convert.inputs import _lines
+
+    with pytest.raises(ConvertError, match="this is no text"):
+        list(_lines([b"(1) " * (1 << 20)] * 5))
