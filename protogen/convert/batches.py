@@ -82,10 +82,10 @@ class Batch(Protocol):
 class BatchDecoder(Protocol):
     """Decodes a capture."""
 
-    def feed(self, chunk: Chunk) -> Batch:
+    def feed(self, chunk: Chunk) -> Iterator[Batch]:
         """Take the next bytes of the capture; what is certain now."""
 
-    def flush(self) -> Batch:
+    def flush(self) -> Iterator[Batch]:
         """Take the end of the capture; what remains."""
 
 
@@ -102,14 +102,14 @@ class EventDecoder:
         self._clock = Clock()
         self._start = start
 
-    def feed(self, chunk: Chunk) -> EventBatch:
+    def feed(self, chunk: Chunk) -> Iterator[EventBatch]:
         """Take the next bytes of the capture; what is certain now."""
         self._clock.take(chunk)
-        return self._batch(self._decoder.feed(chunk.data))
+        yield self._batch(self._decoder.feed(chunk.data))
 
-    def flush(self) -> EventBatch:
+    def flush(self) -> Iterator[EventBatch]:
         """Take the end of the capture; what remains."""
-        return self._batch(self._decoder.flush())
+        yield self._batch(self._decoder.flush())
 
     def _batch(self, events: Sequence[Any]) -> EventBatch:
         times = self._clock.at([event.offset + event.size - 1 for event in events])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from protogen.convert.batches import Batch, BatchDecoder, EventDecoder, Tally
+from protogen.convert.batches import Batch, BatchDecoder, Tally
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import InputKind, Source, names_of, opened
 from protogen.convert.outputs import Pending, remove
@@ -34,6 +34,8 @@ class Job:
     """None: what the capture turns out to be."""
     force: bool = False
     """Whether files that no earlier run made may be replaced, and what is done is done again."""
+    engine: str | None = None
+    """What decodes: `native`, `python`, or `events`, which needs no NumPy; None: the fastest."""
     tables: Tables = field(init=False)
 
     def __post_init__(self) -> None:
@@ -41,7 +43,10 @@ class Job:
 
     def decoder(self, start: int = 0) -> BatchDecoder:
         """A decoder of bytes from `start` on."""
-        return EventDecoder(self.tables, self.runtime.sender(self.sender.name), start)
+        from protogen.convert.decoding import open_decoder
+
+        spec = self.runtime.sender(self.sender.name)
+        return open_decoder(self.tables, spec, self.engine, start)
 
     def stamp(self, source: Source) -> dict[str, Any]:
         """All that the result depends on, to see whether an earlier one still holds."""
@@ -137,8 +142,8 @@ def _convert_one(
 
 def _batches(decoder: BatchDecoder, chunks: Any) -> Iterator[Batch]:
     for chunk in chunks:
-        yield decoder.feed(chunk)
-    yield decoder.flush()
+        yield from decoder.feed(chunk)
+    yield from decoder.flush()
 
 
 def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:

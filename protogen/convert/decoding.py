@@ -1,0 +1,30 @@
+"""Chooses what decodes: NumPy tables where NumPy is installed, else an object for each event."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import Any, cast
+
+from protogen.convert.batches import BatchDecoder, EventDecoder
+from protogen.convert.tables import Tables
+from protogen.runtime.sender import SenderSpec
+
+EVENTS = "events"
+"""The decoder that needs no other package."""
+
+
+def open_decoder(
+    tables: Tables, spec: SenderSpec[Any, Any], engine: str | None, start: int = 0
+) -> BatchDecoder:
+    """A decoder of bytes whose first has the offset `start`. Every engine gives the same rows."""
+    if engine == EVENTS or (engine is None and find_spec("numpy") is None):
+        return EventDecoder(tables, spec, start)
+    from protogen.capture.engines import engine_of
+    from protogen.capture.layout import capture_schema
+    from protogen.convert.column_lines import LineWriter
+    from protogen.convert.columns import ColumnDecoder, Readings
+
+    readings = Readings(tables, capture_schema(tables.protocol, tables.sender))
+    lines = LineWriter(readings, spec)
+    filler = engine_of(tables.protocol, tables.sender, cast(Any, engine))
+    return ColumnDecoder(readings, filler, lines.write, start)

@@ -1,0 +1,196 @@
+"""Batches from NumPy tables are those of events: the same rows and lines, whatever decodes."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from cli_support import SINK
+from compiled import module_at, name_of, protocol_of, senders
+from corpus import portions
+from test_json_lines import capture_of
+
+np = pytest.importorskip("numpy")
+pytest.importorskip("pyarrow")
+
+from protogen.convert import cells  # noqa: E402
+from protogen.convert.arrays import Lists, Numbers, Octets  # noqa: E402
+from protogen.convert.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
+from protogen.convert.batches import Batch, Tally  # noqa: E402
+from protogen.convert.chunks import Chunk  # noqa: E402
+from protogen.convert.decoding import open_decoder  # noqa: E402
+from protogen.convert.meanings import NameFinder, physical  # noqa: E402
+from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Scalar, tables_of  # noqa: E402
+from protogen.convert.values import as_list  # noqa: E402
+
+ENGINES = ["python", None]
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
+
+
+def batches_of(
+    path: Path, sender: str, data: bytes, engine: str | None, start: int = 0, timed: bool = False
+) -> list[Batch]:
+    protocol = protocol_of(path)
+    tables = tables_of(protocol, protocol.sender(sender))
+    decoder = open_decoder(tables, module_at(path).PROTOCOL.sender(sender), engine, start)
+    found: list[Batch] = []
+    dice = Random(7)
+    for place, piece in enumerate(portions(data, dice)):
+        middle = len(piece) // 2
+        times = ([middle, len(piece)], [1000 * place - 5, 1000 * place + 1]) if timed else ([], [])
+        found += decoder.feed(Chunk(piece, *times))
+    return [*found, *decoder.flush()]
+
+
+def comparable(value: Any) -> Any:
+    if isinstance(value, float) and math.isnan(value):
+        return "nan"
+    if isinstance(value, list | tuple):
+        return [comparable(item) for item in value]
+    return value
+
+
+def rows_of(batches: list[Batch]) -> dict[str, list[Any]]:
+    """All rows of each table, as Python has them."""
+    found: dict[str, list[Any]] = {}
+    for batch in batches:
+        for rows in batch.rows():
+            columns = [comparable(as_list(values)) for values in rows.columns]
+            found.setdefault(rows.table.name, []).extend(zip(*columns, strict=True))
+    return found
+
+
+def arrow_rows(batches: list[Batch]) -> dict[str, list[Any]]:
+    """All rows of each table, as Arrow has them."""
+    found: dict[str, list[Any]] = {}
+    for batch in batches:
+        for rows in batch.rows():
+            table = batch_of(rows, schema_of(rows.table, {}))
+            table.validate(full=True)
+            columns = [comparable(column.to_pylist()) for column in table.columns]
+            found.setdefault(rows.table.name, []).extend(zip(*columns, strict=True))
+    return found
+
+
+def tally_of(batches: list[Batch]) -> Tally:
+    whole = Tally()
+    for batch in batches:
+        whole.add(batch.tally)
+    return whole
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_are_those_of_events(path: Path, sender: str, engine: str | None) -> None:
+    data = capture_of(path, sender, 11, 120)
+    expected = batches_of(path, sender, data, "events")
+    found = batches_of(path, sender, data, engine)
+    assert rows_of(found) == rows_of(expected)
+    assert arrow_rows(found) == arrow_rows(expected)
+    assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+    assert tally_of(found) == tally_of(expected)
+
+
+@EVERY_SENDER
+def test_have_the_same_times_and_offsets(path: Path, sender: str) -> None:
+    data = capture_of(path, sender, 12, 60)
+    expected = batches_of(path, sender, data, "events", 1 << 40, timed=True)
+    found = batches_of(path, sender, data, None, 1 << 40, timed=True)
+    assert rows_of(found) == rows_of(expected)
+    assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+
+
+@pytest.mark.parametrize("sender", ["pc", "board"])
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | None) -> None:
+    (tmp_path / "sink.yaml").write_text(SINK)
+    for seed in range(3):
+        data = capture_of(tmp_path / "sink.yaml", sender, seed, 200)
+        expected = batches_of(tmp_path / "sink.yaml", sender, data, "events", timed=True)
+        found = batches_of(tmp_path / "sink.yaml", sender, data, engine, timed=True)
+        assert rows_of(found) == rows_of(expected)
+        assert arrow_rows(found) == arrow_rows(expected)
+        assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+
+
+class TestPhysical:
+    @pytest.mark.parametrize("dtype", ["u1", "i2", "u4", "i8", "u8"])
+    @pytest.mark.parametrize(
+        ("scale", "offset"),
+        [
+            (Fraction(1, 3), Fraction(1, 7)),
+            (Fraction(1, 16), Fraction(0)),
+            (Fraction(-3), Fraction(5)),
+        ],
+    )
+    def test_is_the_exact_value_rounded_once(
+        self, dtype: str, scale: Fraction, offset: Fraction
+    ) -> None:
+        meaning = Physical(scale, offset, frozenset({3}), is_float=False)
+        limits = np.iinfo(dtype)
+        raw = [int(limits.min), int(limits.max), 0, 1, 3, 77, int(limits.max) // 3]
+        found = physical(meaning, Numbers(np.array(raw, dtype))).tolist()
+        assert found == [None if it == 3 else float(it * scale + offset) for it in raw]
+
+    def test_of_lists_has_gaps(self) -> None:
+        meaning = Physical(Fraction(1), Fraction(0), frozenset({0}), is_float=False)
+        raw = Lists(np.array([[1, 0, 3], [0, 5, 6]], "u2"), np.array([3, 2]))
+        found = physical(meaning, raw)
+        assert found.tolist() == [[1, None, 3], [None, 5]]
+        type = Listed(Scalar("uint16"), None)
+        assert array_of(type, found).to_pylist() == [[1, None, 3], [None, 5]]
+        whole = Lists(raw.values, None, found.missing)
+        assert array_of(type, whole).to_pylist() == [[1, None, 3], [None, 5, 6]]
+        assert array_of(Listed(Scalar("uint16"), 3), whole).to_pylist() == whole.tolist()
+        assert FLOAT64.kind == "float64"
+
+
+@pytest.mark.parametrize("dtype", ["u1", "i1", "u2", "i2", "u4", "i8"])
+def test_names_are_found(dtype: str) -> None:
+    finder = NameFinder(Naming({0: "off", 5: "on", 127: "high", 300: "far", -2: "below"}))
+    limits = np.iinfo(dtype)
+    raw = [value for value in (0, 1, 5, 127, 300, -2) if limits.min <= value <= limits.max]
+    found = finder.find(Numbers(np.array(raw, dtype))).tolist()
+    names = {0: "off", 5: "on", 127: "high", 300: "far", -2: "below"}
+    assert found == [names.get(value) for value in raw]
+
+
+class TestCells:
+    @pytest.mark.parametrize("dtype", ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8"])
+    def test_integers(self, dtype: str) -> None:
+        limits = np.iinfo(dtype)
+        dice = Random(3)
+        values = [0, int(limits.min), int(limits.max), 9, 10, 99, 100]
+        values += [10**power + delta for power in range(20) for delta in (-1, 0, 1)]
+        values += [dice.randrange(int(limits.min), int(limits.max)) for _ in range(200)]
+        values = [value for value in values if limits.min <= value <= limits.max]
+        assert texts_of(cells.integers(np.array(values, dtype))) == [str(v) for v in values]
+        small = [value for value in values if 0 <= value < 10_000]
+        assert texts_of(cells.integers(np.array(small, dtype))) == [str(v) for v in small]
+        assert len(cells.integers(np.zeros(0, dtype))) == 0
+
+    def test_floats_and_bools(self) -> None:
+        values = [0.0, -0.0, 1e300, 0.1, math.inf, -math.inf]
+        assert texts_of(cells.numbers(np.array(values))) == [
+            "0.0", "-0.0", "1e+300", "0.1", '"inf"', '"-inf"',
+        ]  # fmt: skip
+        assert texts_of(cells.numbers(np.array([True, False]))) == ["true", "false"]
+
+    def test_lists_and_bytes(self) -> None:
+        values = np.array([[1, 20, 3], [4, 5, 6]], "u1")
+        assert texts_of(cells.lists(Lists(values))) == ["1, 20, 3", "4, 5, 6"]
+        counts = np.array([0, 2])
+        assert texts_of(cells.lists(Lists(values, counts))) == ["", "4, 5"]
+        assert texts_of(cells.hexadecimal(Octets(values, counts))) == ["", "0405"]
+        assert texts_of(cells.hexadecimal(Octets(values))) == ["011403", "040506"]
+
+    def test_texts_are_quoted(self) -> None:
+        assert texts_of(cells.texts(['a"b', "é\0"])) == ['"a\\"b"', '"é\\u0000"']
+
+
+def texts_of(matrix: Any) -> list[str]:
+    return [row.tobytes().replace(b"\0", b"").decode() for row in matrix]
