@@ -83,6 +83,10 @@ def tally_of(batches: list[Batch]) -> Tally:
     return whole
 
 
+def lines_of(batches: list[Batch]) -> list[bytes]:
+    return b"".join(line for batch in batches for line in batch.lines()).splitlines()
+
+
 @EVERY_SENDER
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
 def test_are_those_of_events(path: Path, sender: str, engine: str | None) -> None:
@@ -91,7 +95,7 @@ def test_are_those_of_events(path: Path, sender: str, engine: str | None) -> Non
     found = batches_of(path, sender, data, engine)
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+    assert lines_of(found) == lines_of(expected)
     assert tally_of(found) == tally_of(expected)
 
 
@@ -101,7 +105,7 @@ def test_have_the_same_times_and_offsets(path: Path, sender: str) -> None:
     expected = batches_of(path, sender, data, "events", 1 << 40, timed=True)
     found = batches_of(path, sender, data, None, 1 << 40, timed=True)
     assert rows_of(found) == rows_of(expected)
-    assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+    assert lines_of(found) == lines_of(expected)
 
 
 @pytest.mark.parametrize("sender", ["pc", "board"])
@@ -114,7 +118,7 @@ def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | Non
         found = batches_of(tmp_path / "sink.yaml", sender, data, engine, timed=True)
         assert rows_of(found) == rows_of(expected)
         assert arrow_rows(found) == arrow_rows(expected)
-        assert b"".join(b.lines() for b in found) == b"".join(b.lines() for b in expected)
+        assert lines_of(found) == lines_of(expected)
 
 
 class TestPhysical:

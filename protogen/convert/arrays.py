@@ -110,18 +110,19 @@ class Lists:
         """The Arrow array."""
         import pyarrow as pa
 
+        from protogen.convert.arrow_tables import type_of
+
         assert isinstance(type, Listed)
         if type.count is not None:
             missing = None if self.missing is None else self.missing.reshape(-1)
             flat = _numbers(self.values.reshape(-1), missing)
-            return pa.FixedSizeListArray.from_arrays(flat, type.count)
+            return pa.FixedSizeListArray.from_arrays(flat, type=type_of(type))
         if self.counts is None:
             size = self.values.shape[1]
             ends = np.arange(len(self.values) + 1, dtype="i4") * np.int32(size)
-            return pa.ListArray.from_arrays(
-                pa.array(ends), Lists(self.values, None, self.missing)._flat(None)
-            )
-        return pa.ListArray.from_arrays(pa.array(_ends(self.counts)), self._flat(self.there))
+            return pa.ListArray.from_arrays(pa.array(ends), self._flat(None), type=type_of(type))
+        ends = _ends(self.counts)
+        return pa.ListArray.from_arrays(pa.array(ends), self._flat(self.there), type=type_of(type))
 
     def _flat(self, there: Array | None) -> pa.Array:
         chosen = self.values.reshape(-1) if there is None else self.values[there]

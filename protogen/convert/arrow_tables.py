@@ -42,10 +42,10 @@ def type_of(type: ColumnType) -> pa.DataType:
             return getattr(pa, kind)()
         case Names():
             return pa.dictionary(pa.int16(), pa.string())
-        case Listed(element=element, count=count):
-            return (
-                pa.list_(type_of(element)) if count is None else pa.list_(type_of(element), count)
-            )
+        case Listed(element=element, count=count, gaps=gaps):
+            # Levels of what is never missing need not be written.
+            item = pa.field("element", type_of(element), nullable=gaps)
+            return pa.list_(item) if count is None else pa.list_(item, count)
         case Record(members=members):
             return pa.struct([(name, type_of(member)) for name, member in members])
 

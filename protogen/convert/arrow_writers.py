@@ -16,7 +16,7 @@ from protogen.convert.tables import Names, Table
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_MOST_ROWS = 1 << 20
+_MOST_ROWS = 1 << 17
 """Rows of a group of rows."""
 _MOST_KEPT = 48 << 20
 """Bytes of rows of all tables together that wait for their group to fill."""
@@ -99,6 +99,8 @@ class ParquetWriter(ArrowWriter):
             "use_dictionary": [
                 column.name for column in table.all_columns if isinstance(column.type, Names)
             ],
+            # A reader looks for places and times; bounds of all else cost more than they help.
+            "write_statistics": [table.frame_columns[0].name, table.frame_columns[2].name],
         }
         writer = self._files.enter_context(parquet.ParquetWriter(str(path), schema, **options))
         return lambda rows: writer.write_table(rows, row_group_size=_MOST_ROWS)

@@ -75,8 +75,8 @@ class Batch(Protocol):
     def rows(self) -> Iterable[Rows]:
         """The rows of each table that has some, in the order of the capture."""
 
-    def lines(self) -> bytes:
-        """The events as lines of JSON, in the order of the capture."""
+    def lines(self) -> Iterable[bytes]:
+        """The events as lines of JSON, in the order of the capture: one or more in each text."""
 
 
 class BatchDecoder(Protocol):
@@ -171,10 +171,10 @@ class EventBatch:
             *(value_in(column, values) for column in table.columns),
         ]
 
-    def lines(self) -> bytes:
+    def lines(self) -> Iterator[bytes]:
         """The events as lines of JSON."""
-        lines = (self._line(*pair) for pair in zip(self.events, self.times, strict=True))
-        return "".join(lines).encode("utf-8", "surrogatepass")
+        for pair in zip(self.events, self.times, strict=True):
+            yield self._line(*pair).encode("utf-8", "surrogatepass")
 
     def _line(self, event: Any, when: int | None) -> str:
         line = event.as_json()

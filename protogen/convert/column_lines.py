@@ -7,7 +7,7 @@ whether it has to is tried line by line, unless a sender's frames have only one 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,7 +50,7 @@ class LineWriter:
             for name, reading in readings.messages.items()
         }
 
-    def write(self, batch: ColumnBatch) -> bytes:
+    def write(self, batch: ColumnBatch) -> Iterable[bytes]:
         """The events of a batch as lines, in the order of the capture."""
         found = list(self._of_messages(batch))
         if len(batch.filled.unknown):
@@ -58,12 +58,12 @@ class LineWriter:
         if len(batch.filled.invalid):
             found.append(self._invalid(batch))
         if not found:
-            return b""
+            return []
         if len(found) == 1:
-            return b"".join(found[0][1])
+            return found[0][1]
         offsets = np.concatenate([places for places, _ in found])
         lines = [line for _, some in found for line in some]
-        return b"".join([lines[place] for place in np.argsort(offsets).tolist()])
+        return [lines[place] for place in np.argsort(offsets).tolist()]
 
     def _of_messages(self, batch: ColumnBatch) -> Iterator[Lines]:
         others = bool(len(batch.filled.unknown) or len(batch.filled.invalid))
@@ -79,11 +79,12 @@ class LineWriter:
                 yield rows["offset"][doubtful], self._one_by_one(batch, reading, rows[doubtful])
                 rows, others = rows[~doubtful], True
             if len(rows):
-                whole = self._at_once(batch, template, rows)
-                alone = len(filled) == 1 and not others
-                yield rows["offset"], [whole] if alone else whole.splitlines(keepends=True)
+                texts = list(self._at_once(batch, template, rows))
+                if len(filled) > 1 or others:
+                    texts = [line for text in texts for line in text.splitlines(keepends=True)]
+                yield rows["offset"], texts
 
-    def _at_once(self, batch: ColumnBatch, template: _Template, rows: Any) -> bytes:
+    def _at_once(self, batch: ColumnBatch, template: _Template, rows: Any) -> Iterator[bytes]:
         pieces: list[bytes | Array] = [
             piece if isinstance(piece, bytes) else piece(rows) for piece in template.pieces
         ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -200,7 +200,7 @@ class ColumnBatch:
     data: bytes
     """The bytes of the line that the rows cover, and maybe more behind them."""
     times: Times
-    write_lines: Callable[[ColumnBatch], bytes]
+    write_lines: Callable[[ColumnBatch], Iterable[bytes]]
     start: int = 0
     """What is to be added to the offsets of the rows."""
 
@@ -226,7 +226,7 @@ class ColumnBatch:
         if len(self.filled.invalid):
             yield self._invalid_rows()
 
-    def lines(self) -> bytes:
+    def lines(self) -> Iterable[bytes]:
         """The events as lines of JSON."""
         return self.write_lines(self)
 
@@ -293,7 +293,7 @@ class ColumnDecoder:
         self,
         readings: Readings,
         engine: Engine,
-        write_lines: Callable[[ColumnBatch], bytes],
+        write_lines: Callable[[ColumnBatch], Iterable[bytes]],
         start: int = 0,
     ) -> None:
         """`start` is the offset of the first byte that will be fed."""

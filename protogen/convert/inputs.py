@@ -35,7 +35,7 @@ from protogen.convert.textlog import LINE, Complain, log_pieces
 STANDARD_INPUT = "-"
 _HEAD = 1 << 12
 """So many bytes are looked at to find out what a capture is."""
-_READ = 1 << 18
+_READ = PIECE
 """The most bytes that are read at once."""
 _LONGEST_LINE = 1 << 24
 
@@ -289,6 +289,9 @@ def _chunks(
 def _large(pieces: Iterable[bytes]) -> Iterator[Chunk]:
     data = bytearray()
     for piece in pieces:
+        if len(piece) >= PIECE and not data:
+            yield Chunk(piece)
+            continue
         data += piece
         if len(data) >= PIECE:
             yield Chunk(bytes(data))

@@ -14,7 +14,7 @@ class JsonlWriter:
 
     def write(self, batch: Batch) -> None:
         """Write the events of a batch."""
-        self._file.write(batch.lines())
+        self._file.writelines(batch.lines())
 
     def close(self) -> None:
         """Write what is left."""

@@ -8,8 +8,9 @@ Each message has a table. Its columns are, in this order:
 * for each field its raw values under the field's name. The members of a struct are `field.member`,
   the cases of a switch `field.case` or `field.case.member`, null where they were not chosen, and
   `field.rest` for the bytes of a value without a case.
-* behind the raw column of a field with a scale, or with a unit and special values, its physical
-  values, called as in Python: `heading_deg`; null for a special value.
+* behind the raw column of a field with a scale, its physical values, called as in Python:
+  `heading_deg`; null for a special value. So it is for a single value without a scale that has a
+  unit and special values. What else has a unit is physical as it is.
 * behind that of a field with named values, their names: `mode_name`; null for a value without one.
 
 `invalid_spans` and `unknown_frames` are the tables of what is no frame and of unknown identities.
@@ -71,6 +72,8 @@ class Listed:
 
     element: ColumnType
     count: int | None
+    gaps: bool = False
+    """Whether some of them may be missing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -371,7 +374,7 @@ def _meanings(raw: Column, item: Field | None) -> Iterator[Column]:
     leaf = item.type.element if isinstance(item.type, Array) else item.type
     if not isinstance(leaf, Integer | Float):
         return
-    if item.scaled or (item.unit and item.special):
+    if item.scaled or (item.unit and item.special and leaf is item.type):
         yield _physical_column(raw, item, leaf)
     names = _names(item, leaf)
     if names and isinstance(item.type, Integer):
@@ -385,7 +388,9 @@ def _physical_column(raw: Column, item: Field, leaf: Integer | Float) -> Column:
     special = frozenset(named.value for named in item.special)
     meaning = Physical(item.scale, item.offset, special, isinstance(leaf, Float))
     element = column_type(leaf) if meaning.is_plain else FLOAT64
-    type = Listed(element, raw.type.count) if isinstance(raw.type, Listed) else element
+    type: ColumnType = element
+    if isinstance(raw.type, Listed):
+        type = Listed(element, raw.type.count, gaps=bool(special))
     facts = {"of": raw.name, **({"unit": item.unit} if item.unit else {})}
     name = f"{raw.name}_{unit_suffix(item.unit)}"
     return Column(name, type, raw.path, meaning, raw.nullable or bool(special), facts)
