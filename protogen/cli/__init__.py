@@ -49,7 +49,7 @@ app.command("generate", cls=Command, epilog=generate.EXAMPLE)(guarded(generate.g
 app.command("fmt", cls=Command, epilog=fmt.EXAMPLE)(guarded(fmt.fmt))
 app.command("decode", cls=Command, epilog=decode.EXAMPLE)(guarded(decode.decode))
 app.command("encode", cls=Command, epilog=encode.EXAMPLE)(guarded(encode.encode))
-app.command("convert", cls=Command, epilog=convert.EXAMPLE)(guarded(convert.convert))
+app.command("convert", cls=convert.ConvertCommand, epilog=convert.EXAMPLE)(guarded(convert.convert))
 app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.explain))
 app.command("fuzz", cls=Command, epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
 app.command("diff", cls=Command, epilog=diff.EXAMPLE)(guarded(diff.diff))

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
 from protogen.convert.inputs import InputKind
 from protogen.convert.writers import OutputFormat
 
 if TYPE_CHECKING:
+    from protogen.convert.fleet import Fleet
     from protogen.convert.run import Job, Result
 
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
@@ -51,6 +54,23 @@ def convert(  # noqa: PLR0913 - each option is one argument
             "--force", help="Do what is done again, and replace files that somebody else made."
         ),
     ] = False,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            "--dask",
+            metavar="[ADDRESS]",
+            help="Let the workers of a Dask scheduler do it, to Parquet; without an address,"
+            " workers on this machine.",
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=1, metavar="N", help="With --dask: how many here."),
+    ] = None,
+    part_size: Annotated[
+        int,
+        typer.Option("--part-size", min=1, metavar="MB", help="With --dask: megabytes of a part."),
+    ] = 256,
     quiet: Quiet = False,
 ) -> int:
     """Make tables of captures: one for each message, with raw and physical values.
@@ -67,7 +87,8 @@ def convert(  # noqa: PLR0913 - each option is one argument
     sent = codec.protocol.sender(name)
     job = Job(codec.protocol, codec.runtime, sent, to, output, input, force)
     complaints = _Complaints()
-    results = _run(job, captures, complaints)
+    fleet = None if dask is None else _fleet(to, dask, workers, part_size)
+    results = _run(job, captures, fleet, complaints)
     if not quiet:
         for result in results:
             _print_result(result, output)
@@ -92,7 +113,37 @@ class _Complaints:
             typer.echo(f"warning: {silent} more lines can't be used", err=True)
 
 
-def _run(job: Job, captures: Sequence[str], complaints: _Complaints) -> list[Result]:
+LOCAL = "local"
+"""Stands for the address of workers on this machine."""
+_ADDRESS = re.compile(r"(?:tcp|tls|ucx|wss?|inproc)://.*|[\w.-]+:\d+")
+
+
+class ConvertCommand(Command):
+    """The command, whose option `--dask` goes with and without an address."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments. Raises BadParameter."""
+        written = []
+        for word, following in zip(args, [*args[1:], ""], strict=True):
+            bare = word == "--dask" and not _ADDRESS.fullmatch(following)
+            written.append(f"--dask={LOCAL}" if bare else word)
+        return super().parse_args(ctx, written)
+
+
+def _fleet(to: OutputFormat, address: str, workers: int | None, part_size: int) -> Fleet:
+    from protogen.convert.fleet import Fleet
+
+    if to is not OutputFormat.PARQUET:
+        raise UsageError("--dask makes Parquet", "give --to parquet")
+    if address != LOCAL and workers is not None:
+        raise UsageError("--workers is for workers on this machine, not for a scheduler's")
+    return Fleet(None if address == LOCAL else address, workers, part_size * 1_000_000)
+
+
+def _run(
+    job: Job, captures: Sequence[str], fleet: Fleet | None, complaints: _Complaints
+) -> list[Result]:
+    from protogen.capture.errors import CaptureError
     from protogen.cli.progress import progress
     from protogen.convert.errors import ConvertError
     from protogen.convert.run import convert, plan
@@ -100,9 +151,15 @@ def _run(job: Job, captures: Sequence[str], complaints: _Complaints) -> list[Res
     try:
         named = plan(job, captures)
         with progress("converting", _total(job, captures), in_bytes=True) as advance:
-            return list(convert(job, named, complaints.add, advance))
+            if fleet is None:
+                return list(convert(job, named, complaints.add, advance))
+            from protogen.convert.fleet import convert_fleet
+
+            return list(convert_fleet(job, named, fleet, complaints.add, advance))
     except ConvertError as error:
         raise UsageError(str(error), error.hint) from None
+    except CaptureError as error:
+        raise UsageError(str(error)) from None
 
 
 def _total(job: Job, captures: Sequence[str]) -> int | None:

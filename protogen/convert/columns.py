@@ -230,6 +230,12 @@ class ColumnBatch:
         """The events as lines of JSON."""
         return self.write_lines(self)
 
+    def with_rows(self, filled: Filled) -> ColumnBatch:
+        """The same batch with only these of its rows."""
+        return ColumnBatch(
+            self.readings, filled, self.data, self.times, self.write_lines, self.start
+        )
+
     def raw(self, offset: int, size: int) -> bytes:
         """The bytes on the wire of an event."""
         place = offset - self.filled.offset

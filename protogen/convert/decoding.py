@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from protogen.convert.batches import BatchDecoder, EventDecoder
 from protogen.convert.tables import Tables
 from protogen.runtime.sender import SenderSpec
+
+if TYPE_CHECKING:
+    from protogen.convert.columns import ColumnDecoder
 
 EVENTS = "events"
 """The decoder that needs no other package."""
@@ -19,6 +22,13 @@ def open_decoder(
     """A decoder of bytes whose first has the offset `start`. Every engine gives the same rows."""
     if engine == EVENTS or (engine is None and find_spec("numpy") is None):
         return EventDecoder(tables, spec, start)
+    return open_columns(tables, spec, engine, start)
+
+
+def open_columns(
+    tables: Tables, spec: SenderSpec[Any, Any], engine: str | None, start: int = 0
+) -> ColumnDecoder:
+    """The same with NumPy tables. Raises CaptureError where there is no such engine."""
     from protogen.capture.engines import engine_of
     from protogen.capture.layout import capture_schema
     from protogen.convert.column_lines import LineWriter

@@ -16,8 +16,10 @@ class Pending:
     The name is hidden and always the same, so that what a killed run left is overwritten.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, token: str = "") -> None:
+        """With a `token`, the hidden names are of this run alone."""
         self._folder = folder
+        self._token = token
         self._paths: list[Path] = []
 
     def path(self, relative: str) -> Path:
@@ -25,7 +27,7 @@ class Pending:
         path = self._folder / relative
         path.parent.mkdir(parents=True, exist_ok=True)
         self._paths.append(path)
-        return _hidden(path)
+        return _hidden(path, self._token)
 
     @property
     def relatives(self) -> list[str]:
@@ -35,8 +37,9 @@ class Pending:
     def commit(self) -> list[str]:
         """Put every file in its place; their relative paths. Raises OSError."""
         for path in self._paths:
-            _settle(_hidden(path))
-            _hidden(path).replace(path)
+            hidden = _hidden(path, self._token)
+            _settle(hidden)
+            hidden.replace(path)
         for folder in dict.fromkeys(path.parent for path in self._paths):
             _settle(folder)
         return self.relatives
@@ -44,14 +47,14 @@ class Pending:
     def discard(self) -> None:
         """Remove what was written."""
         for path in self._paths:
-            _hidden(path).unlink(missing_ok=True)
+            _hidden(path, self._token).unlink(missing_ok=True)
             _remove_empty(path.parent, self._folder)
 
 
-def write_whole(path: Path, data: bytes) -> None:
+def write_whole(path: Path, data: bytes, token: str = "") -> None:
     """Write a file that appears whole or not at all. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    hidden = _hidden(path)
+    hidden = _hidden(path, token)
     hidden.write_bytes(data)
     _settle(hidden)
     hidden.replace(path)
@@ -64,8 +67,21 @@ def remove(folder: Path, relatives: Iterable[str]) -> None:
         _remove_empty((folder / relative).parent, folder)
 
 
-def _hidden(path: Path) -> Path:
-    return path.with_name(f".{path.name}{_PARTIAL}")
+def sweep(folder: Path, names: Iterable[str], keep: Iterable[str]) -> None:
+    """Remove what attempts at files of these names left in the folder's folders, but for `keep`."""
+    ours, kept = set(names), set(keep)
+    for path in list(folder.glob("*/*")):
+        name, is_partial = path.name, path.name.endswith(_PARTIAL)
+        if is_partial:
+            name = name[1:].removesuffix(_PARTIAL).rpartition(".")[0]
+        relative = path.relative_to(folder).as_posix()
+        if name in ours and (is_partial or relative not in kept):
+            path.unlink(missing_ok=True)
+            _remove_empty(path.parent, folder)
+
+
+def _hidden(path: Path, token: str) -> Path:
+    return path.with_name(f".{path.name}.{token}{_PARTIAL}" if token else f".{path.name}{_PARTIAL}")
 
 
 def _settle(path: Path) -> None:

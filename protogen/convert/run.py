@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -146,14 +146,19 @@ def _batches(decoder: BatchDecoder, chunks: Any) -> Iterator[Batch]:
     yield from decoder.flush()
 
 
-def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
-    """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
+def check_room(job: Job, state: State, files: Iterable[str]) -> None:
+    """Raise ConvertError where one of the files is there and no earlier run made it."""
     for file in files:
         if (job.folder / file).exists() and not (job.force or state.owns(file)):
             raise ConvertError(
                 f"{job.folder / file} is there already, and no earlier run made it",
                 "name another folder with --output, or replace it with --force",
             )
+
+
+def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
+    """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
+    check_room(job, state, files)
     stale = [file for file in state.files(key) if file not in files]
     state.expect(key, files)
     remove(job.folder, stale)

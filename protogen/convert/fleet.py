@@ -1,0 +1,273 @@
+"""Captures made into Parquet by many workers: what hands out the parts and puts them together.
+
+Nothing is lost or doubled when a worker dies: Dask gives its part to another one, a part's files
+have the names that they had, and they appear whole. When all parts of a capture fit each other, the
+record of the folder says that it is done; then other files that earlier runs made of it go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from protogen.convert.batches import Tally
+from protogen.convert.errors import ConvertError, needed
+from protogen.convert.inputs import Source, format_of
+from protogen.convert.outputs import remove, sweep, write_whole
+from protogen.convert.parts import (
+    MARKERS,
+    Part,
+    PartDone,
+    Work,
+    convert_part,
+    marker_of,
+    read_marker,
+)
+from protogen.convert.ranges import START
+from protogen.convert.run import Job, Result, check_room
+from protogen.convert.state import Done, State
+
+PART_SIZE = 256 << 20
+"""Bytes of a capture in a part, unless somebody says otherwise."""
+_DIGITS = 6
+
+Complain = Callable[[str], None]
+Advance = Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """Who does the work: a scheduler's address, or None for workers on this machine."""
+
+    address: str | None = None
+    workers: int | None = None
+    part_size: int = PART_SIZE
+
+
+@dataclass(slots=True)
+class _Capture:
+    """A capture on its way: its parts, and what became of them."""
+
+    name: str
+    source: Source
+    folder: str
+    format: str
+    stamp: Mapping[str, Any]
+    parts: list[Part]
+    done: dict[int, PartDone] = field(default_factory=dict)
+
+    def wrong(self) -> Iterator[tuple[int, Part]]:
+        """Parts that began elsewhere than where the part in front of them ended, with its end.
+
+        Only those whose part in front is right itself are told.
+        """
+        right = START
+        for place in range(len(self.parts)):
+            done = self.done.get(place)
+            if done is None:
+                return
+            if done.entry != right:
+                yield place, replace(self.parts[place], entry=right)
+                return
+            right = done.exit
+
+    @property
+    def is_done(self) -> bool:
+        """Whether all parts are there and fit each other."""
+        return len(self.done) == len(self.parts) and not any(self.wrong())
+
+
+def convert_fleet(
+    job: Job,
+    named: Sequence[tuple[str, Source]],
+    fleet: Fleet,
+    complain: Complain,
+    advance: Advance,
+) -> Iterator[Result]:
+    """Convert captures with the workers of a fleet. Raises ConvertError and OSError."""
+    for module in ("distributed", "pyarrow", "numpy"):
+        needed(module, "--dask")
+    state = State(job.folder)
+    work = Work(job.protocol, job.sender.name, str(job.folder.absolute()), job.engine)
+    waiting = []
+    for name, source in named:
+        if source.is_standard_input:
+            raise ConvertError("standard input can't be read by workers", "give files or URLs")
+        stamp = job.stamp(source)
+        before = None if job.force else state.finished(f"{name}.{job.format}", stamp)
+        if before is None:
+            waiting.append(_planned(job, name, source, stamp, fleet.part_size))
+        else:
+            advance(stamp["size"] or 0)
+            yield Result(
+                source.place, before.format, before.tally, before.files, True, before.lost_lines
+            )
+    if waiting:
+        for capture in waiting:
+            _begin(job, state, capture)
+        with _client(fleet) as client:
+            for capture in _Workers(client, work, advance).run(waiting, fresh=job.force):
+                yield _finished(job, state, capture, complain)
+    if (job.folder / MARKERS).is_dir() and not any((job.folder / MARKERS).iterdir()):
+        (job.folder / MARKERS).rmdir()
+
+
+def _planned(
+    job: Job, name: str, source: Source, stamp: Mapping[str, Any], part_size: int
+) -> _Capture:
+    format = format_of(source, job.input)
+    size = stamp["size"]
+    place = source.place if source.is_url else str(Path(source.place).absolute())
+    kind = job.input and job.input.value
+    if not format.is_plain or not size:
+        whole = {**stamp, "span": None}
+        return _Capture(
+            name,
+            source,
+            str(job.folder),
+            str(format),
+            stamp,
+            [Part(name, place, name, whole, kind)],
+        )
+    parts = []
+    for number, start in enumerate(range(0, size, part_size)):
+        span = (start, min(size, start + part_size))
+        of_part = {**stamp, "span": list(span)}
+        part = Part(f"{name}.{number:0{_DIGITS}}", place, name, of_part, kind, size, span)
+        parts.append(replace(part, entry=START) if number == 0 else part)
+    return _Capture(name, source, str(job.folder), str(format), stamp, parts)
+
+
+def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> Result:
+    """Take note that a capture is done, and remove what is left of other attempts."""
+    key = f"{capture.name}.{job.format}"
+    done = [capture.done[place] for place in range(len(capture.parts))]
+    files = sorted(file for part in done for file in part.files)
+    tally = Tally()
+    lost = 0
+    for found in done:
+        tally.add(found.tally)
+        lost += len(found.complaints)
+        for problem in found.complaints:
+            complain(f"{capture.source.place}: {problem}")
+    stale = [file for file in state.files(key) if file not in files]
+    remove(job.folder, stale)
+    sweep(job.folder, [f"{part.name}.{job.format}" for part in capture.parts], files)
+    state.record(key, Done(capture.stamp, files, tally, capture.format, lost))
+    for part in capture.parts:
+        marker_of(job.folder, part.name).unlink(missing_ok=True)
+    _begun(job, capture).unlink(missing_ok=True)
+    return Result(capture.source.place, capture.format, tally, files, lost_lines=lost)
+
+
+# --- workers --------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _client(fleet: Fleet) -> Iterator[Any]:
+    distributed = needed("distributed", "--dask")
+    if fleet.address is not None:
+        try:
+            client = distributed.Client(fleet.address, timeout=10)
+        except (OSError, ValueError) as error:
+            raise ConvertError(f"no scheduler answers at {fleet.address}: {error}") from None
+        with client:
+            yield client
+        return
+    # A worker's memory is what its decoders and row groups hold: the same for parts of any size.
+    with (
+        distributed.LocalCluster(
+            n_workers=fleet.workers, threads_per_worker=1, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+class _Workers:
+    """Hands out parts and collects what becomes of them."""
+
+    def __init__(self, client: Any, work: Work, advance: Advance) -> None:
+        self._client = client
+        # As the result of a task it can be had again when the workers that had it are gone.
+        self._work = client.submit(_same, work, pure=False)
+        self._advance = advance
+        self._running: dict[Any, tuple[_Capture, int]] = {}
+        self._collected = needed("distributed", "--dask").as_completed()
+
+    def run(self, captures: Sequence[_Capture], *, fresh: bool) -> Iterator[_Capture]:
+        """Yield each capture when its parts are done and fit each other.
+
+        Unless `fresh`, parts that an earlier run did are not done again.
+        """
+        for capture in captures:
+            for place, part in enumerate(capture.parts):
+                earlier = None if fresh else read_marker(Path(capture.folder), part)
+                if earlier is None:
+                    self._submit(capture, place, part)
+                else:
+                    capture.done[place] = earlier
+                    self._advance(_size(part))
+        for capture in captures:
+            self._mend(capture)
+        yield from (capture for capture in captures if capture.is_done)
+        for future in self._collected:
+            capture, place = self._running.pop(future)
+            if place not in capture.done:
+                self._advance(_size(capture.parts[place]))
+            capture.done[place] = _result(future)
+            self._mend(capture)
+            if capture.is_done:
+                yield capture
+
+    def _submit(self, capture: _Capture, place: int, part: Part) -> None:
+        future = self._client.submit(convert_part, self._work, part, pure=False, retries=2)
+        self._running[future] = (capture, place)
+        self._collected.add(future)
+
+    def _mend(self, capture: _Capture) -> None:
+        """Have a part that began at the wrong place done again, unless that is under way."""
+        under_way = [place for other, place in self._running.values() if other is capture]
+        for place, part in capture.wrong():
+            if place not in under_way:
+                self._submit(capture, place, part)
+
+
+def _same(work: Work) -> Work:
+    return work
+
+
+def _begin(job: Job, state: State, capture: _Capture) -> None:
+    """Take note that files of a capture's parts are ours from now on.
+
+    Raises ConvertError where there are some already that no earlier run made.
+    """
+    begun = _begun(job, capture)
+    if not begun.exists():
+        names = [f"{part.name}.{job.format}" for part in capture.parts]
+        tables = [table.name for table in job.tables.all_tables]
+        check_room(job, state, (f"{table}/{name}" for table in tables for name in names))
+        write_whole(begun, b"")
+
+
+def _begun(job: Job, capture: _Capture) -> Path:
+    return job.folder / MARKERS / f"{capture.name}.begun"
+
+
+def _size(part: Part) -> int:
+    return part.span[1] - part.span[0] if part.span else part.stamp["size"] or 0
+
+
+def _result(future: Any) -> PartDone:
+    distributed = needed("distributed", "--dask")
+    try:
+        found: PartDone = future.result()
+    except distributed.KilledWorker as error:
+        raise ConvertError(
+            f"workers died over and over at one part: {error}",
+            "they may have too little memory: give fewer --workers",
+        ) from None
+    return found
