@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, cast
 
@@ -22,13 +23,16 @@ def open_decoder(
     """A decoder of bytes whose first has the offset `start`. Every engine gives the same rows."""
     if engine == EVENTS or (engine is None and find_spec("numpy") is None):
         return EventDecoder(tables, spec, start)
-    return open_columns(tables, spec, engine, start)
+    return column_decoders(tables, spec, engine)(start)
 
 
-def open_columns(
-    tables: Tables, spec: SenderSpec[Any, Any], engine: str | None, start: int = 0
-) -> ColumnDecoder:
-    """The same with NumPy tables. Raises CaptureError where there is no such engine."""
+def column_decoders(
+    tables: Tables, spec: SenderSpec[Any, Any], engine: str | None
+) -> Callable[[int], ColumnDecoder]:
+    """What makes decoders that fill NumPy tables, each for bytes whose first has that offset.
+
+    Raises CaptureError where there is no such engine.
+    """
     from protogen.capture.engines import engine_of
     from protogen.capture.layout import capture_schema
     from protogen.convert.column_lines import LineWriter
@@ -36,5 +40,9 @@ def open_columns(
 
     readings = Readings(tables, capture_schema(tables.protocol, tables.sender))
     lines = LineWriter(readings, spec)
-    filler = engine_of(tables.protocol, tables.sender, cast(Any, engine))
-    return ColumnDecoder(readings, filler, lines.write, start)
+
+    def make(start: int) -> ColumnDecoder:
+        filler = engine_of(tables.protocol, tables.sender, cast(Any, engine))
+        return ColumnDecoder(readings, filler, lines.write, start)
+
+    return make

@@ -26,7 +26,6 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO, cast
 
 from protogen.capture.record import MAGIC
-from protogen.cli.hexinput import HexError, HexReader
 from protogen.convert.chunks import PIECE, Chunk, joined
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.recorded import record_pieces
@@ -118,8 +117,6 @@ def _translated(place: str) -> Iterator[None]:
         raise ConvertError(f"{place}: {reason}") from None
     except zlib.error as error:
         raise ConvertError(f"{place}: its compression is damaged: {error}") from None
-    except HexError as error:
-        raise ConvertError(f"{place}: {error}") from None
     except Exception as error:
         # The package is optional, so its exception has no name here.
         if type(error).__name__ != "ZstdError":
@@ -180,7 +177,8 @@ def opened(
         packing = _packing(head)
         unpacked = _Counted(_unpacking(counted, packing))
         found = kind or _kind(unpacked.peek(_HEAD), source.place)
-        chunks = _chunks(_pieces(unpacked), found, sender, senders, complain)
+        pieces = _pieces(unpacked)
+        chunks = _chunks(pieces, found, sender, senders, complain, source.place)
         yield Capture(Format(found, packing), _named(chunks, source.place))
 
 
@@ -274,12 +272,13 @@ def _chunks(
     sender: str,
     senders: Collection[str],
     complain: Complain,
+    place: str,
 ) -> Iterator[Chunk]:
     match kind:
         case InputKind.RAW:
             return _large(pieces)
         case InputKind.HEX:
-            return _large(_hex(pieces))
+            return _large(_hex(pieces, place))
         case InputKind.LOG:
             return joined(log_pieces(_lines(pieces), sender, senders, complain))
         case InputKind.RECORD:
@@ -306,12 +305,18 @@ def _named(chunks: Iterator[Chunk], place: str) -> Iterator[Chunk]:
         yield from chunks
 
 
-def _hex(pieces: Iterable[bytes]) -> Iterator[bytes]:
+def _hex(pieces: Iterable[bytes], place: str) -> Iterator[bytes]:
+    # The package of the command line imports this module.
+    from protogen.cli.hexinput import HexError, HexReader
+
     decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     reader = HexReader()
-    for piece in pieces:
-        yield reader.feed(decode(piece))
-    yield reader.finish()
+    try:
+        for piece in pieces:
+            yield reader.feed(decode(piece))
+        yield reader.finish()
+    except HexError as error:
+        raise ConvertError(f"{place}: {error}") from None
 
 
 def _lines(pieces: Iterable[bytes]) -> Iterator[str]:

@@ -152,21 +152,18 @@ def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
 
 
 def _range(work: Work, part: Part, pending: Pending) -> PartDone:
-    from protogen.convert.decoding import open_columns
+    from protogen.convert.decoding import column_decoders
 
     assert part.span is not None
     tables, spec = _tools(work.protocol, work.sender)
 
-    def make(start: int) -> Any:
-        return open_columns(tables, spec, work.engine, start)
-
-    lead = max(_LEAST_LEAD, 4 * tables.sender.framing.greatest)
+    make = column_decoders(tables, spec, work.engine)
     tally = Tally()
     with open_stream(part.place) as opened_stream:
         stream = _seekable(opened_stream)
         entry = part.entry
         if entry is None:
-            entry = guess_entry(stream, part.size, part.span[0], lead, make)
+            entry = guess_entry(stream, part.size, part.span[0], lead_of(tables), make)
         decoder = RangeDecoder(stream, part.size, part.span, entry, make)
         writer = open_writer(OutputFormat.PARQUET, part.name, pending, tables)
         try:
@@ -176,6 +173,11 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
         finally:
             writer.close()
     return PartDone(part.name, entry, decoder.exit, tally, pending.relatives)
+
+
+def lead_of(tables: Tables) -> int:
+    """How many bytes before a range the decoder begins that is to guess its entry."""
+    return max(_LEAST_LEAD, 4 * tables.sender.framing.greatest)
 
 
 def _seekable(stream: BinaryIO) -> BinaryIO:

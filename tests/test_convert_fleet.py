@@ -1,0 +1,379 @@
+"""A fleet makes the rows of one machine, whatever the split, and whoever dies."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from cli_support import ROOT, SINK, run
+from compiled import module_at, name_of, protocol_of, senders
+from test_json_lines import capture_of
+
+pytest.importorskip("numpy")
+parquet = pytest.importorskip("pyarrow.parquet")
+dataset = pytest.importorskip("pyarrow.dataset")
+
+from protogen.convert.batches import Tally  # noqa: E402
+from protogen.convert.decoding import column_decoders  # noqa: E402
+from protogen.convert.errors import ConvertError  # noqa: E402
+from protogen.convert.fleet import convert_fleet  # noqa: E402
+from protogen.convert.parts import MARKERS, Part, PartDone, marker_of, read_marker  # noqa: E402
+from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry  # noqa: E402
+from protogen.convert.run import Job, plan  # noqa: E402
+from protogen.convert.tables import tables_of  # noqa: E402
+from protogen.convert.values import as_list  # noqa: E402
+from protogen.convert.writers import OutputFormat  # noqa: E402
+
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
+RN1 = ROOT / "schemas" / "rn1.yaml"
+
+# --- ranges ---------------------------------------------------------------------------------------
+
+
+class Splitter:
+    """Decodes a capture in ranges, as a fleet does, and all of it at once."""
+
+    def __init__(self, path: Path, sender: str, data: bytes) -> None:
+        self.protocol = protocol_of(path)
+        self.tables = tables_of(self.protocol, self.protocol.sender(sender))
+        spec = module_at(path).PROTOCOL.sender(sender)
+        self.make = column_decoders(self.tables, spec, None)
+        self.data = data
+        self.repaired = 0
+
+    def range(self, span: tuple[int, int], entry: Frame) -> tuple[list[Any], Tally, Frame]:
+        """Rows, what was in them, and the exit."""
+        decoder = RangeDecoder(io.BytesIO(self.data), len(self.data), span, entry, self.make)
+        rows, tally = [], Tally()
+        for batch in decoder.batches():
+            tally.add(batch.tally)
+            for item in batch.rows():
+                columns = [as_list(values) for values in item.columns]
+                rows += [(item.table.name, *row) for row in zip(*columns, strict=True)]
+        return sorted(rows, key=lambda row: row[1]), tally, decoder.exit
+
+    def split(self, places: list[int], lead: int) -> tuple[list[Any], Tally]:
+        """The rows of all ranges, one after another."""
+        rows, tally, right = [], Tally(), START
+        for start, end in zip([0, *places], [*places, len(self.data)], strict=True):
+            entry = START
+            if start:
+                stream = io.BytesIO(self.data)
+                entry = guess_entry(stream, len(self.data), start, lead, self.make)
+            self.repaired += entry != right
+            found, amount, right = self.range((start, end), right)
+            rows += found
+            tally.add(amount)
+        return rows, tally
+
+
+@EVERY_SENDER
+def test_ranges_give_the_rows_of_one_decoder(path: Path, sender: str) -> None:
+    dice = Random(5)
+    for seed in range(2):
+        data = capture_of(path, sender, 30 + seed, 40)
+        splitter = Splitter(path, sender, data)
+        expected, amount, exit = splitter.range((0, len(data)), START)
+        assert exit == END
+        for pieces in (2, 6):
+            places = sorted(dice.sample(range(1, len(data)), pieces - 1))
+            rows, tally = splitter.split(places, lead=dice.choice([1, 64, 2000]))
+            assert [repr(row) for row in rows] == [repr(row) for row in expected]
+            assert tally == amount
+
+
+def test_every_split_of_a_hostile_capture_gives_the_same_rows() -> None:
+    """False starts in front of frames, and frames inside of what one decoder takes for noise."""
+    path = ROOT / "schemas" / "matty.yaml"
+    data = capture_of(path, "esp", 77, 12) * 2 + b"\x55" * 40 + capture_of(path, "esp", 78, 4)
+    splitter = Splitter(path, "esp", data)
+    expected, amount, _ = splitter.range((0, len(data)), START)
+    for place in range(1, len(data), 5):
+        rows, tally = splitter.split([place], lead=8)
+        assert rows == expected
+        assert tally == amount
+
+
+def test_a_capture_without_frames_is_all_of_the_first_range() -> None:
+    data = bytes(5000)
+    splitter = Splitter(RN1, "brain", data)
+    expected, _, _ = splitter.range((0, len(data)), START)
+    rows, _ = splitter.split([1000, 2000, 3000], lead=100)
+    assert rows == expected
+    assert splitter.range((1000, 2000), END)[0] == []
+
+
+def frames_in_frames() -> tuple[Path, bytes]:
+    """A capture in which whole frames are the data of others, and nothing keeps them apart."""
+    path = ROOT / "tests" / "framings" / "sync_length_crc.yaml"
+    module = module_at(path)
+    ping = module.encode(module.Ping())
+    dumps = [module.encode(module.Dump(address=place, memory=ping * 5)) for place in range(60)]
+    return path, b"".join(dumps)
+
+
+def test_a_wrong_guess_is_seen_and_put_right() -> None:
+    path, data = frames_in_frames()
+    splitter = Splitter(path, "station", data)
+    expected, amount, _ = splitter.range((0, len(data)), START)
+    assert dict(amount.messages) == {"dump": 60}
+    rows, tally = splitter.split(list(range(97, len(data), 97)), lead=0)
+    assert rows == expected
+    assert tally == amount
+    assert splitter.repaired > 10
+
+
+def test_a_capture_that_became_shorter_is_an_error() -> None:
+    splitter = Splitter(RN1, "brain", bytes(100))
+    decoder = RangeDecoder(io.BytesIO(bytes(50)), 100, (0, 100), START, splitter.make)
+    with pytest.raises(EOFError, match="ends at byte 50, not at 100"):
+        list(decoder.batches())
+
+
+# --- real clusters --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def captures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with captures of RN1: large, noise, compressed, a log."""
+    import gzip
+
+    folder = tmp_path_factory.mktemp("captures")
+    piece = capture_of(RN1, "brain", 5, 200)
+    (folder / "large.bin").write_bytes(b"".join(piece[7 * i :] + piece for i in range(300)))
+    (folder / "noise.bin").write_bytes(bytes(2_000_000))
+    (folder / "small.bin.gz").write_bytes(gzip.compress(piece))
+    lines = [f"({i}.5) brain {piece[8 * i : 8 * i + 8].hex()}" for i in range(50)]
+    (folder / "lines.log").write_text("\n".join([*lines, "oops"]))
+    return folder
+
+
+NAMES = ("large.bin", "noise.bin", "small.bin.gz", "lines.log")
+
+
+def arguments(captures: Path, output: Path, *names: str) -> list[str]:
+    places = [str(captures / name) for name in names or NAMES]
+    return ["convert", str(RN1), *places, "--sender", "brain", "--to", "parquet", "-o", str(output)]
+
+
+@pytest.fixture(scope="module")
+def whole(captures: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What one machine makes of them."""
+    folder = tmp_path_factory.mktemp("whole")
+    done = run(*arguments(captures, folder))
+    assert done.exit_code == 1, done.output  # one line of the log is lost
+    return folder
+
+
+def assert_same_rows(one: Path, other: Path, names: tuple[str, ...] = NAMES) -> None:
+    tables = sorted(path.name for path in one.iterdir() if path.is_dir())
+    assert tables == sorted(path.name for path in other.iterdir() if not path.name.startswith("."))
+    for table in tables:
+        for name in (name.partition(".")[0] for name in names):
+            ours = [sorted(folder.glob(f"{table}/{name}.*")) for folder in (one, other)]
+            assert bool(ours[0]) == bool(ours[1])
+            if ours[0]:
+                found = [dataset.dataset([*map(str, files)]).to_table() for files in ours]
+                assert found[0].equals(found[1]), (table, name)
+
+
+def test_a_fleet_gives_the_rows_of_one_machine(captures: Path, whole: Path, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    fleet = ["--dask", "--workers", "2", "--part-size", "1"]
+    done = run(*arguments(captures, tmp_path), *fleet)
+    assert done.exit_code == 1, done.output
+    assert "lines.log: line 51: not `(SECONDS) [NAME] HEX`" in done.output
+    assert len(list(tmp_path.glob("lidar/large.*"))) > 5
+    assert_same_rows(whole, tmp_path)
+    assert not list(tmp_path.rglob("*.partial"))
+    assert not (tmp_path / MARKERS).exists()
+    again = run(*arguments(captures, tmp_path), *fleet)
+    assert again.output.count("done before") == 4
+    first = run(*arguments(captures, whole))
+    kept = [line for line in first.output.splitlines() if line.startswith("  ")]
+    assert kept == [line for line in again.output.splitlines() if line.startswith("  ")]
+
+
+def test_a_worker_that_is_killed_loses_and_doubles_nothing(
+    captures: Path, whole: Path, tmp_path: Path
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    killed = []
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None
+    ) as cluster:
+
+        def kill() -> None:
+            """End a worker's process when some parts are done, twice."""
+            for parts in (3, 8):
+                while len(list((tmp_path / MARKERS).glob("large.*.json"))) < parts:
+                    time.sleep(0.005)
+                with distributed.Client(cluster) as client:
+                    process = next(iter(client.run(os.getpid).values()))
+                os.kill(process, signal.SIGKILL)
+                killed.append(process)
+
+        killer = threading.Thread(target=kill, daemon=True)
+        killer.start()
+        fleet = ["--dask", cluster.scheduler_address, "--part-size", "1"]
+        done = run(*arguments(captures, tmp_path, "large.bin"), *fleet)
+        killer.join(timeout=60)
+    assert done.exit_code == 0, done.output
+    assert len(killed) == 2
+    single = tmp_path / "single"
+    assert run(*arguments(captures, single, "large.bin")).exit_code == 0
+    for table in single.iterdir():
+        if table.is_dir():
+            parts = [str(path) for path in sorted((tmp_path / table.name).glob("large.0*.parquet"))]
+            expected = parquet.read_table(table / "large.parquet")
+            assert dataset.dataset(parts).to_table().equals(expected), table.name
+    assert not list(tmp_path.rglob("*.partial"))
+
+
+def test_a_fleet_goes_on_where_another_was_ended(
+    captures: Path, whole: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("distributed")
+    fleet = ["--dask", "--workers", "1", "--part-size", "1"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "protogen", *arguments(captures, tmp_path), *fleet],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60
+    while len(list((tmp_path / MARKERS).glob("large.*.json"))) < 3:
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait(timeout=30)
+    finished = [path.stem for path in (tmp_path / MARKERS).glob("large.*.json")]
+    files = [tmp_path / "lidar" / f"{name}.parquet" for name in finished]
+    stamps = {path: path.stat().st_mtime_ns for path in files}
+    assert len(stamps) >= 3
+    done = run(*arguments(captures, tmp_path), *fleet)
+    assert done.exit_code == 1, done.output
+    assert_same_rows(whole, tmp_path)
+    assert not list(tmp_path.rglob("*.partial"))
+    assert stamps == {path: path.stat().st_mtime_ns for path in stamps}
+
+
+def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) -> None:
+    distributed = pytest.importorskip("distributed")
+    from protogen.convert import fleet, parts
+
+    path, data = frames_in_frames()
+    (tmp_path / "run.bin").write_bytes(data)
+    monkeypatch.setattr(parts, "lead_of", lambda tables: 0)
+    out = tmp_path / "out"
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        job = job_of(path, "station", out)
+        scheduler = fleet.Fleet(cluster.scheduler_address, None, 97)
+        named = plan(job, [str(tmp_path / "run.bin")])
+        (result,) = convert_fleet(job, named, scheduler, pytest.fail, lambda amount: None)
+    assert dict(result.tally.messages) == {"dump": 60}
+    found = dataset.dataset([str(out / file) for file in result.files]).to_table()
+    assert found.column("address").to_pylist() == list(range(60))
+    assert {path.name for path in out.rglob("*.parquet")} == {Path(f).name for f in result.files}
+
+
+def job_of(path: Path, sender: str, folder: Path) -> Job:
+    protocol = protocol_of(path)
+    runtime = module_at(path).PROTOCOL
+    return Job(protocol, runtime, protocol.sender(sender), OutputFormat.PARQUET, folder)
+
+
+# --- what is refused ------------------------------------------------------------------------------
+
+
+class TestOptions:
+    @pytest.fixture
+    def sink(self, tmp_path: Path) -> Path:
+        (tmp_path / "sink.yaml").write_text(SINK)
+        (tmp_path / "run.bin").write_bytes(b"noise")
+        return tmp_path
+
+    @pytest.mark.parametrize(
+        ("options", "problem"),
+        [
+            (("--to", "csv", "--dask"), "--dask makes Parquet"),
+            (
+                ("--to", "parquet", "--dask", "tcp://127.0.0.1:1", "--workers", "2"),
+                "--workers is for workers on this machine",
+            ),
+        ],
+        ids=["csv", "workers"],
+    )
+    def test_that_do_not_go_together(
+        self, sink: Path, options: tuple[str, ...], problem: str
+    ) -> None:
+        common = ["convert", str(sink / "sink.yaml"), str(sink / "run.bin"), "--sender", "pc"]
+        done = run(*common, *options, "-o", str(sink / "out"))
+        assert done.exit_code == 2
+        assert problem in done.output
+
+    def test_standard_input_is_for_one_machine(self, sink: Path) -> None:
+        pytest.importorskip("distributed")
+        common = ["convert", str(sink / "sink.yaml"), "-", "--sender", "pc", "--to", "parquet"]
+        done = run(*common, "--dask", "-o", str(sink / "out"))
+        assert (done.exit_code, "give files or URLs" in done.output) == (2, True)
+
+    def test_no_scheduler(self, sink: Path, monkeypatch: Any) -> None:
+        distributed = pytest.importorskip("distributed")
+
+        def refuse(*arguments: object, **options: object) -> None:
+            raise OSError("timed out")
+
+        monkeypatch.setattr(distributed, "Client", refuse)
+        common = ["convert", str(sink / "sink.yaml"), str(sink / "run.bin"), "--sender", "pc"]
+        done = run(*common, "--to", "parquet", "--dask", "nowhere:8786", "-o", str(sink / "out"))
+        assert done.exit_code == 2
+        assert "no scheduler answers at nowhere:8786" in done.output
+
+    def test_files_of_somebody_else_stay(self, sink: Path) -> None:
+        pytest.importorskip("distributed")
+        theirs = sink / "out" / "numbers" / "run.000000.parquet"
+        theirs.parent.mkdir(parents=True)
+        theirs.write_text("mine")
+        common = ["convert", str(sink / "sink.yaml"), str(sink / "run.bin"), "--sender", "pc"]
+        done = run(*common, "--to", "parquet", "--dask", "-o", str(sink / "out"))
+        assert done.exit_code == 2
+        assert "no earlier run made it" in done.output
+        assert theirs.read_text() == "mine"
+
+
+def test_a_marker_holds_only_for_what_it_was_made_of(tmp_path: Path) -> None:
+    part = Part("run.000000", "run.bin", "run", {"size": 3}, None)
+    assert read_marker(tmp_path, part) is None
+    done = PartDone(part.name, START, Frame(5, 8), Tally(3), ["a/run.000000.parquet"], ["lost"])
+    marker = marker_of(tmp_path, part.name)
+    marker.parent.mkdir()
+    marker.write_text(json.dumps(done.as_json(part.stamp)))
+    assert read_marker(tmp_path, part) is None  # its file is gone
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "run.000000.parquet").write_text("")
+    assert read_marker(tmp_path, part) == done
+    assert read_marker(tmp_path, Part("run.000000", "", "run", {"size": 4}, None)) is None
+    assert issubclass(ConvertError, Exception)
+
+
+def test_a_worker_can_begin_with_any_module() -> None:
+    """It gets a function by the name of its module, and imports nothing else before."""
+    for path in sorted((ROOT / "protogen" / "convert").glob("[a-z]*.py")):
+        module = f"protogen.convert.{path.stem}"
+        if path.stem in ("parts", "inputs", "fleet"):
+            done = subprocess.run([sys.executable, "-c", f"import {module}"], cwd=ROOT, check=False)
+            assert done.returncode == 0, module
