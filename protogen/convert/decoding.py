@@ -33,7 +33,7 @@ def column_decoders(
 
     Raises CaptureError where there is no such engine.
     """
-    from protogen.capture.engines import engine_of
+    from protogen.capture.engines import makers
     from protogen.capture.layout import capture_schema
     from protogen.convert.column_lines import LineWriter
     from protogen.convert.columns import ColumnDecoder, Readings
@@ -41,8 +41,9 @@ def column_decoders(
     readings = Readings(tables, capture_schema(tables.protocol, tables.sender))
     lines = LineWriter(readings, spec)
 
+    filler, _ = makers(tables.protocol, tables.sender, cast(Any, engine))
+
     def make(start: int) -> ColumnDecoder:
-        filler = engine_of(tables.protocol, tables.sender, cast(Any, engine))
-        return ColumnDecoder(readings, filler, lines.write, start)
+        return ColumnDecoder(readings, filler(), lines.write, start)
 
     return make
