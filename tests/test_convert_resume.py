@@ -152,3 +152,30 @@ class TestPending:
         for text in (b"one", b"two"):
             write_whole(tmp_path / "deep" / "file", text)
         assert (tmp_path / "deep" / "file").read_bytes() == b"two"
+
+
+@pytest.mark.parametrize("to", ["parquet"])
+def test_memory_does_not_grow_with_the_capture(workspace: Path, tmp_path: Path, to: str) -> None:
+    """What a process needs at most, for a capture and for one of eight times its size."""
+    code = (
+        "import resource, sys; from protogen.cli import app\n"
+        "app(sys.argv[1:], standalone_mode=False)\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)"
+    )
+    piece = (workspace / "one.bin").read_bytes()
+    peaks = []
+    for megabytes in (1, 8):
+        capture = tmp_path / f"{megabytes}.bin"
+        capture.write_bytes(piece * (megabytes * 1_000_000 // len(piece)))
+        arguments = ["convert", str(workspace / "sink.yaml"), str(capture), "--sender", "pc", "-q"]
+        arguments += ["--to", to, "-o", str(tmp_path / "out")]
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        peaks.append(int(done.stdout.split()[-1]))
+    assert peaks[1] < 300
+    assert peaks[1] - peaks[0] < 100, peaks

@@ -19,11 +19,19 @@ ROOT = Path(__file__).parent.parent
 
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+EXTRAS = ("capture", "parquet", "mcap", "dask")
+"""Those that `protogen convert` needs."""
 
 
-def oldest() -> list[str]:
-    """Each dependency at its lower bound."""
-    return [requirement.replace(">=", "==") for requirement in PROJECT["dependencies"]]
+def oldest(*extras: str) -> list[str]:
+    """Each dependency at its lower bound, and those of these extras."""
+    optional = [
+        requirement
+        for extra in extras
+        for requirement in PROJECT["optional-dependencies"][extra]
+        if not requirement.startswith("protogen-serial[")  # they are among these extras
+    ]
+    return [item.replace(">=", "==") for item in [*PROJECT["dependencies"], *optional]]
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +67,7 @@ def run(python: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_every_dependency_has_a_lower_bound():
-    assert all("==" in requirement for requirement in oldest())
+    assert all("==" in requirement for requirement in oldest(*EXTRAS))
 
 
 @pytest.mark.parametrize(
@@ -89,6 +97,17 @@ def test_the_oldest_pre_commit_runs_the_hooks(tmp_path):
     assert done.stdout.count("Passed") == len(IDS)
     scratch.schema.write_text(scratch.schema.read_text().replace("scale: 1/100", "scale: 1/10"))
     assert scratch.pre_commit("run", "protogen-generate-check").returncode == 1
+
+
+def test_the_oldest_versions_of_the_extras_do_the_work(tmp_path):
+    python = environment(tmp_path / "venv", oldest(*EXTRAS))
+    (tmp_path / "run.bin").write_bytes(bytes.fromhex("55 02 01 41 BC") * 3)
+    arguments = ["convert", "schemas/matty.yaml", "--sender", "esp", str(tmp_path / "run.bin")]
+    for number, to in enumerate(["csv", "arrow", "mcap", "parquet", "parquet --dask --workers 1"]):
+        output = str(tmp_path / str(number))
+        result = run(python, *arguments, "-o", output, "--to", *to.split())
+        assert result.returncode == 0, result.stdout + result.stderr
+        assert any(name == "ack" for name, *_ in map(str.split, result.stdout.splitlines()[1:]))
 
 
 def test_the_newest_versions_do_the_work():

@@ -42,7 +42,13 @@ from protogen.compiler import compile_file
 from protogen.schema.json_schema import json_schema
 
 ROOT = Path(__file__).resolve().parent.parent
-DOCUMENTS = ("README.md", "docs/language.md", "docs/decoder.md", "benchmarks/README.md")
+DOCUMENTS = (
+    "README.md",
+    "docs/language.md",
+    "docs/decoder.md",
+    "docs/convert.md",
+    "benchmarks/README.md",
+)
 
 _FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 1 << 17
 """Rows of a group of rows."""
-_MOST_KEPT = 48 << 20
+_MOST_KEPT = 32 << 20
 """Bytes of rows of all tables together that wait for their group to fill."""
 
 Sink = Callable[["pa.Table"], None]

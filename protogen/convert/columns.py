@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -191,7 +190,7 @@ class Times:
         return Numbers(found, missing if missing.any() else None)
 
 
-@dataclass
+@dataclass(slots=True)
 class ColumnBatch:
     """Rows of a stretch of a capture, in NumPy tables."""
 
@@ -241,10 +240,9 @@ class ColumnBatch:
         place = offset - self.filled.offset
         return self.data[place : place + size]
 
-    @cached_property
-    def times_of(self) -> Callable[[Any], Values]:
-        """Tells when the last byte of each row came."""
-        return lambda rows: self.times.at(rows["offset"] + rows["size"] - np.uint64(1))
+    def times_of(self, rows: Any) -> Values:
+        """When the last byte of each row came."""
+        return self.times.at(rows["offset"] + rows["size"] - np.uint64(1))
 
     def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
         offset, *rest = (reader(rows) for reader in readers)
