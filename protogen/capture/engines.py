@@ -65,8 +65,7 @@ def _warn(why: str) -> None:
 
 
 def _python(protocol: Model, sender: Sender) -> PythonEngine:
-    from protogen.runtime.decoder import Decoder
     from protogen.targets.python.live import module_of
 
-    spec = module_of(protocol).PROTOCOL.sender(sender.name)
-    return PythonEngine(capture_schema(protocol, sender), Decoder(spec))
+    decoder = module_of(protocol).Decoder(sender.name)
+    return PythonEngine(capture_schema(protocol, sender), decoder)
