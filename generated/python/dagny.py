@@ -420,13 +420,10 @@ def _read_sonar(data: bytes) -> Sonar:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Sonar)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -434,13 +431,10 @@ def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Gps)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -448,13 +442,10 @@ def _read_bump(data: bytes) -> Bump:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Bump)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -462,13 +453,10 @@ def _read_odometry(data: bytes) -> Odometry:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Odometry)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -476,13 +464,10 @@ def _read_speed(data: bytes) -> Speed:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Speed)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -490,13 +475,10 @@ def _read_wheel_slip(data: bytes) -> WheelSlip:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(WheelSlip)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -504,13 +486,10 @@ def _read_battery(data: bytes) -> Battery:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Battery)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -518,13 +497,10 @@ def _read_reflex_settings(data: bytes) -> ReflexSettings:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(ReflexSettings)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -532,13 +508,10 @@ def _read_hardware_status(data: bytes) -> HardwareStatus:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(HardwareStatus)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -584,10 +557,7 @@ def _read_laser(data: bytes) -> Laser:
     if left2 or n1 > 512:
         raise _fast.Unclear
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
-    at = 0 + 1 * n1
     item.readings = v3
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -595,13 +565,10 @@ def _read_command(data: bytes) -> Command:
     if not 0 <= len(data) <= 128:
         raise _fast.Unclear
     item = _new(Command)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 128:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 

@@ -485,13 +485,10 @@ def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 126:
         raise _fast.Unclear
     item = _new(Gps)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 126:
         raise _fast.Unclear
-    at = len(data)
     item.nmea = v1.decode("latin-1")
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -560,10 +557,7 @@ def _read_laser(data: bytes) -> Laser:
     if left2 or n1 > 512:
         raise _fast.Unclear
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
-    at = 0 + 1 * n1
     item.readings = v3
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 

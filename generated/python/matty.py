@@ -469,13 +469,10 @@ def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 121:
         raise _fast.Unclear
     item = _new(Gps)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 121:
         raise _fast.Unclear
-    at = len(data)
     item.nmea = v1.decode("latin-1")
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 

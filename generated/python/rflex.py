@@ -935,10 +935,7 @@ def _read_sonar_data(data: bytes) -> SonarData:
         s4.distance = v7
         v3.append(s4)
     v8 = v3
-    at = 8 + 3 * n1
     item.readings = v8
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 

@@ -1101,10 +1101,7 @@ def _read_sonar_data(data: bytes) -> SonarData:
         s4.distance = v7
         v3.append(s4)
     v8 = v3
-    at = 8 + 3 * n1
     item.readings = v8
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 
@@ -1162,13 +1159,10 @@ def _read_ir_report(data: bytes) -> IrReport:
     if not 1 <= len(data) <= 255:
         raise _fast.Unclear
     item = _new(IrReport)
-    v1 = data[0:]
+    v1 = data
     if len(v1) > 255:
         raise _fast.Unclear
-    at = len(data)
     item.data = v1
-    if at != len(data):
-        raise _fast.Unclear
     return item
 
 

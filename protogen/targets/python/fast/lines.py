@@ -41,6 +41,11 @@ class Lines:
         self._depth = 0
         self._locals = 0
 
+    @property
+    def is_nested(self) -> bool:
+        """Whether statements are inside of a compound one."""
+        return self._depth > 0
+
     def add(self, line: str) -> None:
         """One statement."""
         self._lines.append(_INDENT * self._depth + self._broken(line))

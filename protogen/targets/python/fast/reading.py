@@ -44,13 +44,13 @@ def message_reader(message: Message, is_ascii: bool, constants: Constants) -> tu
 
     `is_ascii`: whoever calls it has seen that no byte has its most significant bit set.
     """
-    reader = _Reader(Lines(constants), Place(), is_ascii)
+    reader = _Reader(Lines(constants), Place(), is_message=True, is_ascii=is_ascii)
     reader.whole = message.sizes.fixed
     if message.sizes.fixed is None or not goes_together(message.fields):
         reader.whole = None
         reader.lines.refuse_if(outside(message.sizes, "data"))
     reader.record("item", message.name, message.fields)
-    if message.sizes.fixed is None:
+    if message.sizes.fixed is None and not reader.is_at_end:
         reader.lines.refuse_if(f"{reader.place.text} != len(data)")
     reader.lines.add("return item")
     return reader.lines.text
@@ -91,10 +91,15 @@ class _Run:
 class _Reader:
     """Writes the body of one function."""
 
-    def __init__(self, lines: Lines, place: Place, is_ascii: bool = False) -> None:
+    def __init__(
+        self, lines: Lines, place: Place, *, is_message: bool = False, is_ascii: bool = False
+    ) -> None:
         self.lines = lines
         self.place = place
         self.is_ascii = is_ascii
+        self.is_message = is_message
+        self.is_at_end = False
+        """Whether a field of the message itself has taken all that was left."""
         self.whole: int | None = None
         """The size of the message, where one `struct` reads it and checks that."""
         self.raw: dict[str, str] = {}
@@ -278,6 +283,13 @@ class _Reader:
             self.lines.add(f"{at} = {expression}")
         self.place = Place(at)
 
+    def _move_to_end(self, expression: str) -> None:
+        """The same for what takes all that is left; nothing stands behind it."""
+        if self.lines.is_nested or not self.is_message:
+            self._move_to(expression)
+        else:
+            self.is_at_end = True
+
     def _struct(self, struct: Struct) -> str:
         value = self.lines.local("s")
         outer = "".join(f", {self.raw[name]}" for name in outer_names(struct))
@@ -296,9 +308,9 @@ class _Reader:
         value = self.lines.local()
         start = self.place.text
         if isinstance(type_.extent, Fill):
-            self.lines.add(f"{value} = data[{start}:]")
+            self.lines.add(f"{value} = data[{start}:]" if start != "0" else f"{value} = data")
             self.lines.refuse_if(f"len({value}) > {type_.extent.greatest}")
-            self._move_to("len(data)")
+            self._move_to_end("len(data)")
         else:
             count = self._count(type_.extent)
             end = self.lines.local("end")
@@ -371,7 +383,11 @@ class _Reader:
             return values
         name = self.lines.local()
         self.lines.add(f"{name} = {values}")
-        self._move_to(f"{self.place.text} + {size} * {count}")
+        end = f"{self.place.text} + {size} * {count}"
+        if isinstance(array.extent, Fill):
+            self._move_to_end(end)
+        else:
+            self._move_to(end)
         return name
 
     def _array_count(self, extent: Extent, size: int) -> str:
