@@ -12,7 +12,7 @@ from protogen.runtime.events import Event, FrameEvent, MessageEvent, UnknownEven
 from protogen.runtime.frame import CounterPart
 from protogen.runtime.lines import encode_line, split_parts
 from protogen.runtime.message import Message
-from protogen.runtime.reading import may_start, read_frame
+from protogen.runtime.reading import read_frame
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
 
@@ -83,17 +83,28 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
 
     def decode(self, frame: bytes, sender: str, engine: Engine = "fast") -> MessageT_co:
         """The message of exactly one frame. Raises DecodeError."""
+        if engine == "fast":
+            message = self._cut_one(frame, sender)
+            if message is not None:
+                return message
         check_engine(engine)
-        spec = self.sender(sender)
-        if engine == "fast" and spec.cut is not None and may_start(spec.layout, frame):
-            events: list[Event[MessageT_co, PartsT_co]] = []
-            end = spec.cut(frame, 0, 0, events)
-            if end == len(frame) and len(events) == 1 and isinstance(events[0], MessageEvent):
-                return events[0].message
         event = self.read(frame, sender)
         if isinstance(event, UnknownEvent):
             raise DecodeError("unknown", f"no message has the identity of {event.parts}")
         return event.message
+
+    def _cut_one(self, frame: bytes, sender: str) -> MessageT_co | None:
+        """The message of a frame that is plainly in order."""
+        spec = self.senders.get(sender)
+        if spec is None or spec.cut is None or type(frame) is not bytes:
+            return None
+        if spec.layout.shares_delimiter and not frame.startswith(spec.layout.start):
+            return None  # Only in a stream may the end of the frame before be this one's start.
+        events: list[Event[MessageT_co, PartsT_co]] = []
+        if spec.cut(frame, 0, 0, events) != len(frame) or len(events) != 1:
+            return None
+        event = events[0]
+        return event.message if isinstance(event, MessageEvent) else None
 
     def _sender_of(self, message: Message, name: str | None) -> SenderSpec[MessageT_co, PartsT_co]:
         senders = [item for item in self.senders.values() if _sends(item, message)]
