@@ -1,0 +1,49 @@
+"""CPU time of many programs by turns, so that whatever else the machine does befalls them alike."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable, Hashable, Mapping
+from statistics import median
+from time import process_time_ns
+from typing import TypeVar
+
+LEAST = 20_000_000
+"""Nanoseconds of one measurement, at least."""
+
+KeyT = TypeVar("KeyT", bound=Hashable)
+
+
+def measure(
+    runs: Mapping[KeyT, Callable[[], object]], rounds: int, least: int = LEAST
+) -> dict[KeyT, list[float]]:
+    """Nanoseconds of CPU time that each takes, in each of the rounds."""
+    times = {key: _calibrated(run, least) for key, run in runs.items()}
+    found: dict[KeyT, list[float]] = {key: [] for key in runs}
+    for number in range(rounds):
+        order = list(runs) if number % 2 == 0 else [*reversed(list(runs))]
+        for key in order:
+            gc.collect()
+            found[key].append(_timed(runs[key], times[key]) / times[key])
+    return found
+
+
+def _calibrated(run: Callable[[], object], least: int) -> int:
+    """How often it has to run to take long enough."""
+    run()
+    times = 1
+    while (taken := _timed(run, times)) < least:
+        times = max(times + 1, int(times * 1.2 * least / max(taken, least // 100)))
+    return times
+
+
+def _timed(run: Callable[[], object], times: int) -> int:
+    start = process_time_ns()
+    for _ in range(times):
+        run()
+    return process_time_ns() - start
+
+
+def ratio(own: list[float], other: list[float]) -> float:
+    """The median of the rounds' ratios."""
+    return median(mine / theirs for mine, theirs in zip(own, other, strict=True))
