@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from itertools import starmap
 from struct import Struct, error
 
 
@@ -81,21 +82,31 @@ class Invalid(Unknown):
 
 
 AXES: list[Axis | int] = [*Axis, *range(2, 256)]
-MOTOR = Struct(">IIBiiii")
-PAIR = Struct(">II")
-READING = Struct(">BH")
+UNPACK_MOTOR = Struct(">IIBiiii").unpack
+UNPACK_PAIR = Struct(">II").unpack_from
+ITER_READINGS = Struct(">BH").iter_unpack
+new = object.__new__
+"""An object without a call of its class's `__init__`, which takes longer than all the rest."""
 
 
-def read_motor(payload: bytes, unpack=MOTOR.unpack) -> Motor:  # noqa: ANN001
-    unknown, timestamp, axis, *rest = unpack(payload)
-    return Motor(unknown, timestamp, AXES[axis], *rest)
+def read_motor(payload: bytes) -> Motor:
+    item = new(Motor)
+    (
+        item.unknown,
+        item.timestamp,
+        axis,
+        item.position,
+        item.velocity,
+        item.acceleration,
+        item.torque,
+    ) = UNPACK_MOTOR(payload)
+    item.axis = AXES[axis]
+    return item
 
 
-def read_sonar(payload: bytes, unpack=PAIR.unpack_from) -> Sonar:  # noqa: ANN001
-    readings = [
-        Reading(cluster, distance) for cluster, distance in READING.iter_unpack(payload[8:])
-    ]
-    unknown, timestamp = unpack(payload)
+def read_sonar(payload: bytes) -> Sonar:
+    readings = list(starmap(Reading, ITER_READINGS(payload[8:])))
+    unknown, timestamp = UNPACK_PAIR(payload)
     return Sonar(unknown, timestamp, readings)
 
 

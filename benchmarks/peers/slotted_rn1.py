@@ -67,19 +67,19 @@ SIGNED_CODES = {(value ^ 0x2000) - 0x2000: code for value, code in UNSIGNED_CODE
 GYRO_STATUS: list[GyroStatus | int] = [0, GyroStatus.OK, *range(2, 128)]
 LIDAR_STATUS = [LidarStatus(value) for value in range(128)]
 
-GYRO = Struct("<xBHHH")
-LIDAR = Struct("<xB360H")
+UNPACK_GYRO = Struct("<xBHHH").unpack
+UNPACK_LIDAR = Struct("<xB360H").unpack
 PACK_GYRO = Struct("<BBHHH").pack
 PACK_LIDAR = Struct("<BB360H").pack
 
 
-def read_gyro(raw: bytes, unpack=GYRO.unpack) -> Gyro:  # noqa: ANN001
-    status, x, y, z = unpack(raw)
+def read_gyro(raw: bytes) -> Gyro:
+    status, x, y, z = UNPACK_GYRO(raw)
     return Gyro(GYRO_STATUS[status], SIGNED[x], SIGNED[y], SIGNED[z])
 
 
-def read_lidar(raw: bytes, unpack=LIDAR.unpack) -> Lidar:  # noqa: ANN001
-    status, *codes = unpack(raw)
+def read_lidar(raw: bytes) -> Lidar:
+    status, *codes = UNPACK_LIDAR(raw)
     return Lidar(LIDAR_STATUS[status], [*map(UNSIGNED.__getitem__, codes)])
 
 
