@@ -194,7 +194,7 @@ def _tools() -> list[Tool]:
         Tool("protogen", "Python and Markdown", ".yaml", protogen_yaml, _protogen),
         Tool("protogen", "Python", ".yaml", protogen_yaml, _protogen_python),
         Tool("mavgen", "Python", ".xml", mavlink_xml, _mavgen()),
-        Tool("Kaitai Struct", "Python", ".ksy", kaitai_ksy, _kaitai()),
+        Tool("Kaitai Struct", "Python", ".ksy", kaitai_ksy, kaitai()),
     ]
 
 
@@ -214,7 +214,7 @@ def _mavgen() -> Command | None:
     return lambda definition, folder: [*module, "-o", str(folder / "made.py"), str(definition)]
 
 
-def _kaitai() -> Command | None:
+def kaitai() -> Command | None:
     packages = ["kaitai-struct-compiler", "js-yaml"]
     folders = [CACHE / "node_modules" / name for name in packages]
     if not all(folder.exists() for folder in folders):

@@ -9,6 +9,8 @@ from peers import slotted_matty, slotted_rflex, slotted_rn1, tuned
 from peers.cases import FEW, Case, Row
 from peers.contender import Contender
 
+SLOTTED, TUPLES, NUMPY = "hand, slotted", "hand, tuples", "hand, NumPy"
+
 _DECODERS: dict[str, Any] = {
     "rn1": slotted_rn1,
     "rflex": slotted_rflex,
@@ -44,25 +46,26 @@ def slotted(case: Case) -> Contender:
         return [encode(item, count) for item, count in counted]
 
     return Contender(
-        "hand, slotted",
-        case.stream,
-        stream,
-        lambda events: [case.row(event.message) for event in events if is_wanted(event)],
-        lambda events: [(event.offset, event.raw) for event in events],
-        lambda: [decode(frame) for frame in frames],
-        case.row,
-        encode_each,
-        tuple(frames),
+        SLOTTED,
+        rows=lambda events: [case.row(event.message) for event in events if is_wanted(event)],
+        data=case.stream,
+        stream=stream,
+        places=lambda events: [(event.offset, event.raw) for event in events],
+        decode=lambda: [decode(frame) for frame in frames],
+        decoded=lambda found: list(map(case.row, found)),
+        encode=encode_each,
+        frames=tuple(frames),
+        feeder=lambda: module.Decoder().feed,
     )
 
 
 def tuples(case: Case) -> Contender:
     """Tuples alone."""
     return Contender(
-        "hand, tuples",
-        case.stream,
-        tuned.STREAMS[case.message],
-        lambda found: [_tupled(case, values) for values in found],
+        TUPLES,
+        rows=lambda found: [_tupled(case, values) for values in found],
+        data=case.stream,
+        stream=tuned.STREAMS[case.message],
     )
 
 
@@ -82,7 +85,7 @@ def numpy(case: Case) -> Contender:
         columns = [array[name].tolist() for name in case.kind.__slots__]
         return [tuple(map(_frozen, row)) for row in zip(*columns, strict=True)]
 
-    return Contender("hand, NumPy", case.stream, bulk.STREAMS[case.message], rows)
+    return Contender(NUMPY, rows=rows, data=case.stream, stream=bulk.STREAMS[case.message])
 
 
 def _frozen(value: Any) -> Any:

@@ -53,12 +53,13 @@ def _generated(case: Case, engine: Engine, name: str) -> Contender:
 
     return Contender(
         name,
-        case.stream,
-        stream,
-        lambda events: [case.row(event.message) for event in events if is_wanted(event)],
-        lambda events: [(event.offset, event.raw) for event in events],
-        decode_each,
-        case.row,
-        encode_each,
-        tuple(frames),
+        rows=lambda events: [case.row(event.message) for event in events if is_wanted(event)],
+        data=case.stream,
+        stream=stream,
+        places=lambda events: [(event.offset, event.raw) for event in events],
+        decode=decode_each,
+        decoded=lambda found: list(map(case.row, found)),
+        encode=encode_each,
+        frames=tuple(frames),
+        feeder=lambda: decoder(sender, **more).feed,
     )

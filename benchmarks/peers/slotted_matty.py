@@ -150,6 +150,12 @@ def encode_status(item: Status, counter: int) -> bytes:
     return b"\x55" + stuffed(content)
 
 
+def framed(command: int, counter: int, payload: bytes) -> bytes:
+    content = bytes((len(payload) + 2, counter, command)) + payload
+    content += (-adler32(content, 0) & 0xFF).to_bytes(1, "little")
+    return b"\x55" + stuffed(content)
+
+
 def is_valid(content: bytes) -> bool:
     """Whether these bytes from the length to the checksum are a frame."""
     return (
