@@ -1,6 +1,7 @@
 """What `benchmarks/bench_python.py` compares gives the same results, before any of it is timed."""
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from random import Random
 
@@ -11,11 +12,15 @@ ROOT = Path(__file__).parent.parent
 KAITAI = ROOT / ".cache" / "bench" / "node_modules" / "kaitai-struct-compiler"
 sys.path.append(str(ROOT / "benchmarks"))
 
-from peers import MAKERS, by_hand, made, ours  # noqa: E402
+import bench_python  # noqa: E402
+from peers import MAKERS, by_hand, made, ours, timing  # noqa: E402
 from peers.cases import cases  # noqa: E402
 from peers.contender import check  # noqa: E402
 
 CASES = cases(size=4096)
+TABLES = 8
+"""Streams, in bulk, live and in pieces; decoding and encoding; parsing and building."""
+CONSTRUCT = ("with_construct.interpreted", "with_construct.compiled")
 
 
 @pytest.mark.parametrize("maker", MAKERS)
@@ -40,3 +45,21 @@ def test_code_by_hand_finds_the_same_messages_in_noise(case, make, seed):
     data = stream_of(material, Random(seed), 60).data
     mine, theirs = ours.fast(case), make(case)
     assert theirs.rows(theirs.stream(data)) == mine.rows(mine.stream(data))
+
+
+@pytest.mark.skipif(not find_spec("numpy"), reason="needs the extra `bench`")
+def test_the_page_has_every_case_and_says_what_is_not_there(monkeypatch):
+    monkeypatch.setattr(timing, "LEAST", 1)
+    monkeypatch.setattr("gc.collect", lambda: 0)
+    makers = ("ours.fast", "by_hand.slotted", "by_hand.numpy", *CONSTRUCT, "gone.away")
+    monkeypatch.setattr(bench_python, "MAKERS", makers)
+    results = bench_python.measure(1, size=1024)
+    page = bench_python.page(results, 1)
+    for case in CASES:
+        assert page.count(f"\n| {case.title} |") == TABLES
+    assert "* `gone.away`: No module named 'peers.gone'" in page
+    assert page.count("| not measured |") >= len(CASES)
+    readme = "before\n{}\nold\n{}\nbehind\n".format(*bench_python.MARKS)
+    filled = bench_python.into_readme(readme, bench_python.summary(results))
+    assert filled.startswith("before\n") and filled.endswith("\nbehind\n") and "old" not in filled
+    assert bench_python.into_readme(filled, "") == bench_python.into_readme(readme, "")

@@ -14,11 +14,9 @@ LEAST = 20_000_000
 KeyT = TypeVar("KeyT", bound=Hashable)
 
 
-def measure(
-    runs: Mapping[KeyT, Callable[[], object]], rounds: int, least: int = LEAST
-) -> dict[KeyT, list[float]]:
+def measure(runs: Mapping[KeyT, Callable[[], object]], rounds: int) -> dict[KeyT, list[float]]:
     """Nanoseconds of CPU time that each takes, in each of the rounds."""
-    times = {key: _calibrated(run, least) for key, run in runs.items()}
+    times = {key: _calibrated(run) for key, run in runs.items()}
     found: dict[KeyT, list[float]] = {key: [] for key in runs}
     for number in range(rounds):
         order = list(runs) if number % 2 == 0 else [*reversed(list(runs))]
@@ -28,12 +26,12 @@ def measure(
     return found
 
 
-def _calibrated(run: Callable[[], object], least: int) -> int:
+def _calibrated(run: Callable[[], object]) -> int:
     """How often it has to run to take long enough."""
     run()
     times = 1
-    while (taken := _timed(run, times)) < least:
-        times = max(times + 1, int(times * 1.2 * least / max(taken, least // 100)))
+    while (taken := _timed(run, times)) < LEAST:
+        times = max(times + 1, int(times * 1.2 * LEAST / max(taken, LEAST // 100, 1)))
     return times
 
 

@@ -37,6 +37,8 @@ def _pair(plain: list[int], codes: dict[int, int]) -> Any:
 _SIGNED = _pair(slotted_rn1.SIGNED, slotted_rn1.SIGNED_CODES)
 _UNSIGNED = _pair(slotted_rn1.UNSIGNED, slotted_rn1.UNSIGNED_CODES)
 
+INTERPRETED, COMPILED = "construct", "construct, compiled"
+
 STRUCTS: dict[str, Any] = {
     "gyro": Struct("status" / Byte, "int_x" / _SIGNED, "int_y" / _SIGNED, "int_z" / _SIGNED),
     "lidar": Struct("status" / Byte, "distances" / Array(360, _UNSIGNED)),
@@ -72,12 +74,12 @@ VERSION = construct.__version__
 
 def interpreted(case: Case) -> Contender:
     """As it is declared."""
-    return _contender(case, "construct", STRUCTS[case.message])
+    return _contender(case, INTERPRETED, STRUCTS[case.message])
 
 
 def compiled(case: Case) -> Contender:
     """By `.compile()`."""
-    return _contender(case, "construct, compiled", STRUCTS[case.message].compile())
+    return _contender(case, COMPILED, STRUCTS[case.message].compile())
 
 
 def parser(case: Case, layout: Any) -> Callable[[bytes], Any]:
