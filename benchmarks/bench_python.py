@@ -38,7 +38,7 @@ OURS, REFERENCE = "protogen", "protogen, `construct`"
 SLOTTED, TUPLES, NUMPY = "hand, slotted", "hand, tuples", "hand, NumPy"
 CONSTRUCT, COMPILED = "construct", "construct, compiled"
 KAITAI, MAVLINK, SBP, SCAPY = "Kaitai Struct", "pymavlink", "libsbp", "scapy"
-PURE, NATIVE = "protogen, columns", "protogen, native columns"
+PURE, NATIVE = "protogen, Python columns", "protogen, native columns"
 
 OBJECTS = (OURS, SLOTTED, CONSTRUCT, COMPILED, KAITAI, MAVLINK, SBP, SCAPY, REFERENCE)
 """Those that make an object of each message."""
@@ -319,7 +319,8 @@ What each does, and does not:
   lidar are converted by hand, because an object for each takes four times as long. It encodes
   nothing: the npm package does not compile for its runtime's serialisation.
 * **pymavlink** has its own frames, with sequence and CRC ({crc}), and resynchronises; dialects in
-  [c/mavlink](c/mavlink/rn1.xml). Plain integers. A turn of the lidar goes out in four messages.
+  [c/mavlink](c/mavlink/rn1.xml). Plain integers. A turn of the lidar goes out in four messages,
+  and the readings of the sonars are two arrays, not records.
 * **libsbp** has its own frames with CRC-16 and its own reader, without metadata; classes as its
   generator makes them. Plain integers. A turn of the lidar does not fit.
 * **scapy** dissects the payloads into packets, with names for enums and flags; the same frames by
@@ -335,8 +336,9 @@ What each does, and does not:
 * **hand, NumPy** ([bulk.py](peers/bulk.py)) finds, unstuffs, checks and reads all frames at once
   into a structured array, without offsets. Of rflex and matty it takes whole frames of one message
   only, anything else is an error.
-* **protogen, columns** is `protogen.capture.columns` by the Python decoder, **native** by generated
-  C: offsets, sequence and sizes of all rows, every message, invalid bytes with their reasons.
+* **protogen, Python columns** are `protogen.capture.columns` by the Python decoder, **native** ones
+  by generated C: offsets, sequence and sizes of all rows, every message, invalid bytes with their
+  reasons.
   Native columns are measured on {loops} streams behind one another, by batches, and on one core;
   [columns.md](columns.md) has more.
 

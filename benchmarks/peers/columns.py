@@ -10,7 +10,7 @@ from protogen.capture import batches, columns
 from protogen.capture.errors import CaptureError
 from protogen.capture.protocols import protocol_of
 
-PURE, NATIVE = "protogen, columns", "protogen, native columns"
+PURE, NATIVE = "protogen, Python columns", "protogen, native columns"
 _KEPT = 1 << 20
 """Bytes of a stream whose tables are given back."""
 _LOOPS = 256

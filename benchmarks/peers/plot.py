@@ -15,6 +15,7 @@ from matplotlib import pyplot
 _FIRST = "protogen"
 _OURS, _HAND, _PEER = "#c8442c", "#4a7ba6", "#9aa5ad"
 _REFERENCE = "#e3a79b"
+_PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
 
 
 def plot(found: Mapping[str, Mapping[str, list[float]]], names: Sequence[str], path: Path) -> None:
@@ -49,8 +50,8 @@ def _panel(axis: Any, case: str, times: Mapping[str, list[float]], names: Sequen
             continue
         value = median(times[name])
         axis.barh(place, value, color=_color(name), height=0.72)
-        axis.text(value * 1.15, place, f"{value:,.0f}", va="center", fontsize=9)
-    axis.axvline(median(times[_FIRST]), color=_OURS, linewidth=0.8, linestyle=":")
+        axis.text(value * 1.15, place, f"{value:,.0f}", va="center", fontsize=9, bbox=_PAPER)
+    axis.axvline(median(times[_FIRST]), color=_OURS, linewidth=0.8, linestyle=":", zorder=0)
     axis.set_title(case, fontsize=12)
     axis.set_xscale("log")
     axis.set_xlim(1, 2e7)
