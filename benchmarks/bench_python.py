@@ -316,8 +316,8 @@ What each does, and does not:
   7-bit pairs go through adapters with the tables of the code by hand.
 * **Kaitai Struct** parses the payloads with code of its compiler, with enums, without flags; the
   same frames by hand. Its numbers of 7-bit pairs are instances, which are asked for; those of the
-  lidar are converted by hand, because an object for each takes four times as long. It encodes
-  nothing: the npm package does not compile for its runtime's serialisation.
+  lidar are converted by hand, because instances would need an object for each. It encodes nothing:
+  the function of the npm package compiles for reading only.
 * **pymavlink** has its own frames, with sequence and CRC ({crc}), and resynchronises; dialects in
   [c/mavlink](c/mavlink/rn1.xml). Plain integers. A turn of the lidar goes out in four messages,
   and the readings of the sonars are two arrays, not records.

@@ -1,7 +1,7 @@
 """Kaitai Struct on payloads, with code that its compiler from npm makes; the frames by hand.
 
-It has no flags: the status byte stays an integer. The runtime for serialisation is not what the
-npm package compiles for, so nothing is encoded.
+It has no flags: the status byte stays an integer. The function of the npm package compiles for
+reading only, so nothing is encoded.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ _UNSIGNED = slotted_rn1.UNSIGNED.__getitem__
 
 
 def _lidar(item: Any) -> Any:
-    """An array of instances would make an object for each; a list by hand is much faster."""
+    """Instances would need an object for each distance."""
     item.distances = [*map(_UNSIGNED, item.codes)]
     return item
 
