@@ -627,9 +627,31 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
     0x53: (1, _read_steering, (83,)),
     0x52: (1, _read_reflex, (82,)),
     0x50: (1, _read_power, (80,)),
-    0x4C: (-1, _read_laser, (76,)),
-    0x43: (-1, _read_command, (67,)),
+    0x4C: (-513, _read_laser, (76,)),
+    0x43: (-129, _read_command, (67,)),
 }
+
+def _waits_host(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 515:
+        return False
+    if data.startswith(b"\x0a", at):
+        return False
+    try:
+        content = data[at:]
+        if size < 1:
+            return True
+        payload_size: int = _HOST_KINDS[content[0]][0]
+        if payload_size < 0:
+            if data.find(b"\x0a", at + 1) >= 0:
+                return False
+            return size <= ~payload_size + 2
+        if not payload_size:
+            return False
+        return size <= payload_size + 2
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     if payload:
@@ -693,17 +715,39 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
 
 
 _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x53: (-1, _read_sonar, (83,)),
-    0x47: (-1, _read_gps, (71,)),
-    0x42: (-1, _read_bump, (66,)),
-    0x4F: (-1, _read_odometry, (79,)),
-    0x57: (-1, _read_wheel_slip, (87,)),
-    0x62: (-1, _read_battery, (98,)),
-    0x52: (-1, _read_reflex_settings, (82,)),
-    0x48: (-1, _read_hardware_status, (72,)),
-    0x4C: (-1, _read_laser, (76,)),
-    0x43: (-1, _read_command, (67,)),
+    0x53: (-129, _read_sonar, (83,)),
+    0x47: (-129, _read_gps, (71,)),
+    0x42: (-129, _read_bump, (66,)),
+    0x4F: (-129, _read_odometry, (79,)),
+    0x57: (-129, _read_wheel_slip, (87,)),
+    0x62: (-129, _read_battery, (98,)),
+    0x52: (-129, _read_reflex_settings, (82,)),
+    0x48: (-129, _read_hardware_status, (72,)),
+    0x4C: (-513, _read_laser, (76,)),
+    0x43: (-129, _read_command, (67,)),
 }
+
+def _waits_robot(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 515:
+        return False
+    if data.startswith(b"\x0a", at):
+        return False
+    try:
+        content = data[at:]
+        if size < 1:
+            return True
+        payload_size: int = _ROBOT_KINDS[content[0]][0]
+        if payload_size < 0:
+            if data.find(b"\x0a", at + 1) >= 0:
+                return False
+            return size <= ~payload_size + 2
+        if not payload_size:
+            return False
+        return size <= payload_size + 2
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     if payload:
@@ -993,6 +1037,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     messages=(Motor, Steering, Reflex, Power, Laser, Command),
     encode_only=(PowerDown,),
     cut=_cut_host,
+    waits=_waits_host,
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
@@ -1012,6 +1057,7 @@ ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     ),
     encode_only=(Speed,),
     cut=_cut_robot,
+    waits=_waits_robot,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""

@@ -622,13 +622,43 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
 
 
 _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x4D: (-1, _read_host_77),
+    0x4D: (-3, _read_host_77),
     0x53: (1, _read_steering),
     0x50: (1, _read_power),
     0x47: (8, _read_gps_position),
-    0x4C: (-1, _read_laser),
+    0x4C: (-513, _read_laser),
     0x5A: (7, _read_shutdown),
 }
+
+def _waits_host(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 1027:
+        return False
+    if data.find(b"\x0d", at) >= 0:
+        return False
+    try:
+        content = data[at:]
+        part = False
+        if 0x0D in content or 0x1B in content:
+            part = content.endswith(b"\x1b")
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x1b\x16", b"\x0d")
+            content = content.replace(b"\x1b\x00", b"\x1b")
+            again = content.replace(b"\x1b", b"\x1b\x00")
+            again = again.replace(b"\x0d", b"\x1b\x16")
+            if again != stuffed:
+                return False
+        if len(content) < 1:
+            return True
+        payload_size: int = _HOST_KINDS[content[0]][0]
+        if payload_size < 0:
+            return len(content) + part <= ~payload_size + 1
+        return len(content) + part <= payload_size + 1
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
@@ -683,13 +713,43 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
 
 _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
     0x53: (5, _read_sonar),
-    0x47: (-1, _read_gps),
+    0x47: (-127, _read_gps),
     0x4F: (13, _read_odometry),
     0x62: (6, _read_battery),
     0x43: (4, _read_compass),
-    0x4C: (-1, _read_laser),
+    0x4C: (-513, _read_laser),
     0x5A: (7, _read_shutdown),
 }
+
+def _waits_robot(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 1027:
+        return False
+    if data.find(b"\x0d", at) >= 0:
+        return False
+    try:
+        content = data[at:]
+        part = False
+        if 0x0D in content or 0x1B in content:
+            part = content.endswith(b"\x1b")
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x1b\x16", b"\x0d")
+            content = content.replace(b"\x1b\x00", b"\x1b")
+            again = content.replace(b"\x1b", b"\x1b\x00")
+            again = again.replace(b"\x0d", b"\x1b\x16")
+            if again != stuffed:
+                return False
+        if len(content) < 1:
+            return True
+        payload_size: int = _ROBOT_KINDS[content[0]][0]
+        if payload_size < 0:
+            return len(content) + part <= ~payload_size + 1
+        return len(content) + part <= payload_size + 1
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
@@ -923,6 +983,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Motor, Drive, Steering, Power, GpsPosition, Laser, Shutdown),
     cut=_cut_host,
+    waits=_waits_host,
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
@@ -930,6 +991,7 @@ ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Sonar, Gps, Odometry, Battery, Compass, Laser, Shutdown),
     cut=_cut_robot,
+    waits=_waits_robot,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""

@@ -678,6 +678,36 @@ _PC_KINDS: dict[_typing.Any, _typing.Any] = {
     0x44: _read_led,
 }
 
+def _waits_pc(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 252:
+        return False
+    if data.find(b"\x55", at + 1) > 0:
+        return False
+    try:
+        content = data[at + 1:]
+        part = False
+        if 0x56 in content:
+            part = content.endswith(b"\x56")
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x56\xaa", b"\x55")
+            content = content.replace(b"\x56\xa9", b"\x56")
+            again = content.replace(b"\x56", b"\x56\xa9")
+            again = again.replace(b"\x55", b"\x56\xaa")
+            if again != stuffed:
+                return False
+        if len(content) < 1:
+            return True
+        payload_size = content[0] - 2
+        if not 0 <= payload_size <= 122:
+            return False
+        return len(content) + part < payload_size + 4
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
+
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     if type(counter_) is not int or not 0 <= counter_ <= 255:
         raise _fast.Unclear
@@ -751,6 +781,36 @@ _ESP_KINDS: dict[_typing.Any, _typing.Any] = {
     0x50: _read_gps,
     0x56: _read_version,
 }
+
+def _waits_esp(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 252:
+        return False
+    if data.find(b"\x55", at + 1) > 0:
+        return False
+    try:
+        content = data[at + 1:]
+        part = False
+        if 0x56 in content:
+            part = content.endswith(b"\x56")
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x56\xaa", b"\x55")
+            content = content.replace(b"\x56\xa9", b"\x56")
+            again = content.replace(b"\x56", b"\x56\xa9")
+            again = again.replace(b"\x55", b"\x56\xaa")
+            if again != stuffed:
+                return False
+        if len(content) < 1:
+            return True
+        payload_size = content[0] - 2
+        if not 0 <= payload_size <= 122:
+            return False
+        return len(content) + part < payload_size + 4
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     if type(counter_) is not int or not 0 <= counter_ <= 255:
@@ -1043,6 +1103,7 @@ PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Stop, Reset, Mode, Go, Limits, Timing, GpsMode, VersionQuery, Led),
     cut=_cut_pc,
+    waits=_waits_pc,
 )
 ESP_SENDER: _rt.SenderSpec[EspMessage, Parts] = _rt.SenderSpec(
     "esp",
@@ -1050,6 +1111,7 @@ ESP_SENDER: _rt.SenderSpec[EspMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Ack, Nack, Status, Gps, Version),
     cut=_cut_esp,
+    waits=_waits_esp,
 )
 PC_FORMAT = _rt.FrameFormat(PC_SENDER)
 """The frame of pc as a construct declaration."""

@@ -1043,6 +1043,37 @@ _LINUX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x05, 0x02): _read_check_io_changed,
 }
 
+def _waits_linux(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 782:
+        return False
+    if data.find(b"\x1b\x02", at + 1) > 0:
+        return False
+    if data.find(b"\x1b\x03", at + 2) >= 0:
+        return False
+    try:
+        held = data.endswith(b"\x1b", at + 2)
+        content = data[at + 2 : len(data) - held]
+        part = False
+        if 0x1B in content or 0x7C in content:
+            part = content.endswith((b"\x1b", b"\x7c"))
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+            content = content.replace(b"\x1b\x00", b"\x1b")
+            again = content.replace(b"\x1b", b"\x1b\x00")
+            again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+            if again != stuffed:
+                return False
+        if len(content) < 4:
+            return True
+        payload_size = content[3]
+        return len(content) + part <= payload_size + 5
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
+
 def _frame_linux(
     payload: bytes, class_id_: int | None, subclass_: int | None, number_: int | None
 ) -> bytes:
@@ -1125,6 +1156,37 @@ _FLEX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x05, 0x02): _read_check_io_changed_answer,
     (0x05, 0x03): _read_changed_byte,
 }
+
+def _waits_flex(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 782:
+        return False
+    if data.find(b"\x1b\x02", at + 1) > 0:
+        return False
+    if data.find(b"\x1b\x03", at + 2) >= 0:
+        return False
+    try:
+        held = data.endswith(b"\x1b", at + 2)
+        content = data[at + 2 : len(data) - held]
+        part = False
+        if 0x1B in content or 0x7C in content:
+            part = content.endswith((b"\x1b", b"\x7c"))
+            if part:
+                content = content[:-1]
+            stuffed = content
+            content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+            content = content.replace(b"\x1b\x00", b"\x1b")
+            again = content.replace(b"\x1b", b"\x1b\x00")
+            again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+            if again != stuffed:
+                return False
+        if len(content) < 4:
+            return True
+        payload_size = content[3]
+        return len(content) + part <= payload_size + 5
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_flex(
     payload: bytes, class_id_: int | None, subclass_: int | None, number_: int | None
@@ -1698,6 +1760,7 @@ LINUX_SENDER: _rt.SenderSpec[LinuxMessage, Parts] = _rt.SenderSpec(
         CheckIoChanged,
     ),
     cut=_cut_linux,
+    waits=_waits_linux,
 )
 FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
     "flex",
@@ -1718,6 +1781,7 @@ FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
         ChangedByte,
     ),
     cut=_cut_flex,
+    waits=_waits_flex,
 )
 LINUX_FORMAT = _rt.FrameFormat(LINUX_SENDER)
 """The frame of linux as a construct declaration."""

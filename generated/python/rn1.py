@@ -756,8 +756,30 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
     0x80: (2, _read_move_manual),
     0x81: (4, _read_move_relative_twostep),
     0x82: (4, _read_move_relative_arc),
-    0xFE: (-1, _read_maintenance),
+    0xFE: (-8, _read_maintenance),
 }
+
+def _waits_host(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 9:
+        return False
+    if data.find(b"\xff", at) >= 0:
+        return False
+    try:
+        content = data[at:]
+        if size < 1:
+            return True
+        payload_size: int = _HOST_KINDS[content[0]][0]
+        if payload_size < 0:
+            if not content[1:].isascii():
+                return False
+            return size <= ~payload_size + 1
+        if not content[1:].isascii():
+            return False
+        return size <= payload_size + 1
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_host(payload: bytes, start_: int | None) -> bytes:
     content = _PACK_1(start_) + payload
@@ -803,6 +825,22 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
     0x85: (16, _read_sonar, (133,)),
     0xA0: (6, _read_facing, (160,)),
 }
+
+def _waits_brain(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 722:
+        return False
+    try:
+        content = data[at:]
+        if size < 1:
+            return True
+        frame_size: int = _BRAIN_KINDS[content[0]][0]
+        if not content[1:].isascii():
+            return False
+        return size < frame_size
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:
     content = _PACK_1(start_) + payload
@@ -1063,6 +1101,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(MoveManual, MoveRelativeTwostep, MoveRelativeArc, Maintenance),
     cut=_cut_host,
+    waits=_waits_host,
 )
 BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     "brain",
@@ -1070,6 +1109,7 @@ BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Gyro, Xcel, Compass, Optflow, Lidar, Sonar, Facing),
     cut=_cut_brain,
+    waits=_waits_brain,
 )
 HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
 """The frame of host as a construct declaration."""

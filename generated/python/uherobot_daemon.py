@@ -306,6 +306,30 @@ _DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
     0x00: _read_motors_servos_leds,
 }
 
+def _waits_daemon(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 512:
+        return False
+    if data.find(b"\x62", at + 1) > 0:
+        return False
+    if data.find(b"\x0a", at + 1) >= 0:
+        return False
+    try:
+        content = data[at + 1:]
+        part = len(content) % 2
+        content = _STUFFING_0.decode(content + b"0" * part)
+        if part:
+            content = content[:-1]
+        if len(content) < 1:
+            return True
+        payload_size = content[0] - 2
+        if not 0 <= payload_size <= 253:
+            return False
+        return len(content) + part <= payload_size + 2
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
+
 def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, type_) + payload
     return b"\x62" + _STUFFING_0.encode(content) + b"\x0a"
@@ -358,6 +382,29 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
 _BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
     0x01: _read_status,
 }
+
+def _waits_board(data: bytes, at: int) -> bool:
+    size = len(data) - at
+    if size >= 517:
+        return False
+    if data.find(b"\x62", at + 1) > 0:
+        return False
+    if data.find(b"\x0d\x0a", at + 1) >= 0:
+        return False
+    try:
+        held = data.endswith(b"\x0d", at + 1)
+        content = data[at + 1 : len(data) - held]
+        part = len(content) % 2
+        content = _STUFFING_0.decode(content + b"0" * part)
+        if part:
+            content = content[:-1]
+        if len(content) < 2:
+            return True
+        payload_size = content[1]
+        return len(content) + part <= payload_size + 2
+    except _fast.ANYTHING:  # The reference says what is wrong.
+        return False
+
 
 def _frame_board(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(type_, len(payload)) + payload
@@ -430,6 +477,7 @@ DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(MotorsServosLeds,),
     cut=_cut_daemon,
+    waits=_waits_daemon,
 )
 BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     "board",
@@ -437,6 +485,7 @@ BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     Parts,
     messages=(Status,),
     cut=_cut_board,
+    waits=_waits_board,
 )
 DAEMON_FORMAT = _rt.FrameFormat(DAEMON_SENDER)
 """The frame of daemon as a construct declaration."""

@@ -35,6 +35,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         check_engine(engine)
         self._sender = sender
         self._cut = sender.cut if engine == "fast" else None
+        self._waits = sender.waits if engine == "fast" else None
         self._starts = starts_of(sender.frame)
         self._least = sender.frame.least
         self._greatest = sender.frame.greatest
@@ -49,6 +50,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._candidate: Candidate | None = None
         self._failure: Failure | None = None  # The candidate's, until the next start is known.
         self._shares_start = False  # Whether the candidate starts with the end before it.
+        self._is_waiting = False  # What stands at `_scan` needs no candidate before more comes in.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
 
     @property
@@ -59,7 +61,11 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the next bytes of the input; the events that are certain now."""
         self._data += data
-        if self._candidate is not None and len(self._data) - self._scan >= self._least:
+        if self._is_waiting:
+            if self._still_waits(self._scan):
+                return []
+            self._take_up()
+        elif self._candidate is not None and len(self._data) - self._scan >= self._least:
             # It may stand here as a whole now, in which case what was pushed needs not be.
             self._cut_frames()
         self._run(final=False)
@@ -67,6 +73,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
+        if self._is_waiting:
+            self._is_waiting = False
+            self._candidate = Candidate(self._sender)
         self._run(final=True)
         events = self._deliver()
         self._offset += len(self._data)
@@ -103,8 +112,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Look for the next possible start; what is in front of it is noise."""
         start = self._next_start()
         if start >= 0:
-            self._open(start)
-            return True
+            return self._open(start, final)
         end = len(self._data)
         self._scan = end if final else self._starts.undecided(self._data, self._scan)
         self._noise(self._scan, final)
@@ -115,11 +123,26 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return self._scan
         return self._starts.find(self._data, self._scan, len(self._data) + 1)
 
-    def _open(self, start: int) -> None:
+    def _open(self, start: int, final: bool) -> bool:
+        """Begin at a possible start. False: nothing can be said before more comes in."""
         self._is_fresh = False
         if not self._is_anywhere:
             self._noise(start, complete=True)
         self._scan = self._pushed = start
+        if self._cut_frames():
+            return True
+        self._is_waiting = not final and self._still_waits(start)
+        if not self._is_waiting:
+            self._candidate = Candidate(self._sender)
+        return not self._is_waiting
+
+    def _still_waits(self, start: int) -> bool:
+        """Whether what stands there is plainly the beginning of a frame, as yet without verdict."""
+        return self._waits is not None and self._waits(self._data, start)
+
+    def _take_up(self) -> None:
+        """Go on with what was waited for: a whole frame now, or something for a candidate."""
+        self._is_waiting = False
         if not self._cut_frames():
             self._candidate = Candidate(self._sender)
 

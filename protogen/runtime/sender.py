@@ -20,6 +20,10 @@ Cutter = Callable[[bytes, int, int, list[Any]], int]
 """Called with data, a place in them, the offset of the data in the input, and a list to which it
 adds events. Gives the place of the first byte that it did not take."""
 
+Waiter = Callable[[bytes, int], bool]
+"""Called with data and a place in them where a frame may start. True: the rest of the data is the
+beginning of a frame, and there can be no verdict on it before more bytes arrive."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kin(Generic[MessageT_co]):
@@ -63,6 +67,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     encode_only: tuple[type[MessageT_co], ...] = ()
     cut: Cutter | None = field(default=None, repr=False, compare=False)
     """Takes whole frames that are plainly in order; None where only the reference cuts them."""
+    waits: Waiter | None = field(default=None, repr=False, compare=False)
+    """Tells plain beginnings of frames; None where the reference takes all that is not whole."""
     layout: Layout = field(init=False, repr=False, compare=False)
     _kin: Mapping[Identity, Kin[MessageT_co]] = field(init=False, repr=False, compare=False)
 

@@ -297,6 +297,7 @@ def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
         messages=tuple_of(shown),
         encode_only=tuple_of(encode_only) if encode_only else None,
         cut=f"_cut_{sender.name}" if FastFrame(sender).can_cut else None,
+        waits=f"_waits_{sender.name}" if FastFrame(sender).can_wait else None,
     )
     return name + wrapped(expression, len(name), 0, after=0)
 

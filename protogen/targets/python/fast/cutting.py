@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart, NumberPart
+from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
-from protogen.model.types import Integer
-from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.lines import Constants, Lines
+from protogen.targets.python.fast.numbers import FrameFunction
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
 
@@ -26,7 +25,10 @@ def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
 
 
 def kinds(frame: FastFrame) -> str:
-    """What the cutter looks up an identity in: readers, or with them the payload's size."""
+    """What an identity is looked up in: readers, or with them the payload's size.
+
+    Where that varies, it is negative: the complement of the greatest.
+    """
     entries = [_kind(frame, kin) for kin in frame.kins]
     lines = [
         f"    {identity_key(kin.identity)}: {entry}," for kin, entry in entries_of(frame, entries)
@@ -47,8 +49,8 @@ def _kind(frame: FastFrame, kin: Kin) -> str | None:
         reader = f"_read_{kin.messages[0].name}"
     if frame.length is not None:
         return reader
-    size = -1 if kin.fixed is None else kin.fixed
-    if frame.ended_by == "kind" and not frame.has_open_kinds and not frame.optional:
+    size = ~kin.greatest if kin.fixed is None else kin.fixed
+    if frame.lists_frame_sizes:
         size += frame.head_size + frame.tail_size + len(frame.end)
     if frame.ended_by == "kind" and frame.shows_identity:
         return f"({size}, {reader}, {tuple_of(map(str, kin.identity))})"
@@ -62,13 +64,8 @@ def identity_key(identity: tuple[int, ...]) -> str:
     return tuple_of(f"0x{value:02X}" for value in identity)
 
 
-class _Cutter:
+class _Cutter(FrameFunction):
     """Writes the body of one function."""
-
-    def __init__(self, frame: FastFrame, lines: Lines) -> None:
-        self.frame = frame
-        self.lines = lines
-        self.name = frame.sender.name
 
     def body(self) -> tuple[str, ...]:
         if self.frame.ended_by in ("length", "kind"):
@@ -135,15 +132,9 @@ class _Cutter:
             with self.lines.block("if end < 0:"):
                 self.lines.add("end = len(data)")
         else:
-            self.lines.add(f"found = {self._starts()}(data, at + 1)")
+            self.lines.add(f"found = {self.starts()}(data, at + 1)")
             self.lines.add("end = len(data) if found is None else found.start()")
         self._raw()
-
-    def _starts(self) -> str:
-        start = self.frame.start
-        assert isinstance(start, StartSet)
-        pattern = f'rb"[\\x{start.least:02x}-\\x{start.greatest:02x}]"'
-        return self.lines.constants.named("STARTS", f"_re.compile({pattern}).search")
 
     def _until_end(self) -> None:
         frame = self.frame
@@ -166,26 +157,17 @@ class _Cutter:
         start = self.frame.start
         if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
             self._stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
-        elif isinstance(start, StartSet) and start.protected and not self._is_seen_by_bits:
-            self._stop_if(f"{self._starts()}(raw, 1)")
-
-    @property
-    def _is_seen_by_bits(self) -> bool:
-        """Whether the check for 7-bit bytes finds any start inside of a frame."""
-        frame, start = self.frame, self.frame.start
-        assert isinstance(start, StartSet)
-        alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
-        outside = all(not start.least <= byte <= start.greatest for byte in frame.end)
-        return frame.framing.seven_bit and start.least >= 0x80 and alone and outside
+        elif isinstance(start, StartSet) and start.protected and not self.is_seen_by_bits:
+            self._stop_if(f"{self.starts()}(raw, 1)")
 
     def _by_length(self) -> None:
         frame, length = self.frame, self.frame.length
         assert length is not None
         around = frame.head_size + frame.tail_size + len(frame.end)
-        self.lines.add(f"count = {self._number('data', length, 'at + ')} - {self._counted(length)}")
+        self.lines.add(f"count = {self.number('data', length, 'at + ')} - {self.counted(length)}")
         if frame.optional:
-            with self.lines.block(f"if count == {-self._optional_size}:"):
-                self.lines.add(f"end = at + {around - self._optional_size}")
+            with self.lines.block(f"if count == {-self.optional_size}:"):
+                self.lines.add(f"end = at + {around - self.optional_size}")
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = at + {around} + count")
             with self.lines.block("else:"):
@@ -195,14 +177,10 @@ class _Cutter:
             self.lines.add(f"end = at + {around} + count")
         self._sized()
 
-    @property
-    def _optional_size(self) -> int:
-        return sum(fixed_size(part) for part in self.frame.checksums if part.when_payload)
-
     def _by_kind(self) -> None:
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
-        key = self._identity("data", "at + ")
+        key = self.identity("data", "at + ")
         varies = self.frame.has_open_kinds or self.frame.optional
         found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
@@ -219,11 +197,11 @@ class _Cutter:
                 self.lines.add(f"end = at + {around} + payload_size")
             if frame.optional:
                 with self.lines.block("else:"):
-                    self.lines.add(f"end = at + {around - self._optional_size}")
+                    self.lines.add(f"end = at + {around - self.optional_size}")
         else:
             if open_kinds:
                 self._stop_if("payload_size < 0")
-            less = f" - {self._optional_size} * (not payload_size)" if frame.optional else ""
+            less = f" - {self.optional_size} * (not payload_size)" if frame.optional else ""
             if less or open_kinds:
                 self.lines.add(f"end = at + {around} + payload_size{less}")
             else:
@@ -302,7 +280,7 @@ class _Cutter:
             self.lines.add(sliced)
         elif frame.optional:
             with self.lines.block(f"if len(content) <= {around}:"):
-                self._stop_if(f"len(content) != {around - self._optional_size}")
+                self._stop_if(f"len(content) != {around - self.optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
@@ -318,7 +296,7 @@ class _Cutter:
 
     def _length(self, part: LengthPart, around: int) -> None:
         """A length in bounds that is right tells that all other parts are there."""
-        counted, number = self._counted(part), self._number("content", part)
+        counted, number = self.counted(part), self.number("content", part)
         behind = self.frame.offset(part) + part.type.size
         if around < behind or self.frame.ended_by in ("end", "start"):
             self._stop_if(f"len(content) < {behind}")
@@ -331,59 +309,19 @@ class _Cutter:
             self._stop_if(f"not {least} <= {number} <= {greatest}")
 
     def _optional_length(self, part: LengthPart) -> None:
-        counted, number = self._counted(part), self._number("content", part)
+        counted, number = self.counted(part), self.number("content", part)
         self._stop_if(
-            f"{number} != len(payload) + {counted} - {self._optional_size} * (not payload)"
+            f"{number} != len(payload) + {counted} - {self.optional_size} * (not payload)"
         )
         self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _head(self) -> None:
         for part in self.frame.head:
-            if isinstance(part, LiteralPart) and not self._is_start(part):
+            if isinstance(part, LiteralPart) and not self.is_start(part):
                 first, source = self.frame.offset(part), "content"
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"
                 self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
-
-    def _is_start(self, part: LiteralPart) -> bool:
-        """Whether finding the start has checked the literal."""
-        behind = self.frame.offset(part) + self.frame.skipped + len(part.bytes)
-        return behind <= len(self.frame.start_bytes)
-
-    @staticmethod
-    def _has_padding(type_: Integer) -> bool:
-        return type_.bits % 8 != 0 or type_.byte_bits == 7
-
-    def _counted(self, part: LengthPart) -> int:
-        """What the length counts besides the payload."""
-        return sum(
-            fixed_size(other)
-            for other in self.frame.sender.frame.parts
-            if other.name in part.counts
-        )
-
-    # --- numbers ----------------------------------------------------------------------------------
-
-    def _number(self, source: str, part: NumberPart, base: str = "") -> str:
-        """The value of a part of the head."""
-        # In the data, counted from the frame's start, nothing is skipped.
-        first = self.frame.offset(part) + (self.frame.skipped if base else 0)
-        place = f"{base}{first}" if first or not base else base.removesuffix(" + ")
-        if part.type.size == 1 and not self._has_padding(part.type):
-            return f"{source}[{place}]"
-        behind = f"{base}{first + part.type.size}"
-        piece = f"{source}[{place} : {behind}]"
-        if self._has_padding(part.type):
-            return f"{self._codec(part.type)}.decode({piece})"
-        return f'int.from_bytes({piece}, "{part.type.byte_order}")'
-
-    def _codec(self, type_: Integer) -> str:
-        seven = type_.byte_bits == 7
-        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
-        return self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
-
-    def _identity(self, source: str, base: str = "") -> str:
-        return ", ".join(self._number(source, part, base) for part in self.frame.identity) or "()"
 
     # --- checksums --------------------------------------------------------------------------------
 
@@ -402,19 +340,19 @@ class _Cutter:
                 part, self.frame.covered(part, "content"), self.frame, self.lines.constants
             )
             first = self.frame.offset(part)
-            if part.type.size == 1 and not self._has_padding(part.type):
+            if part.type.size == 1 and not self.has_padding(part.type):
                 self._stop_if(f"content[{first}] != {due}")
                 continue
             last = first + part.type.size
             found = self.frame.slice_of("content", first, last)
-            self._stop_if(f"{found} != {self._codec(part.type)}.encode({due})")
+            self._stop_if(f"{found} != {self.codec(part.type)}.encode({due})")
 
     # --- the event --------------------------------------------------------------------------------
 
     def _event(self) -> None:
         frame = self.frame
         if frame.ended_by != "kind" or not frame.shows_identity:
-            numbers = tuple_of(self._number("content", part) for part in frame.shown)
+            numbers = tuple_of(self.number("content", part) for part in frame.shown)
             self.lines.add(f"numbers = {numbers}")
         if frame.ended_by != "kind":
             self._look_up()
@@ -430,7 +368,7 @@ class _Cutter:
     def _look_up(self) -> None:
         frame = self.frame
         kinds = f"_{self.name.upper()}_KINDS"
-        key = self._identity("content")
+        key = self.identity("content")
         if frame.length is not None:
             self.lines.add(f"read = {kinds}.get({self._key(key)})")
             with self.lines.block("if read is None:"):

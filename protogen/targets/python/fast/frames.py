@@ -45,6 +45,11 @@ class Kin:
         sizes = {message.sizes.fixed for message in self.messages}
         return sizes.pop() if len(sizes) == 1 else None
 
+    @property
+    def greatest(self) -> int:
+        """The greatest payload of these messages."""
+        return max(message.sizes.greatest for message in self.messages)
+
 
 class FastFrame:
     """Everything about a sender's frames that the functions of the fast engine are printed from."""
@@ -145,6 +150,18 @@ class FastFrame:
         return starts_in_front and self.before <= self.head_size and self.behind <= self.tail_size
 
     @property
+    def can_wait(self) -> bool:
+        """Whether there is a function that tells plain beginnings of frames."""
+        transparency = self.sender.frame.transparency
+        encoding = None if transparency is None else transparency.encoding
+        return (
+            self.can_cut
+            and not self.shares
+            and (not self.stuffed or self.replacements is not None or isinstance(encoding, Base16))
+            and (bool(self.end) or self.length is not None or not self._are_all_open)
+        )
+
+    @property
     def can_frame(self) -> bool:
         """Whether there is a function that makes frames; else the reference does it alone."""
         return (
@@ -165,9 +182,18 @@ class FastFrame:
         return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
 
     @property
+    def _are_all_open(self) -> bool:
+        return all(kin.fixed is None for kin in self.kins)
+
+    @property
     def has_open_kinds(self) -> bool:
         """Whether the payloads of some identity vary in size."""
         return any(kin.fixed is None for kin in self.kins)
+
+    @property
+    def lists_frame_sizes(self) -> bool:
+        """Whether the table of identities has sizes of whole frames, and not of payloads."""
+        return self.ended_by == "kind" and not self.has_open_kinds and not self.optional
 
     @property
     def shows_identity(self) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.targets.python.fast import cutting, framing
+from protogen.targets.python.fast import cutting, framing, waiting
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.layout import fixed_size, outer_names
 from protogen.targets.python.fast.lines import Constants
@@ -36,6 +36,7 @@ class FastSender:
     name: str
     upper: str
     cut: Function | None
+    waits: Function | None
     kinds: str
     frame: Function | None
 
@@ -66,7 +67,9 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     functions = [*records, *encoders.values()]
     lines = [*constants.text, *(line for function in functions for line in function.body)]
     for sender in senders:
-        lines += [line for item in (sender.cut, sender.frame) if item for line in item.body]
+        lines += [
+            line for item in (sender.cut, sender.waits, sender.frame) if item for line in item.body
+        ]
     joined = "\n".join(lines)
     return Fast(
         constants=constants.text,
@@ -140,14 +143,17 @@ def _overload(frame: FastFrame, kin: Kin) -> Function:
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
     name = frame.sender.name
-    cut = made = None
+    cut = waits = made = None
     if frame.can_cut:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
+    if frame.can_wait:
+        body = waiting.waiter(frame, constants)
+        waits = _function(f"_waits_{name}", "data: bytes, at: int", "bool", body)
     if frame.can_frame:
         given = framing.arguments(frame, of_caller)
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
-    return FastSender(name, name.upper(), cut, cutting.kinds(frame) if cut else "", made)
+    return FastSender(name, name.upper(), cut, waits, cutting.kinds(frame) if cut else "", made)

@@ -1,0 +1,81 @@
+"""What functions that look at frames have in common: numbers of the head, starts, sizes."""
+
+from __future__ import annotations
+
+from protogen.model.frame import LengthPart, LiteralPart, NumberPart
+from protogen.model.framing import StartSet
+from protogen.model.types import Integer
+from protogen.model.wire import fixed_size
+from protogen.targets.python.fast.frames import FastFrame
+from protogen.targets.python.fast.lines import Lines
+
+
+class FrameFunction:
+    """Writes the body of one function."""
+
+    def __init__(self, frame: FastFrame, lines: Lines) -> None:
+        self.frame = frame
+        self.lines = lines
+        self.name = frame.sender.name
+
+    def starts(self) -> str:
+        """The search for a byte of the start set."""
+        start = self.frame.start
+        assert isinstance(start, StartSet)
+        pattern = f'rb"[\\x{start.least:02x}-\\x{start.greatest:02x}]"'
+        return self.lines.constants.named("STARTS", f"_re.compile({pattern}).search")
+
+    @property
+    def is_seen_by_bits(self) -> bool:
+        """Whether the check for 7-bit bytes finds any start inside of a frame."""
+        frame, start = self.frame, self.frame.start
+        assert isinstance(start, StartSet)
+        alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
+        outside = all(not start.least <= byte <= start.greatest for byte in frame.end)
+        return frame.framing.seven_bit and start.least >= 0x80 and alone and outside
+
+    @property
+    def optional_size(self) -> int:
+        """Bytes that are absent where the payload is empty."""
+        return sum(fixed_size(part) for part in self.frame.checksums if part.when_payload)
+
+    def is_start(self, part: LiteralPart) -> bool:
+        """Whether finding the start has checked the literal."""
+        behind = self.frame.offset(part) + self.frame.skipped + len(part.bytes)
+        return behind <= len(self.frame.start_bytes)
+
+    def counted(self, part: LengthPart) -> int:
+        """What the length counts besides the payload."""
+        return sum(
+            fixed_size(other)
+            for other in self.frame.sender.frame.parts
+            if other.name in part.counts
+        )
+
+    def number(self, source: str, part: NumberPart, base: str = "") -> str:
+        """The value of a part of the head."""
+        # In the data, counted from the frame's start, nothing is skipped.
+        first = self.frame.offset(part) + (self.frame.skipped if base else 0)
+        place = f"{base}{first}" if first or not base else base.removesuffix(" + ")
+        if part.type.size == 1 and not self.has_padding(part.type):
+            return f"{source}[{place}]"
+        behind = f"{base}{first + part.type.size}"
+        piece = f"{source}[{place} : {behind}]"
+        if self.has_padding(part.type):
+            return f"{self.codec(part.type)}.decode({piece})"
+        return f'int.from_bytes({piece}, "{part.type.byte_order}")'
+
+    def codec(self, type_: Integer) -> str:
+        """The number that reads the part's bytes and checks their padding."""
+        seven = type_.byte_bits == 7
+        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
+        return self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
+
+    def identity(self, source: str, base: str = "") -> str:
+        """The values of all identity parts, between commas."""
+        return ", ".join(self.number(source, part, base) for part in self.frame.identity) or "()"
+
+    @staticmethod
+    def has_padding(type_: Integer) -> bool:
+        """Whether some bits of the bytes have to be clear."""
+        return type_.bits % 8 != 0 or type_.byte_bits == 7

@@ -1,0 +1,149 @@
+"""Streams that arrive in small portions: what has not arrived whole is awaited, as far as possible.
+
+The reference takes it byte by byte. The fast engine leaves it alone while it is plainly the
+beginning of a frame, and nobody may see a difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from compiled import module_at, name_of, protocol_of, senders
+from corpus import (
+    WHOLE,
+    Material,
+    Piece,
+    joined,
+    known_frames,
+    material_of,
+    pieces,
+)
+from hypothesis import settings
+
+from protogen.runtime import decoder as decoder_module
+from protogen.runtime.machine import Candidate
+
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
+SEEDS = range(max(4, settings().max_examples // 20))
+GREATEST_PORTION = 100
+
+
+def shown(events: list[Any]) -> list[tuple[Any, ...]]:
+    return [(event.kind, event.offset, event.raw, repr(event)) for event in events]
+
+
+def small_portions(data: bytes, dice: Random) -> Iterator[bytes]:
+    """The data in portions of 1 to 100 bytes, mostly of like size."""
+    most = dice.choice([1, 2, 7, 20, 64, GREATEST_PORTION])
+    place = 0
+    while place < len(data):
+        size = dice.randint(1, most)
+        yield data[place : place + size]
+        place += size
+
+
+def clean(material: Material, dice: Random) -> bytes:
+    return joined([Piece(WHOLE, dice.choice(material.frames)) for _ in range(30)]).data
+
+
+def noisy(material: Material, dice: Random) -> bytes:
+    return joined(list(islice(pieces(material, dice), 40))).data
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("stream", [clean, noisy])
+def test_each_portion_gives_what_the_reference_gives(
+    path: Path, sender: str, stream: Any, seed: int
+) -> None:
+    dice = Random(seed)
+    data = stream(material_of(path, sender), dice)
+    fast = module_at(path).Decoder(sender)
+    reference = module_at(path).Decoder(sender, "construct")
+    for piece in small_portions(data, dice):
+        assert shown(fast.feed(piece)) == shown(reference.feed(piece))
+        assert fast.pending == reference.pending
+        if dice.random() < 0.02:
+            assert shown(fast.flush()) == shown(reference.flush())
+            assert fast.pending == reference.pending == 0
+    assert shown(fast.flush()) == shown(reference.flush())
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("seed", SEEDS)
+def test_nothing_is_awaited_behind_a_verdict(path: Path, sender: str, seed: int) -> None:
+    """Also where the beginning of a frame is damaged: no verdict is left to a later byte."""
+    spec = module_at(path).PROTOCOL.sender(sender)
+    if spec.waits is None:
+        return
+    dice = Random(seed)
+    for piece in islice(pieces(material_of(path, sender), dice), 40):
+        data = piece.data + dice.choice([b"", piece.data])
+        start = decoder_module.starts_of(spec.frame)
+        if start.context == 0 and start.find(data, 0, 1) != 0:
+            continue
+        candidate = Candidate(spec)
+        for end, byte in enumerate(data, 1):
+            if candidate.push(byte) is not None:
+                assert not spec.waits(data[:end], 0)
+                break
+            assert spec.waits(b"\0\0" + data[:end], 2) == spec.waits(data[:end], 0)
+
+
+AWAITED_BY_THE_REFERENCE = {
+    ("checksum_only", "station"),  # Nothing marks where these frames start.
+    ("cobs", "station"),  # What a COBS group stands for is not clear before its end.
+    ("hdlc", "station"),  # One flag ends a frame and starts the next.
+    ("hdlc_lenient", "station"),
+    ("slip", "station"),
+}
+
+
+@EVERY_SENDER
+def test_who_awaits_frames(path: Path, sender: str) -> None:
+    waits = module_at(path).PROTOCOL.sender(sender).waits
+    assert (waits is None) == ((name_of(path), sender) in AWAITED_BY_THE_REFERENCE)
+
+
+@pytest.fixture
+def candidates(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """The candidates that decoders make from now on."""
+    made: list[Any] = []
+
+    class Counted(Candidate):
+        def __init__(self, *given: Any, **named: Any) -> None:
+            super().__init__(*given, **named)
+            made.append(self)
+
+    monkeypatch.setattr(decoder_module, "Candidate", Counted)
+    return made
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("size", [1, 8, 64])
+def test_a_clean_stream_in_portions_does_not_need_the_reference(
+    path: Path, sender: str, size: int, candidates: list[Any]
+) -> None:
+    """Wherever a portion ends: in a head, a checksum, an end or the stuffing of a byte."""
+    if module_at(path).PROTOCOL.sender(sender).waits is None:
+        return
+    messages = known_frames(path, protocol_of(path).sender(sender))
+    frames = [frame for frame in messages if _is_cut_fast(path, sender, frame, candidates)]
+    candidates.clear()
+    data = b"".join(frames)
+    decoder = module_at(path).Decoder(sender)
+    split = [data[place : place + size] for place in range(0, len(data), size)]
+    events = [event for piece in split for event in decoder.feed(piece)]
+    assert [event.raw for event in events] == frames
+    assert not candidates
+
+
+def _is_cut_fast(path: Path, sender: str, frame: bytes, candidates: list[Any]) -> bool:
+    candidates.clear()
+    events = module_at(path).Decoder(sender).feed(frame)
+    return [event.kind for event in events] == ["message"] and not candidates
