@@ -147,3 +147,76 @@ def _is_cut_fast(path: Path, sender: str, frame: bytes, candidates: list[Any]) -
     candidates.clear()
     events = module_at(path).Decoder(sender).feed(frame)
     return [event.kind for event in events] == ["message"] and not candidates
+
+
+# --- frames that no document has ------------------------------------------------------------------
+
+TWO_MESSAGES = """
+messages:
+  reading: {id: 0x41, from: station, fields: {a: uint7, b: {type: uint7, count: 40}}}
+  list: {id: 0x42, from: station, fields: {a: uint7, b: {type: uint7, count: a}}}
+"""
+
+RARE = {
+    "numbers with padding in the head, and an end of two bytes": """
+byte_bits: 7
+byte_order: little
+frame:
+  sync: {literal: {hex: 80 81}}
+  id: {type: uint9, id: true}
+  count: {type: uint7, counts: payload}
+  payload: {}
+  check: {type: uint3, algorithm: CRC-3/GSM, covers: id..payload}
+  end: {literal: {hex: 80 82}}
+"""
+    + TWO_MESSAGES,
+    "stuffing behind the identity": """
+frame:
+  sync: {literal: 0x01}
+  id: {type: uint8, id: true, range: [0x40, 0x60]}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id..payload}
+transparency:
+  escape: {byte: 0xFC, of: [0x01, 0xFC], transform: {xor: 0x20}}
+  covers: payload..check
+"""
+    + TWO_MESSAGES.replace("uint7", "uint8"),
+    "many bytes that are stuffed, and a literal among them": """
+frame:
+  sync: {literal: 0x01}
+  count: {type: uint8, counts: payload}
+  mark: {literal: 0xDA}
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id..payload}
+transparency:
+  escape: {byte: 0xFC, of: [0x01, 0x02, 0x11, 0x13, 0x40, 0xFC], transform: {xor: 0x20}}
+  covers: count..check
+"""
+    + TWO_MESSAGES.replace("uint7", "uint8"),
+    "any of several bytes starts a frame": """
+byte_bits: 7
+frame:
+  id: {type: byte, id: true, range: [0x80, 0xFE]}
+  payload: {}
+  check: {type: uint3, algorithm: CRC-3/GSM, covers: id..payload}
+"""
+    + TWO_MESSAGES.replace("0x4", "0x8"),
+}
+
+
+@pytest.mark.parametrize("frame", RARE)
+def test_rare_frames(frame: str, tmp_path: Path, candidates: list[Any]) -> None:
+    path = tmp_path / "rare.yaml"
+    path.write_text(f"protocol: rare\nendpoints: {{station: Station}}\n{RARE[frame]}")
+    for seed in range(8):
+        for stream in (clean, noisy):
+            test_each_portion_gives_what_the_reference_gives(path, "station", stream, seed)
+        test_nothing_is_awaited_behind_a_verdict(path, "station", seed)
+    module = module_at(path)
+    whole = next(frame for frame in material_of(path, "station").frames if len(frame) > 40)
+    candidates.clear()
+    decoder = module.Decoder("station")
+    assert not any(decoder.feed(byte) for byte in (whole[place : place + 1] for place in range(40)))
+    assert decoder.pending == 40
+    assert not candidates
