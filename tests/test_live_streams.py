@@ -194,6 +194,21 @@ transparency:
   covers: count..check
 """
     + TWO_MESSAGES.replace("uint7", "uint8"),
+    "a checksum behind the stuffing, and bytes of 7 bits": """
+byte_bits: 7
+byte_order: little
+frame:
+  sync: {literal: {hex: 81 82}}
+  id: {type: uint7, id: true}
+  count: {type: uint7, counts: payload}
+  payload: {}
+  check: {type: uint28, algorithm: {width: 28, poly: 0x1234567}, covers: payload}
+  end: {literal: {hex: 83 84}}
+transparency:
+  escape: {byte: 0x76, of: [0x76, 0x42], transform: none}
+  covers: payload..payload
+"""
+    + TWO_MESSAGES.replace("0x42", "0x43"),
     "any of several bytes starts a frame": """
 byte_bits: 7
 frame:

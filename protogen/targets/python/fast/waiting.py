@@ -217,7 +217,7 @@ class _Waiting(FrameFunction):
         """Await what is announced: so many bytes more than that number."""
         frame = self.frame
         if frame.framing.seven_bit:
-            shift = around - frame.tail_size
+            shift = around + frame.behind - frame.tail_size
             behind = _sum(announced, shift) if frame.tail else ""
             self._no_if(f"not {self._payload(behind)}.isascii()")
         # Without an end, or with parts behind the stuffing, the last byte decides.
