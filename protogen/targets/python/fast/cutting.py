@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
+from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.lines import Constants, Lines
@@ -166,7 +167,7 @@ class _Cutter(FrameFunction):
         around = frame.head_size + frame.tail_size + len(frame.end)
         self.lines.add(f"count = {self.number('data', length, 'at + ')} - {self.counted(length)}")
         if frame.optional:
-            with self.lines.block(f"if count == {-self.optional_size}:"):
+            with self.lines.block(f"if count == {-self._counted_optional(length)}:"):
                 self.lines.add(f"end = at + {around - self.optional_size}")
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = at + {around} + count")
@@ -308,10 +309,15 @@ class _Cutter(FrameFunction):
         if least > 0 or greatest < part.type.greatest:
             self._stop_if(f"not {least} <= {number} <= {greatest}")
 
+    def _counted_optional(self, length: LengthPart) -> int:
+        """What the length counts less where the payload is empty."""
+        absent = (part for part in self.frame.checksums if part.when_payload)
+        return sum(fixed_size(part) for part in absent if part.name in length.counts)
+
     def _optional_length(self, part: LengthPart) -> None:
         counted, number = self.counted(part), self.number("content", part)
         self._stop_if(
-            f"{number} != len(payload) + {counted} - {self.optional_size} * (not payload)"
+            f"{number} != len(payload) + {counted} - {self._counted_optional(part)} * (not payload)"
         )
         self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
