@@ -310,3 +310,15 @@ def test_a_format_gives_what_constructs_own_way_gives(path: Path, data: Any) -> 
     for given_ in (values, {**values, **changes}, dict(list(values.items())[1:])):
         due = built(message.FORMAT, construct.Struct.build, given_)
         assert built(message.FORMAT, type(message.FORMAT).build, given_) == due
+
+
+def test_a_format_takes_no_float_for_an_integer_that_it_has_seen() -> None:
+    """1.0 is found in a dictionary where 1 is."""
+    angle = rn1().MoveRelativeArc.FORMAT
+    assert angle.build({"angle": 1, "forward": 1})
+    with pytest.raises(PayloadError):
+        angle.build({"angle": 1.0, "forward": 1})
+
+
+def rn1() -> Any:
+    return module_at(next(path for path in DOCUMENTS if path.stem == "rn1"))

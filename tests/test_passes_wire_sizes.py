@@ -164,3 +164,17 @@ byte_bits: 7
 def test_overhead_counts_no_stuffing() -> None:
     text = HEAD + SLIP + "messages: {gyro: {id: 1, from: robot, fields: {a: uint8}}}\n"
     assert framing_of(text).overhead == SizeSet.exactly(2)
+
+
+def test_only_what_is_written_as_digits_takes_twice_the_bytes() -> None:
+    frame = """\
+frame:
+  sync: {literal: {text: z}}
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {}
+transparency: {encoding: base16-upper, covers: id..id}
+decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
+""".replace("{text: z}", "{text: z}, unprotected: accepted")
+    # sync 1, identity 2, length 1, payload 1 to 4: any of these numbers, not every other one.
+    assert sizes(frame, "n: {type: uint8, range: [0, 3]}, a: {type: uint8, count: n}") == (5, 8)

@@ -270,6 +270,20 @@ def test_unknown_messages_that_no_decoder_would_see_are_refused(
     assert error.path == path
 
 
+def test_no_frame_is_unknown_where_none_has_an_identity() -> None:
+    sender: Any = framings.uherobot()
+    parts = tuple(p for p in sender.frame.parts if not isinstance(p, rt.IdentityPart))
+    length = next(p for p in parts if isinstance(p, rt.LengthPart))
+    counted = tuple(name for name in length.counts if name != "type")
+    parts = tuple(replace(p, counts=counted) if p is length else p for p in parts)
+    message = type("Alone", (sender.messages[0],), {"IDENTITY": (), "__slots__": ()})
+    stuffed = tuple(name for name in sender.frame.stuffed if name != "type")
+    frame = replace(sender.frame, parts=parts, stuffed=stuffed)
+    alone = replace(sender, frame=frame, messages=(message,))
+    error = encode_error(rt.Protocol("p", alone).encode_unknown, sender.name, {}, b"")
+    assert "have no identity" in error.problem
+
+
 def test_a_length_out_of_range_is_refused() -> None:
     short = replace(framings.uherobot().frame, parts=tuple(
         replace(part, least=4) if isinstance(part, rt.LengthPart) else part

@@ -78,7 +78,8 @@ class WireSizes:
         least = -self._most(payload, identity, fields, sign=-1)
         greatest = self._most(payload, identity, fields, sign=1)
         exact = self._encoding is None or isinstance(self._encoding, Base16)
-        step = payload.step * (2 if self._encoding and exact else 1) if exact else 1
+        doubled = isinstance(self._encoding, Base16) and self._payload_name in self._covered
+        step = payload.step * (1 + doubled) if exact else 1
         optional = any(part.when_payload for part in self._frame.checksums)
         return SizeSet.between(least, greatest, 1 if optional else step)
 

@@ -63,6 +63,9 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         identity, given = split_parts(spec, parts)
         kin = spec.kin(identity)
         if kin is not None:
+            if not identity:
+                problem = f"frames of {spec.name} have no identity, so none of them is unknown"
+                raise EncodeError("message", problem)
             problem = f"{identity} is the identity of {kin.messages[0].NAME}"
             raise EncodeError(spec.layout.identity[0].name, problem)
         return encode_frame(spec, identity, payload, given, strict=False)

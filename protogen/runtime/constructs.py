@@ -174,9 +174,14 @@ class _Scalar(Piece):
         if isinstance(codec, Number) and codec.seven_bit and codec.size == 2:
             arguments = codec.bits, codec.signed, codec.order
             order = "<" if codec.order == "little" else ">"
-            return Item(
-                "H", order, Pairs(*arguments).__getitem__, PairCodes(*arguments).__getitem__
-            )
+            codes = PairCodes(*arguments)
+
+            def code_of(value: Any) -> int:
+                if type(value) is not int:  # 1.0 is found where 1 is.
+                    raise TypeError(value)
+                return codes[value]
+
+            return Item("H", order, Pairs(*arguments).__getitem__, code_of)
         return Item(f"{self._size}s", "", codec.decode, codec.encode)
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
