@@ -603,8 +603,9 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             if len(content) < 1:
                 return at
             payload = content[1:]
-            numbers = (content[0],)
-            payload_size, read = _HOST_KINDS[content[0]]
+            n0 = content[0]
+            numbers = (n0,)
+            payload_size, read = _HOST_KINDS[n0]
             if 0 <= payload_size != len(payload):
                 return at
             event = _new(_MessageEvent)
@@ -693,8 +694,9 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             if len(content) < 1:
                 return at
             payload = content[1:]
-            numbers = (content[0],)
-            payload_size, read = _ROBOT_KINDS[content[0]]
+            n0 = content[0]
+            numbers = (n0,)
+            payload_size, read = _ROBOT_KINDS[n0]
             if 0 <= payload_size != len(payload):
                 return at
             event = _new(_MessageEvent)

@@ -511,8 +511,10 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             payload = content[3:-1]
             if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
                 return at
-            numbers = (content[1], content[2])
-            read = _PC_KINDS.get(content[2])
+            n0 = content[1]
+            n1 = content[2]
+            numbers = (n0, n1)
+            read = _PC_KINDS.get(n1)
             if read is None:
                 add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -617,8 +619,10 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             payload = content[3:-1]
             if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
                 return at
-            numbers = (content[1], content[2])
-            read = _ESP_KINDS.get(content[2])
+            n0 = content[1]
+            n1 = content[2]
+            numbers = (n0, n1)
+            read = _ESP_KINDS.get(n1)
             if read is None:
                 add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
                 at = end

@@ -992,8 +992,6 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             raw = data[at:end]
             if len(raw) > 782:
                 return at
-            if raw.find(b"\x1b\x02", 1) > 0:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 stuffed = content
@@ -1008,10 +1006,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             if len(content) != content[3] + 5:
                 return at
             payload = content[4:-1]
-            if content[-1] != _checksum.xor_of(content[4:-1]):
+            if content[-1] != _checksum.xor_of(payload):
                 return at
-            numbers = (content[0], content[1], content[2])
-            read = _LINUX_KINDS.get((content[0], content[2]))
+            n0 = content[0]
+            n1 = content[1]
+            n2 = content[2]
+            numbers = (n0, n1, n2)
+            read = _LINUX_KINDS.get((n0, n2))
             if read is None:
                 add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -1104,8 +1105,6 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             raw = data[at:end]
             if len(raw) > 782:
                 return at
-            if raw.find(b"\x1b\x02", 1) > 0:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 stuffed = content
@@ -1120,10 +1119,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             if len(content) != content[3] + 5:
                 return at
             payload = content[4:-1]
-            if content[-1] != _checksum.xor_of(content[4:-1]):
+            if content[-1] != _checksum.xor_of(payload):
                 return at
-            numbers = (content[0], content[1], content[2])
-            read = _FLEX_KINDS.get((content[0], content[2]))
+            n0 = content[0]
+            n1 = content[1]
+            n2 = content[2]
+            numbers = (n0, n1, n2)
+            read = _FLEX_KINDS.get((n0, n2))
             if read is None:
                 add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
                 at = end

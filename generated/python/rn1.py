@@ -734,8 +734,9 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             payload = content[1:]
             if not payload.isascii():
                 return at
-            numbers = (content[0],)
-            payload_size, read = _HOST_KINDS[content[0]]
+            n0 = content[0]
+            numbers = (n0,)
+            payload_size, read = _HOST_KINDS[n0]
             if 0 <= payload_size != len(payload):
                 return at
             event = _new(_MessageEvent)

@@ -295,8 +295,6 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             raw = data[at:end]
             if len(raw) > 512:
                 return at
-            if raw.find(b"\x62", 1) > 0:
-                return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             if len(content) < 1:
@@ -306,8 +304,9 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             if not 2 <= content[0] <= 255:
                 return at
             payload = content[2:]
-            numbers = (content[1],)
-            read = _DAEMON_KINDS.get(content[1])
+            n0 = content[1]
+            numbers = (n0,)
+            read = _DAEMON_KINDS.get(n0)
             if read is None:
                 add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -376,8 +375,6 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             raw = data[at:end]
             if len(raw) > 512:
                 return at
-            if raw.find(b"\x62", 1) > 0:
-                return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             if len(content) < 1:
@@ -387,8 +384,9 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             if not 2 <= content[0] <= 255:
                 return at
             payload = content[2:]
-            numbers = (content[1],)
-            read = _BOARD_KINDS.get(content[1])
+            n0 = content[1]
+            numbers = (n0,)
+            read = _BOARD_KINDS.get(n0)
             if read is None:
                 add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
                 at = end

@@ -144,7 +144,14 @@ class _Cutter(FrameFunction):
         self._stop_if("end < 0")
         self.lines.add(f"end += {len(frame.end)}")
         self._raw()
-        self._no_start_inside()
+        if not self._is_stuffed_throughout:
+            self._no_start_inside()
+
+    @property
+    def _is_stuffed_throughout(self) -> bool:
+        """Whether all between start and end is stuffed, so that unstuffing it finds any start."""
+        frame = self.frame
+        return frame.stuffed and frame.before == len(frame.start_bytes) > 0 and not frame.behind
 
     def _raw(self) -> None:
         self.lines.add("raw = data[at:end]")
@@ -274,8 +281,7 @@ class _Cutter(FrameFunction):
         """Set `payload`, and check that there is room for it."""
         frame = self.frame
         around = frame.head_size - frame.skipped + frame.tail_size
-        head = frame.head_size - frame.skipped
-        sliced = f"payload = {frame.slice_of('content', head, -frame.tail_size)}"
+        sliced = f"payload = {self._payload_slice}"
         if frame.length is not None and not frame.optional:
             self._length(frame.length, around)
             self.lines.add(sliced)
@@ -294,6 +300,11 @@ class _Cutter(FrameFunction):
             self.lines.add(sliced)
         if frame.framing.seven_bit:
             self._stop_if("not payload.isascii()")
+
+    @property
+    def _payload_slice(self) -> str:
+        frame = self.frame
+        return frame.slice_of("content", frame.head_size - frame.skipped, -frame.tail_size)
 
     def _length(self, part: LengthPart, around: int) -> None:
         """A length in bounds that is right tells that all other parts are there."""
@@ -342,9 +353,10 @@ class _Cutter(FrameFunction):
 
     def _compare(self) -> None:
         for part in self.frame.checksums:
-            due = checksum(
-                part, self.frame.covered(part, "content"), self.frame, self.lines.constants
-            )
+            covered = self.frame.covered(part, "content")
+            if covered == self._payload_slice:
+                covered = "payload"
+            due = checksum(part, covered, self.frame, self.lines.constants)
             first = self.frame.offset(part)
             if part.type.size == 1 and not self.has_padding(part.type):
                 self._stop_if(f"content[{first}] != {due}")
@@ -358,10 +370,12 @@ class _Cutter(FrameFunction):
     def _event(self) -> None:
         frame = self.frame
         if frame.ended_by != "kind" or not frame.shows_identity:
-            numbers = tuple_of(self.number("content", part) for part in frame.shown)
-            self.lines.add(f"numbers = {numbers}")
+            names = [f"n{index}" for index, _ in enumerate(frame.shown)]
+            for name, part in zip(names, frame.shown, strict=True):
+                self.lines.add(f"{name} = {self.number('content', part)}")
+            self.lines.add(f"numbers = {tuple_of(names)}")
         if frame.ended_by != "kind":
-            self._look_up()
+            self._look_up([f"n{frame.shown.index(part)}" for part in frame.identity])
         self.lines.add("event = _new(_MessageEvent)")
         self.lines.add("event.message = read(payload)")
         self.lines.add("event.offset = base + at")
@@ -371,20 +385,17 @@ class _Cutter(FrameFunction):
         self.lines.add("add(event)")
         self.lines.add("at = end")
 
-    def _look_up(self) -> None:
+    def _look_up(self, identity: list[str]) -> None:
         frame = self.frame
         kinds = f"_{self.name.upper()}_KINDS"
-        key = self.identity("content")
+        key = identity[0] if len(identity) == 1 else tuple_of(identity)
         if frame.length is not None:
-            self.lines.add(f"read = {kinds}.get({self._key(key)})")
+            self.lines.add(f"read = {kinds}.get({key})")
             with self.lines.block("if read is None:"):
                 self._unknown()
             return
         self.lines.add(f"payload_size, read = {kinds}[{key}]")
         self._stop_if("0 <= payload_size != len(payload)")
-
-    def _key(self, key: str) -> str:
-        return f"({key})" if len(self.frame.identity) != 1 else key
 
     def _unknown(self) -> None:
         spec = f"{self.name.upper()}_SENDER"
