@@ -235,3 +235,39 @@ def test_rare_frames(frame: str, tmp_path: Path, candidates: list[Any]) -> None:
     assert not any(decoder.feed(byte) for byte in (whole[place : place + 1] for place in range(40)))
     assert decoder.pending == 40
     assert not candidates
+
+
+# --- frames that a function could go on with for ever, or take too early --------------------------
+
+UNCLEAR = {
+    "nothing but the next start ends a frame, and an empty one is no more than its start": """
+frame:
+  sync: {literal: {hex: 7E D1 7E}}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8/negated, when: payload, covers: payload}
+transparency: {escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: {xor: 0x20}}}
+messages:
+  empty: {from: station, fields: {}}
+""",
+    "the length does not count a checksum that is absent where there is no payload": """
+frame:
+  sync: {literal: {hex: D5}, unprotected: accepted}
+  id: {type: uint8, id: true}
+  count: {type: uint8, counts: payload}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, when: payload, covers: payload}
+messages:
+  empty: {id: 1, from: station, fields: {}}
+  list: {id: 2, from: station, fields: {a: {type: bytes, size: fill}}}
+decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
+""",
+}
+
+
+@pytest.mark.parametrize("frame", UNCLEAR)
+def test_unclear_frames(frame: str, tmp_path: Path) -> None:
+    path = tmp_path / "unclear.yaml"
+    path.write_text(f"protocol: unclear\nendpoints: {{station: Station}}\n{UNCLEAR[frame]}")
+    for seed in range(12):
+        for stream in (clean, noisy):
+            test_each_portion_gives_what_the_reference_gives(path, "station", stream, seed)

@@ -490,6 +490,8 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             end = data.find(b"\x55", at + 1)
             if end < 0:
                 end = len(data)
+                if at == end:
+                    return at
             raw = data[at:end]
             if len(raw) > 250:
                 return at
@@ -598,6 +600,8 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             end = data.find(b"\x55", at + 1)
             if end < 0:
                 end = len(data)
+                if at == end:
+                    return at
             raw = data[at:end]
             if len(raw) > 250:
                 return at

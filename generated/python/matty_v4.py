@@ -625,6 +625,8 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             end = data.find(b"\x55", at + 1)
             if end < 0:
                 end = len(data)
+                if at == end:
+                    return at
             raw = data[at:end]
             if len(raw) > 252:
                 return at
@@ -735,6 +737,8 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             end = data.find(b"\x55", at + 1)
             if end < 0:
                 end = len(data)
+                if at == end:
+                    return at
             raw = data[at:end]
             if len(raw) > 252:
                 return at

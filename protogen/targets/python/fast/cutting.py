@@ -130,11 +130,19 @@ class _Cutter(FrameFunction):
     def _until_start(self) -> None:
         if isinstance(self.frame.start, StartLiteral):
             self.lines.add(f"end = data.find({literal(self.frame.start.bytes)}, at + 1)")
-            with self.lines.block("if end < 0:"):
-                self.lines.add("end = len(data)")
         else:
             self.lines.add(f"found = {self.starts()}(data, at + 1)")
-            self.lines.add("end = len(data) if found is None else found.start()")
+            self.lines.add("end = -1 if found is None else found.start()")
+        with self.lines.block("if end < 0:"):
+            # A length tells whether the last frame is all there; else the next start has to.
+            if self.frame.length is None:
+                self.lines.add("return at")
+            else:
+                self.lines.add("end = len(data)")
+                self._stop_if("at == end")
+        if len(self.frame.start_bytes) > 1:
+            # Two starts that overlap.
+            self._stop_if(f"end < at + {len(self.frame.start_bytes)}")
         self._raw()
 
     def _until_end(self) -> None:
