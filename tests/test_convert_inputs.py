@@ -14,7 +14,8 @@ from cli_support import SINK, run, start
 from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.chunks import Chunk, Clock
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import InputKind, Packing, Source, format_of, names_of, opened
+from protogen.convert.inputs import Packing, Source, format_of, names_of, opened
+from protogen.convert.kinds import InputKind
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import log_pieces
 

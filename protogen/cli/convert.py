@@ -12,8 +12,7 @@ import typer
 from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
-from protogen.convert.inputs import InputKind
-from protogen.convert.writers import OutputFormat
+from protogen.convert.kinds import InputKind, OutputFormat
 
 if TYPE_CHECKING:
     from protogen.convert.fleet import Fleet

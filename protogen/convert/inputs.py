@@ -28,6 +28,7 @@ from typing import BinaryIO, cast
 from protogen.capture.record import MAGIC
 from protogen.convert.chunks import PIECE, Chunk, joined
 from protogen.convert.errors import ConvertError, needed
+from protogen.convert.kinds import InputKind
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import LINE, Complain, log_pieces
 
@@ -37,15 +38,6 @@ _HEAD = 1 << 12
 _READ = PIECE
 """The most bytes that are read at once."""
 _LONGEST_LINE = 1 << 24
-
-
-class InputKind(StrEnum):
-    """What the bytes of the line are written in."""
-
-    RAW = "raw"
-    HEX = "hex"
-    LOG = "log"
-    RECORD = "record"
 
 
 class Packing(StrEnum):

@@ -8,6 +8,7 @@ last, says that a part is done, so that a run which starts again need not do it 
 from __future__ import annotations
 
 import json
+import pickle
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -17,11 +18,12 @@ from typing import Any, BinaryIO, cast
 from uuid import uuid4
 
 from protogen.convert.batches import Tally
-from protogen.convert.inputs import InputKind, Source, open_stream, opened
+from protogen.convert.inputs import Source, open_stream, opened
+from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, write_whole
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import OutputFormat, open_writer
+from protogen.convert.writers import open_writer
 from protogen.model.protocol import Protocol
 from protogen.runtime.sender import SenderSpec
 
@@ -118,11 +120,17 @@ def convert_part(work: Work, part: Part) -> PartDone:
     return done
 
 
-@lru_cache(maxsize=4)
 def _tools(protocol: Protocol, sender: str) -> tuple[Tables, SenderSpec[Any, Any]]:
     """What decoding needs; made once in a process."""
+    return _tools_of(pickle.dumps(protocol), sender)
+
+
+@lru_cache(maxsize=4)
+def _tools_of(pickled: bytes, sender: str) -> tuple[Tables, SenderSpec[Any, Any]]:
+    """Each task brings its own copy of a protocol, which has no hash."""
     from protogen.targets.python.live import module_of
 
+    protocol: Protocol = pickle.loads(pickled)  # noqa: S301 - what was pickled just now
     tables = tables_of(protocol, protocol.sender(sender))
     return tables, module_of(protocol).PROTOCOL.sender(sender)
 

@@ -9,11 +9,12 @@ from typing import Any
 
 from protogen.convert.batches import Batch, BatchDecoder, Tally
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import InputKind, Source, names_of, opened
+from protogen.convert.inputs import Source, names_of, opened
+from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, remove
 from protogen.convert.state import Done, State
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import OutputFormat, open_writer, require
+from protogen.convert.writers import open_writer, require
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.codec import Protocol as RuntimeProtocol
 

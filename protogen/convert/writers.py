@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from enum import StrEnum
 from typing import Protocol
 
 from protogen.convert.batches import Batch
 from protogen.convert.errors import needed
+from protogen.convert.kinds import OutputFormat
 from protogen.convert.outputs import Pending
 from protogen.convert.tables import Tables
-
-
-class OutputFormat(StrEnum):
-    """What tables are written as."""
-
-    JSONL = "jsonl"
-    CSV = "csv"
-    PARQUET = "parquet"
-    ARROW = "arrow"
-    MCAP = "mcap"
-
 
 _NEEDS = {
     OutputFormat.PARQUET: ("pyarrow", "writing Parquet"),
