@@ -220,7 +220,7 @@ class _Framer:
             case PayloadPart():
                 return "payload"
             case NumberPart():
-                return f"{self._codec(part.type)}.encode({self._value(part, bare)})"
+                return f"{self.lines.constants.number(part.type)}.encode({self._value(part, bare)})"
         raise TypeError(f"{type(part).__name__} is no part that has bytes here")
 
     def _value(self, part: NumberPart, bare: bool) -> str:
@@ -235,18 +235,13 @@ class _Framer:
         assert isinstance(part, IdentityPart | CounterPart | ValuePart)
         return f"{part.name}_"
 
-    def _codec(self, type_: Integer) -> str:
-        seven = type_.byte_bits == 7
-        listed = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
-        return self.lines.constants.named("NUMBER", f"_rt.Number({listed})")
-
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""
         due = checksum(part, self._covered(part), self.frame, self.lines.constants)
         if _is_plain(part.type) and part.type.size == 1:
             self.lines.add(f"content += _BYTES[{due}]")
         else:
-            self.lines.add(f"content += {self._codec(part.type)}.encode({due})")
+            self.lines.add(f"content += {self.lines.constants.number(part.type)}.encode({due})")
 
     def _covered(self, part: ChecksumPart) -> str:
         """What a checksum covers, while the content ends where the part begins."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from protogen.model.types import Integer
 from protogen.targets.python.wrapping import wrapped
 
 _INDENT = "    "
@@ -22,6 +23,12 @@ class Constants:
             count = sum(name.startswith(f"_{kind}_") for name in self._names.values())
             self._names[expression] = f"_{kind}_{count}"
         return self._names[expression]
+
+    def number(self, type_: Integer) -> str:
+        """The name of what reads and writes an integer that `struct` does not know."""
+        seven = type_.byte_bits == 7
+        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
+        return self.named("NUMBER", f"_rt.Number({arguments})")
 
     @property
     def text(self) -> tuple[str, ...]:

@@ -67,9 +67,7 @@ class FrameFunction:
 
     def codec(self, type_: Integer) -> str:
         """The number that reads the part's bytes and checks their padding."""
-        seven = type_.byte_bits == 7
-        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
-        return self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
+        return self.lines.constants.number(type_)
 
     def identity(self, source: str, base: str = "") -> str:
         """The values of all identity parts, between commas."""

@@ -222,7 +222,7 @@ class _Reader:
         code = code_of(type_)
         assert code is not None
         if code.endswith("s"):
-            return f"{self._number(type_)}.decode({variable})"
+            return f"{self.lines.constants.number(type_)}.decode({variable})"
         if not (self.is_ascii and type_.bits == 7):
             self.lines.refuse_if(f"{variable} >> {type_.bits}")
         if not type_.signed:
@@ -233,11 +233,6 @@ class _Reader:
     def _pairs(self, type_: Integer) -> str:
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
         return self.lines.constants.named("PAIRS", f"_fast.Pairs({arguments})")
-
-    def _number(self, type_: Integer) -> str:
-        seven = type_.byte_bits == 7
-        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
-        return self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
 
     def _named(self, value: str, type_: Integer) -> str:
         named = type_.enum or type_.flags

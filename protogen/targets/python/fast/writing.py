@@ -230,10 +230,7 @@ class _Writer:
         code = code_of(type_)
         assert code is not None
         if code.endswith("s"):
-            seven = type_.byte_bits == 7
-            arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
-            named = self.lines.constants.named("NUMBER", f"_rt.Number({arguments})")
-            return f"{named}.encode({value})"
+            return f"{self.lines.constants.number(type_)}.encode({value})"
         self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
         return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
 
