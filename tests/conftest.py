@@ -33,11 +33,12 @@ def require_tool() -> Callable[[str], str]:
     return tooling.require_tool
 
 
-@pytest.fixture
+@pytest.fixture(autouse=settings().derandomize)
 def fixed_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     """A seed always draws the same, whatever modules a worker has imported before.
 
-    Hypothesis also draws constants that it finds in the sources of imported modules.
+    Hypothesis also draws constants that it finds in the sources of imported modules. Tests that
+    count what was drawn ask for this, and all have it where a red run must be one to repeat.
     """
     from hypothesis.internal.conjecture import providers
 

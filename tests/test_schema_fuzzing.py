@@ -131,6 +131,7 @@ def drawn_from(number: int) -> list[Schema]:
     return found
 
 
+@pytest.mark.usefixtures("fixed_draws")
 def test_nearly_every_draw_is_valid_and_every_shape_is_drawn(compile_text: Compile) -> None:
     drawn = [schema for number in range(FIXED_SEEDS) for schema in drawn_from(number)]
     compilations = (compile_text(to_yaml(schema.data)) for schema in drawn)
