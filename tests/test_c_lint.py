@@ -33,6 +33,8 @@ C99 = {
     "avr-gcc": ("-std=c99", "-Os", "-mmcu=atmega328p"),
     "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),
 }
+TAGGED = ROOT / "tests" / "c_schemas" / "tagged.yaml"
+LINTED = [*SCHEMAS, TAGGED]
 KINDS = [(style, events) for style in STYLES for events in EVENTS]
 TIDIED = [*DOCUMENTS, *(path for path in FRAMINGS if path.stem in ("cobs", "hdlc", "hex_lines"))]
 _MISRA = re.compile(r"misra-c2012-(\d+\.\d+)")
@@ -64,7 +66,7 @@ def translation_units(made: Generated, folder: Path, suffix: str) -> list[Path]:
 
 
 @pytest.mark.parametrize(("style", "events"), KINDS)
-@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+@pytest.mark.parametrize("path", LINTED, ids=name_of)
 def test_no_compiler_warns(path: Path, style: Style, events: Events, tmp_path: Path) -> None:
     options = COptions(style=style, events=events, stubs=True)
     made = generate(protocol_of(path), tmp_path, options)
@@ -102,7 +104,7 @@ def test_cplusplus_calls_generated_c(path: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("style", "events"), KINDS)
-@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
+@pytest.mark.parametrize("path", LINTED, ids=name_of)
 def test_the_style_is_the_one_that_is_shipped(
     path: Path, style: Style, events: Events, tmp_path: Path
 ) -> None:
