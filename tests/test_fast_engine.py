@@ -21,7 +21,7 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import decoder as decoder_module
+from protogen.runtime import late
 from protogen.runtime.constructs import PayloadError
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate
@@ -97,7 +97,7 @@ def test_clean_frames_are_cut_without_the_reference(
             super().__init__(*given, **named)
             candidates.append(self)
 
-    monkeypatch.setattr(decoder_module, "Candidate", Counted)
+    monkeypatch.setattr(late, "Candidate", Counted)
     decoder = module_at(path).Decoder(sender)
     events = decoder.feed(b"".join(frames))
     taken_one_by_one = len(candidates)

@@ -25,8 +25,9 @@ from corpus import (
 )
 from hypothesis import settings
 
-from protogen.runtime import decoder as decoder_module
+from protogen.runtime import late
 from protogen.runtime.machine import Candidate
+from protogen.runtime.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(4, settings().max_examples // 20))
@@ -84,7 +85,7 @@ def test_nothing_is_awaited_behind_a_verdict(path: Path, sender: str, seed: int)
     dice = Random(seed)
     for piece in islice(pieces(material_of(path, sender), dice), 40):
         data = piece.data + dice.choice([b"", piece.data])
-        start = decoder_module.starts_of(spec.frame)
+        start = starts_of(spec.frame)
         if start.context == 0 and start.find(data, 0, 1) != 0:
             continue
         candidate = Candidate(spec)
@@ -120,7 +121,7 @@ def candidates(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
             super().__init__(*given, **named)
             made.append(self)
 
-    monkeypatch.setattr(decoder_module, "Candidate", Counted)
+    monkeypatch.setattr(late, "Candidate", Counted)
     return made
 
 

@@ -13,13 +13,11 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 
 SPEC_HASH = "6baa3a58f2e3bb708220180f1f44f5fabd459f4b176946c5580b841864174129"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
@@ -47,7 +45,7 @@ class PowerCode(_rt.OpenEnum):
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor(_rt.Message):
     """Motor command (line 42)."""
 
@@ -59,13 +57,15 @@ class Motor(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "s" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "s" / _c.Int(8),
+        )
     )
-    RULES = (("s", _rt.IntegerRule(8)),)
+    RULES = _rt.lazily(lambda: (("s", _rt.IntegerRule(8)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Steering(_rt.Message):
     """Steering command (line 43)."""
 
@@ -77,13 +77,15 @@ class Steering(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "s" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "s" / _c.Int(8),
+        )
     )
-    RULES = (("s", _rt.IntegerRule(8)),)
+    RULES = _rt.lazily(lambda: (("s", _rt.IntegerRule(8)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Reflex(_rt.Message):
     """Queries, enables or disables one reflex (lines 44, 58-74).
 
@@ -99,10 +101,12 @@ class Reflex(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x52,)  # id "R"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "reflex" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "reflex" / _c.Int(8),
+        )
     )
-    RULES = (("reflex", _rt.IntegerRule(8)),)
+    RULES = _rt.lazily(lambda: (("reflex", _rt.IntegerRule(8)),))
 
     reflex_command = _rt.EnumRange("reflex", 6, 7, ReflexReflexCommand)
     """What to do with the reflex; bits 6 to 7 of reflex."""
@@ -111,7 +115,7 @@ class Reflex(_rt.Message):
     """Number of the reflex; the document lists none; bits 0 to 5 of reflex."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class PowerDown(_rt.Message):
     """Powers the robot down after a time (line 45)."""
 
@@ -123,13 +127,15 @@ class PowerDown(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "code" / _c.Fixed(_c.Int(8), 3),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "code" / _c.Fixed(_c.Int(8), 3),
+        )
     )
-    RULES = (("code", _rt.IntegerRule(8, named=PowerCode, const=3)),)
+    RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode, const=3)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Power(_rt.Message):
     """Puts the hardware to sleep, wakes it, or asks for its state (lines 46, 77-82)."""
 
@@ -141,13 +147,15 @@ class Power(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "code" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "code" / _c.Int(8),
+        )
     )
-    RULES = (("code", _rt.IntegerRule(8, named=PowerCode)),)
+    RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Laser(_rt.Message):
     """Laser scan, passed through (lines 9-16, 49).
 
@@ -163,21 +171,28 @@ class Laser(_rt.Message):
     SENDERS = ("host", "robot")
     IDENTITY = (0x4C,)  # id "L"
     SIZES = _rt.Sizes(0, 512)
-    FORMAT = _c.Struct(
-        "readings" / _c.Fill(_c.Int(8), 512),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "readings" / _c.Fill(_c.Int(8), 512),
+        )
     )
-    RULES = (
-        (
-            "readings",
-            _rt.ArrayRule(_rt.IntegerRule(8, scale=_Fraction(2, 1), unit="cm"), greatest=512),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            (
+                "readings",
+                _rt.ArrayRule(
+                    _rt.IntegerRule(8, scale=_rt.Fraction(2, 1), unit="cm"),
+                    greatest=512,
+                ),
+            ),
+        )
     )
 
     readings_cm = _rt.PhysicalList("readings")
     """Distance; the metres times 50 in cm, 0..510."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Command(_rt.Message):
     """Commands, passed through (line 50)."""
 
@@ -189,16 +204,18 @@ class Command(_rt.Message):
     SENDERS = ("host", "robot")
     IDENTITY = (0x43,)  # id "C"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
 # --- messages of robot ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """Sonar data (line 31)."""
 
@@ -210,13 +227,15 @@ class Sonar(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """GPS data (lines 18, 32).
 
@@ -231,13 +250,15 @@ class Gps(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Bump(_rt.Message):
     """Bump sensor data (line 33)."""
 
@@ -249,13 +270,15 @@ class Bump(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x42,)  # id "B"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Odometry(_rt.Message):
     """Odometry counts (line 34)."""
 
@@ -267,13 +290,15 @@ class Odometry(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Speed(_rt.Message):
     """Speed readings (line 35)."""
 
@@ -285,13 +310,15 @@ class Speed(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class WheelSlip(_rt.Message):
     """Notification that a wheel slips (line 36).
 
@@ -306,13 +333,15 @@ class WheelSlip(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x57,)  # id "W"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Battery(_rt.Message):
     """Battery level readings (line 37).
 
@@ -327,13 +356,15 @@ class Battery(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x62,)  # id "b"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ReflexSettings(_rt.Message):
     """Settings of the reflexes (line 38)."""
 
@@ -345,13 +376,15 @@ class ReflexSettings(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x52,)  # id "R"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class HardwareStatus(_rt.Message):
     """Whether the hardware sleeps or is awake (line 39)."""
 
@@ -363,16 +396,18 @@ class HardwareStatus(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x48,)  # id "H"
     SIZES = _rt.Sizes(0, 128)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(128),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(128),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=128)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -380,26 +415,28 @@ class Parts:
     """Which message this is; upper and lower case differ."""
 
 
-HOST_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.IdentityPart("id", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "checksum",
-            _rt.Number(8),
-            algorithm=_checksum.Xor8(),
-            covers=("id", "payload"),
-            when_payload=True,
+def _host_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.IdentityPart("id", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "checksum",
+                _rt.Number(8),
+                algorithm=_checksum.Xor8(),
+                covers=("id", "payload"),
+                when_payload=True,
+            ),
+            _rt.LiteralPart("end", bytes.fromhex("0A")),
         ),
-        _rt.LiteralPart("end", bytes.fromhex("0A")),
-    ),
-    start=_rt.AfterEnd(),
-    end=_rt.End(bytes.fromhex("0A"), protected=False),
-    least=2,
-    greatest=515,
-    greatest_payload=512,
-    ambiguous_cut=True,
-)
+        start=_rt.AfterEnd(),
+        end=_rt.End(bytes.fromhex("0A"), protected=False),
+        least=2,
+        greatest=515,
+        greatest_payload=512,
+        ambiguous_cut=True,
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -1032,7 +1069,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     "host",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(Motor, Steering, Reflex, Power, Laser, Command),
     encode_only=(PowerDown,),
@@ -1041,7 +1078,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(
         Sonar,
@@ -1059,9 +1096,9 @@ ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     cut=_cut_robot,
     waits=_waits_robot,
 )
-HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
+HOST_FORMAT: _rt.FrameFormat
 """The frame of host as a construct declaration."""
-ROBOT_FORMAT = _rt.FrameFormat(ROBOT_SENDER)
+ROBOT_FORMAT: _rt.FrameFormat
 """The frame of robot as a construct declaration."""
 PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     "dagny",
@@ -1069,6 +1106,10 @@ PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     ROBOT_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), HOST_FORMAT=HOST_SENDER, ROBOT_FORMAT=ROBOT_SENDER)
 
 
 def encode(

@@ -13,12 +13,10 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "24728b7a9b7205d00f7a52d605f1c3708d73177b891af3259fa4096019b84ebb"
@@ -43,7 +41,7 @@ class PowerCode(_rt.OpenEnum):
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor(_rt.Message):
     """Sets the speed (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
@@ -62,13 +60,15 @@ class Motor(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "speed" / _c.Int(8, signed=True),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.Int(8, signed=True),
+        )
     )
-    RULES = (("speed", _rt.IntegerRule(8, signed=True)),)
+    RULES = _rt.lazily(lambda: (("speed", _rt.IntegerRule(8, signed=True)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Drive(_rt.Message):
     """Sets speed and steering (trainman419/Senior-Project, trainman419/dagny_protocol (facts ...
 
@@ -90,17 +90,21 @@ class Drive(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x4D,)  # id "M"
     SIZES = _rt.Sizes(2, 2)
-    FORMAT = _c.Struct(
-        "speed" / _c.Int(8, signed=True),
-        "steer" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.Int(8, signed=True),
+            "steer" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("speed", _rt.IntegerRule(8, signed=True)),
-        ("steer", _rt.IntegerRule(8)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("speed", _rt.IntegerRule(8, signed=True)),
+            ("steer", _rt.IntegerRule(8)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Steering(_rt.Message):
     """Steering command (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
@@ -117,13 +121,15 @@ class Steering(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "position" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "position" / _c.Int(8),
+        )
     )
-    RULES = (("position", _rt.IntegerRule(8)),)
+    RULES = _rt.lazily(lambda: (("position", _rt.IntegerRule(8)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Power(_rt.Message):
     """Switches the power, or puts it to sleep (trainman419/Senior-Project, ...
 
@@ -141,13 +147,15 @@ class Power(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x50,)  # id "P"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "code" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "code" / _c.Int(8),
+        )
     )
-    RULES = (("code", _rt.IntegerRule(8, named=PowerCode)),)
+    RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class GpsPosition(_rt.Message):
     """Position, passed on to Bluetooth (trainman419/Senior-Project, ...
 
@@ -167,13 +175,23 @@ class GpsPosition(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "latitude" / _c.Int(32, signed=True, order="little"),
-        "longitude" / _c.Int(32, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "latitude" / _c.Int(32, signed=True, order="little"),
+            "longitude" / _c.Int(32, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("latitude", _rt.IntegerRule(32, signed=True, scale=_Fraction(1, 1000000), unit="deg")),
-        ("longitude", _rt.IntegerRule(32, signed=True, scale=_Fraction(1, 1000000), unit="deg")),
+    RULES = _rt.lazily(
+        lambda: (
+            (
+                "latitude",
+                _rt.IntegerRule(32, signed=True, scale=_rt.Fraction(1, 1000000), unit="deg"),
+            ),
+            (
+                "longitude",
+                _rt.IntegerRule(32, signed=True, scale=_rt.Fraction(1, 1000000), unit="deg"),
+            ),
+        )
     )
 
     latitude_deg = _rt.Physical("latitude")
@@ -183,7 +201,7 @@ class GpsPosition(_rt.Message):
     """Longitude in deg, -2147.483648..2147.483647."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Laser(_rt.Message):
     """Laser scan, passed through (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
@@ -202,21 +220,28 @@ class Laser(_rt.Message):
     SENDERS = ("host", "robot")
     IDENTITY = (0x4C,)  # id "L"
     SIZES = _rt.Sizes(0, 512)
-    FORMAT = _c.Struct(
-        "readings" / _c.Fill(_c.Int(8), 512),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "readings" / _c.Fill(_c.Int(8), 512),
+        )
     )
-    RULES = (
-        (
-            "readings",
-            _rt.ArrayRule(_rt.IntegerRule(8, scale=_Fraction(2, 1), unit="cm"), greatest=512),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            (
+                "readings",
+                _rt.ArrayRule(
+                    _rt.IntegerRule(8, scale=_rt.Fraction(2, 1), unit="cm"),
+                    greatest=512,
+                ),
+            ),
+        )
     )
 
     readings_cm = _rt.PhysicalList("readings")
     """Distance; the metres times 50 in cm, 0..510."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Shutdown(_rt.Message):
     """Shuts the robot down after a minute (trainman419/Senior-Project, ...
 
@@ -235,16 +260,18 @@ class Shutdown(_rt.Message):
     SENDERS = ("host", "robot")
     IDENTITY = (0x5A,)  # id "Z"
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "confirmation" / _c.Fixed(_c.Latin1(7), "ZZZZZZZ"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "confirmation" / _c.Fixed(_c.Latin1(7), "ZZZZZZZ"),
+        )
     )
-    RULES = (("confirmation", _rt.TextRule(size=7, const="ZZZZZZZ")),)
+    RULES = _rt.lazily(lambda: (("confirmation", _rt.TextRule(size=7, const="ZZZZZZZ")),))
 
 
 # --- messages of robot ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """Distances of the five sonars (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
@@ -261,13 +288,17 @@ class Sonar(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x53,)  # id "S"
     SIZES = _rt.Sizes(5, 5)
-    FORMAT = _c.Struct(
-        "distances" / _c.Counted(5, _c.Int(8)),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "distances" / _c.Counted(5, _c.Int(8)),
+        )
     )
-    RULES = (("distances", _rt.ArrayRule(_rt.IntegerRule(8, unit="inch"), count=5)),)
+    RULES = _rt.lazily(
+        lambda: (("distances", _rt.ArrayRule(_rt.IntegerRule(8, unit="inch"), count=5)),)
+    )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
@@ -286,13 +317,15 @@ class Gps(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x47,)  # id "G"
     SIZES = _rt.Sizes(0, 126)
-    FORMAT = _c.Struct(
-        "nmea" / _c.Latin1Fill(126),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "nmea" / _c.Latin1Fill(126),
+        )
     )
-    RULES = (("nmea", _rt.TextRule(greatest=126)),)
+    RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=126)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Odometry(_rt.Message):
     """Encoder counts, speeds and steering in one message (trainman419/Senior-Project, ...
 
@@ -327,27 +360,31 @@ class Odometry(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x4F,)  # id "O"
     SIZES = _rt.Sizes(13, 13)
-    FORMAT = _c.Struct(
-        "right_count" / _c.Int(16, order="little"),
-        "left_count" / _c.Int(16, order="little"),
-        "quad_count" / _c.Int(16, order="little"),
-        "right_speed" / _c.Int(16, signed=True, order="little"),
-        "left_speed" / _c.Int(16, signed=True, order="little"),
-        "quad_speed" / _c.Int(16, signed=True, order="little"),
-        "steer" / _c.Int(8, signed=True),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "right_count" / _c.Int(16, order="little"),
+            "left_count" / _c.Int(16, order="little"),
+            "quad_count" / _c.Int(16, order="little"),
+            "right_speed" / _c.Int(16, signed=True, order="little"),
+            "left_speed" / _c.Int(16, signed=True, order="little"),
+            "quad_speed" / _c.Int(16, signed=True, order="little"),
+            "steer" / _c.Int(8, signed=True),
+        )
     )
-    RULES = (
-        ("right_count", _rt.IntegerRule(16)),
-        ("left_count", _rt.IntegerRule(16)),
-        ("quad_count", _rt.IntegerRule(16)),
-        ("right_speed", _rt.IntegerRule(16, signed=True)),
-        ("left_speed", _rt.IntegerRule(16, signed=True)),
-        ("quad_speed", _rt.IntegerRule(16, signed=True)),
-        ("steer", _rt.IntegerRule(8, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("right_count", _rt.IntegerRule(16)),
+            ("left_count", _rt.IntegerRule(16)),
+            ("quad_count", _rt.IntegerRule(16)),
+            ("right_speed", _rt.IntegerRule(16, signed=True)),
+            ("left_speed", _rt.IntegerRule(16, signed=True)),
+            ("quad_speed", _rt.IntegerRule(16, signed=True)),
+            ("steer", _rt.IntegerRule(8, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Battery(_rt.Message):
     """Battery level readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts ...
 
@@ -372,19 +409,23 @@ class Battery(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x62,)  # id "b"
     SIZES = _rt.Sizes(6, 6)
-    FORMAT = _c.Struct(
-        "main_battery" / _c.Int(8),
-        "motor_battery" / _c.Int(8),
-        "idle" / _c.Int(32, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "main_battery" / _c.Int(8),
+            "motor_battery" / _c.Int(8),
+            "idle" / _c.Int(32, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("main_battery", _rt.IntegerRule(8)),
-        ("motor_battery", _rt.IntegerRule(8)),
-        ("idle", _rt.IntegerRule(32, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("main_battery", _rt.IntegerRule(8)),
+            ("motor_battery", _rt.IntegerRule(8)),
+            ("idle", _rt.IntegerRule(32, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Compass(_rt.Message):
     """Compass readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
@@ -404,20 +445,24 @@ class Compass(_rt.Message):
     SENDERS = ("robot",)
     IDENTITY = (0x43,)  # id "C"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "x" / _c.Int(16, signed=True, order="little"),
-        "y" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "x" / _c.Int(16, signed=True, order="little"),
+            "y" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("x", _rt.IntegerRule(16, signed=True)),
-        ("y", _rt.IntegerRule(16, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("x", _rt.IntegerRule(16, signed=True)),
+            ("y", _rt.IntegerRule(16, signed=True)),
+        )
     )
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -425,20 +470,22 @@ class Parts:
     """Which message this is; upper and lower case differ."""
 
 
-HOST_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.IdentityPart("id", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("end", bytes.fromhex("0D")),
-    ),
-    start=_rt.AfterEnd(),
-    end=_rt.End(bytes.fromhex("0D"), protected=True),
-    least=2,
-    greatest=1027,
-    greatest_payload=512,
-    transparency=_transparency.Escape(0x1B, frozenset({0x0D, 0x1B}), 0x1B),
-    stuffed=("id", "payload"),
-)
+def _host_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.IdentityPart("id", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("end", bytes.fromhex("0D")),
+        ),
+        start=_rt.AfterEnd(),
+        end=_rt.End(bytes.fromhex("0D"), protected=True),
+        least=2,
+        greatest=1027,
+        greatest_payload=512,
+        transparency=_transparency.Escape(0x1B, frozenset({0x0D, 0x1B}), 0x1B),
+        stuffed=("id", "payload"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -981,7 +1028,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     "host",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(Motor, Drive, Steering, Power, GpsPosition, Laser, Shutdown),
     cut=_cut_host,
@@ -989,15 +1036,15 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
 )
 ROBOT_SENDER: _rt.SenderSpec[RobotMessage, Parts] = _rt.SenderSpec(
     "robot",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(Sonar, Gps, Odometry, Battery, Compass, Laser, Shutdown),
     cut=_cut_robot,
     waits=_waits_robot,
 )
-HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
+HOST_FORMAT: _rt.FrameFormat
 """The frame of host as a construct declaration."""
-ROBOT_FORMAT = _rt.FrameFormat(ROBOT_SENDER)
+ROBOT_FORMAT: _rt.FrameFormat
 """The frame of robot as a construct declaration."""
 PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     "dagny_library",
@@ -1005,6 +1052,10 @@ PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     ROBOT_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), HOST_FORMAT=HOST_SENDER, ROBOT_FORMAT=ROBOT_SENDER)
 
 
 def encode(

@@ -12,14 +12,12 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 from zlib import adler32 as _adler32
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "0c279702240892abbf46c1dba40fd0bfc28d955cf8f9231472d19cdce291e429"
@@ -58,7 +56,7 @@ class StatusStatus(_rt.Flags):
 # --- messages of pc ------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Stop(_rt.Message):
     """Stops the robot (line 16).
 
@@ -70,11 +68,11 @@ class Stop(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x53,)  # command "S"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (line 17)."""
 
@@ -83,11 +81,11 @@ class Reset(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x52,)  # command "R"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Mode(_rt.Message):
     """Sets the robot's mode (line 18)."""
 
@@ -99,13 +97,15 @@ class Mode(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x4D,)  # command "M"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (("mode", _rt.IntegerRule(8, named=RobotMode)),)
+    RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=RobotMode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Go(_rt.Message):
     """Sets the driving speed and the wanted angle of the joint (line 19)."""
 
@@ -119,20 +119,24 @@ class Go(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x47,)  # command "G"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "speed" / _c.Int(16, signed=True, order="little"),
-        "steer" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.Int(16, signed=True, order="little"),
+            "steer" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("steer", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            ("steer", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+        )
     )
 
     steer_deg = _rt.Physical("steer")
     """Wanted angle of the joint in deg, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Limits(_rt.Message):
     """Sets the greatest driving speed and the fastest change of the joint's angle (line 20)."""
 
@@ -146,20 +150,27 @@ class Limits(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x4C,)  # command "L"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "max_speed" / _c.Int(16, signed=True, order="little"),
-        "max_steer" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "max_speed" / _c.Int(16, signed=True, order="little"),
+            "max_steer" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("max_speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("max_steer", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg/s")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("max_speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            (
+                "max_steer",
+                _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg/s"),
+            ),
+        )
     )
 
     max_steer_deg_per_s = _rt.Physical("max_steer")
     """Fastest change of the angle in deg/s, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Timing(_rt.Message):
     """Sets how often the robot sends its data and how long it waits for commands (line 21)."""
 
@@ -173,17 +184,21 @@ class Timing(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x54,)  # command "T"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "period" / _c.Int(16, order="little"),
-        "timeout" / _c.Int(16, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "period" / _c.Int(16, order="little"),
+            "timeout" / _c.Int(16, order="little"),
+        )
     )
-    RULES = (
-        ("period", _rt.IntegerRule(16, unit="ms")),
-        ("timeout", _rt.IntegerRule(16, unit="ms")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("period", _rt.IntegerRule(16, unit="ms")),
+            ("timeout", _rt.IntegerRule(16, unit="ms")),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class GpsMode(_rt.Message):
     """Sets what is sent of the GPS receiver (line 22)."""
 
@@ -195,16 +210,18 @@ class GpsMode(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (("mode", _rt.IntegerRule(8, named=GpsModeMode)),)
+    RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=GpsModeMode)),))
 
 
 # --- messages of esp -----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Ack(_rt.Message):
     """Confirms a command (lines 26-29).
 
@@ -216,11 +233,11 @@ class Ack(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x41,)  # command "A"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Nack(_rt.Message):
     """Says that a command was not understood (lines 26-29).
 
@@ -232,11 +249,11 @@ class Nack(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x4E,)  # command "N"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """State of the robot (lines 31-34).
 
@@ -269,36 +286,40 @@ class Status(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x49,)  # command "I"
     SIZES = _rt.Sizes(18, 18)
-    FORMAT = _c.Struct(
-        "status" / _c.Int(8),
-        "mode" / _c.Int(8),
-        "voltage" / _c.Int(16, order="little"),
-        "current" / _c.Int(16, order="little"),
-        "speed" / _c.Int(16, signed=True, order="little"),
-        "angle" / _c.Int(16, signed=True, order="little"),
-        "encoder0" / _c.Int(16, order="little"),
-        "encoder1" / _c.Int(16, order="little"),
-        "encoder2" / _c.Int(16, order="little"),
-        "encoder3" / _c.Int(16, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.Int(8),
+            "mode" / _c.Int(8),
+            "voltage" / _c.Int(16, order="little"),
+            "current" / _c.Int(16, order="little"),
+            "speed" / _c.Int(16, signed=True, order="little"),
+            "angle" / _c.Int(16, signed=True, order="little"),
+            "encoder0" / _c.Int(16, order="little"),
+            "encoder1" / _c.Int(16, order="little"),
+            "encoder2" / _c.Int(16, order="little"),
+            "encoder3" / _c.Int(16, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(8, named=StatusStatus)),
-        ("mode", _rt.IntegerRule(8, named=RobotMode)),
-        ("voltage", _rt.IntegerRule(16, unit="mV")),
-        ("current", _rt.IntegerRule(16, unit="mA")),
-        ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("angle", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
-        ("encoder0", _rt.IntegerRule(16, unit="mm")),
-        ("encoder1", _rt.IntegerRule(16, unit="mm")),
-        ("encoder2", _rt.IntegerRule(16, unit="mm")),
-        ("encoder3", _rt.IntegerRule(16, unit="mm")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(8, named=StatusStatus)),
+            ("mode", _rt.IntegerRule(8, named=RobotMode)),
+            ("voltage", _rt.IntegerRule(16, unit="mV")),
+            ("current", _rt.IntegerRule(16, unit="mA")),
+            ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            ("angle", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+            ("encoder0", _rt.IntegerRule(16, unit="mm")),
+            ("encoder1", _rt.IntegerRule(16, unit="mm")),
+            ("encoder2", _rt.IntegerRule(16, unit="mm")),
+            ("encoder3", _rt.IntegerRule(16, unit="mm")),
+        )
     )
 
     angle_deg = _rt.Physical("angle")
     """Angle of the joint in deg, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (lines 45-48).
 
@@ -313,16 +334,18 @@ class Gps(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(0, 121)
-    FORMAT = _c.Struct(
-        "nmea" / _c.Latin1Fill(121),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "nmea" / _c.Latin1Fill(121),
+        )
     )
-    RULES = (("nmea", _rt.TextRule(greatest=121)),)
+    RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=121)),))
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -332,34 +355,36 @@ class Parts:
     """Which command or message this is."""
 
 
-PC_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("sync", b"U"),
-        _rt.LengthPart(
-            "length",
-            _rt.Number(8),
-            counts=("counter", "command", "payload"),
-            least=2,
-            greatest=123,
+def _pc_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("sync", b"U"),
+            _rt.LengthPart(
+                "length",
+                _rt.Number(8),
+                counts=("counter", "command", "payload"),
+                least=2,
+                greatest=123,
+            ),
+            _rt.CounterPart("counter", _rt.Number(8), least=0, greatest=255),
+            _rt.IdentityPart("command", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "crc",
+                _rt.Number(8),
+                algorithm=_checksum.Sum8(negated=True),
+                covers=("length", "counter", "command", "payload"),
+            ),
         ),
-        _rt.CounterPart("counter", _rt.Number(8), least=0, greatest=255),
-        _rt.IdentityPart("command", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "crc",
-            _rt.Number(8),
-            algorithm=_checksum.Sum8(negated=True),
-            covers=("length", "counter", "command", "payload"),
-        ),
-    ),
-    start=_rt.StartLiteral(b"U", protected=True),
-    end=None,
-    least=5,
-    greatest=250,
-    greatest_payload=121,
-    transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
-    stuffed=("length", "counter", "command", "payload", "crc"),
-)
+        start=_rt.StartLiteral(b"U", protected=True),
+        end=None,
+        least=5,
+        greatest=250,
+        greatest_payload=121,
+        transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
+        stuffed=("length", "counter", "command", "payload", "crc"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -910,7 +935,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
     "pc",
-    PC_FRAME,
+    _pc_frame_spec,
     Parts,
     messages=(Stop, Reset, Mode, Go, Limits, Timing, GpsMode),
     cut=_cut_pc,
@@ -918,15 +943,15 @@ PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
 )
 ESP_SENDER: _rt.SenderSpec[EspMessage, Parts] = _rt.SenderSpec(
     "esp",
-    PC_FRAME,
+    _pc_frame_spec,
     Parts,
     messages=(Ack, Nack, Status, Gps),
     cut=_cut_esp,
     waits=_waits_esp,
 )
-PC_FORMAT = _rt.FrameFormat(PC_SENDER)
+PC_FORMAT: _rt.FrameFormat
 """The frame of pc as a construct declaration."""
-ESP_FORMAT = _rt.FrameFormat(ESP_SENDER)
+ESP_FORMAT: _rt.FrameFormat
 """The frame of esp as a construct declaration."""
 PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     "matty",
@@ -934,6 +959,10 @@ PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     ESP_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), PC_FORMAT=PC_SENDER, ESP_FORMAT=ESP_SENDER)
 
 
 def encode(

@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 from zlib import adler32 as _adler32
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "726898ed912fa822b88887315e8f66eefc016b1aa21b6ec013246747f9291116"
@@ -65,7 +63,7 @@ class StatusStatus(_rt.Flags):
 # --- messages of pc ------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Stop(_rt.Message):
     """Stops the robot (esp/matty-v4.txt, line 16).
 
@@ -80,13 +78,15 @@ class Stop(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x53,)  # command "S"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (("mode", _rt.IntegerRule(8, named=StopMode)),)
+    RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=StopMode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17)."""
 
@@ -95,11 +95,11 @@ class Reset(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x52,)  # command "R"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Mode(_rt.Message):
     """Sets the robot's mode (004_bc163d01a5f01dc1.txt, line 18)."""
 
@@ -111,13 +111,15 @@ class Mode(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x4D,)  # command "M"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (("mode", _rt.IntegerRule(8, named=RobotMode)),)
+    RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=RobotMode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Go(_rt.Message):
     """Sets the driving speed and the wanted angle of the joint (004_bc163d01a5f01dc1.txt, ...
 
@@ -134,20 +136,24 @@ class Go(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x47,)  # command "G"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "speed" / _c.Int(16, signed=True, order="little"),
-        "steer" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.Int(16, signed=True, order="little"),
+            "steer" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("steer", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            ("steer", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+        )
     )
 
     steer_deg = _rt.Physical("steer")
     """Wanted angle of the joint in deg, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Limits(_rt.Message):
     """Sets the greatest driving speed and the fastest change of the joint's angle ...
 
@@ -166,20 +172,27 @@ class Limits(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x4C,)  # command "L"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "max_speed" / _c.Int(16, signed=True, order="little"),
-        "max_steer" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "max_speed" / _c.Int(16, signed=True, order="little"),
+            "max_steer" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("max_speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("max_steer", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg/s")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("max_speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            (
+                "max_steer",
+                _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg/s"),
+            ),
+        )
     )
 
     max_steer_deg_per_s = _rt.Physical("max_steer")
     """Fastest change of the angle in deg/s, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Timing(_rt.Message):
     """Sets how often the robot sends its data and how long it waits for commands ...
 
@@ -197,17 +210,21 @@ class Timing(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x54,)  # command "T"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "period" / _c.Int(16, order="little"),
-        "timeout" / _c.Int(16, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "period" / _c.Int(16, order="little"),
+            "timeout" / _c.Int(16, order="little"),
+        )
     )
-    RULES = (
-        ("period", _rt.IntegerRule(16, unit="ms")),
-        ("timeout", _rt.IntegerRule(16, unit="ms")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("period", _rt.IntegerRule(16, unit="ms")),
+            ("timeout", _rt.IntegerRule(16, unit="ms")),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class GpsMode(_rt.Message):
     """Sets what is sent of the GPS receiver (004_bc163d01a5f01dc1.txt, line 22)."""
 
@@ -219,13 +236,15 @@ class GpsMode(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (("mode", _rt.IntegerRule(8, named=GpsModeMode)),)
+    RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=GpsModeMode)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class VersionQuery(_rt.Message):
     """Asks for the version (esp/matty-v4.txt, line 23)."""
 
@@ -234,11 +253,11 @@ class VersionQuery(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x56,)  # command "V"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Led(_rt.Message):
     """Sets the colour of an LED (esp/Robot/src/data.h)."""
 
@@ -252,20 +271,24 @@ class Led(_rt.Message):
     SENDERS = ("pc",)
     IDENTITY = (0x44,)  # command "D"
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "index" / _c.Int(8),
-        "rgb" / _c.Int(24, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "index" / _c.Int(8),
+            "rgb" / _c.Int(24, order="little"),
+        )
     )
-    RULES = (
-        ("index", _rt.IntegerRule(8)),
-        ("rgb", _rt.IntegerRule(24)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("index", _rt.IntegerRule(8)),
+            ("rgb", _rt.IntegerRule(24)),
+        )
     )
 
 
 # --- messages of esp -----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Ack(_rt.Message):
     """Confirms a command (004_bc163d01a5f01dc1.txt, lines 26-29).
 
@@ -277,11 +300,11 @@ class Ack(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x41,)  # command "A"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Nack(_rt.Message):
     """Says that a command was not understood (004_bc163d01a5f01dc1.txt, lines 26-29).
 
@@ -293,11 +316,11 @@ class Nack(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x4E,)  # command "N"
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """State of the robot (esp/Robot/src/communication.cpp).
 
@@ -336,35 +359,39 @@ class Status(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x49,)  # command "I"
     SIZES = _rt.Sizes(24, 24)
-    FORMAT = _c.Struct(
-        "status" / _c.Int(8),
-        "mode" / _c.Int(8),
-        "voltage" / _c.Int(16, order="little"),
-        "current" / _c.Int(16, order="little"),
-        "speed" / _c.Int(16, signed=True, order="little"),
-        "angle" / _c.Int(16, signed=True, order="little"),
-        "encoder0" / _c.Int(16, order="little"),
-        "encoder1" / _c.Int(16, order="little"),
-        "encoder2" / _c.Int(16, order="little"),
-        "encoder3" / _c.Int(16, order="little"),
-        "roll" / _c.Int(16, signed=True, order="little"),
-        "pitch" / _c.Int(16, signed=True, order="little"),
-        "yaw" / _c.Int(16, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.Int(8),
+            "mode" / _c.Int(8),
+            "voltage" / _c.Int(16, order="little"),
+            "current" / _c.Int(16, order="little"),
+            "speed" / _c.Int(16, signed=True, order="little"),
+            "angle" / _c.Int(16, signed=True, order="little"),
+            "encoder0" / _c.Int(16, order="little"),
+            "encoder1" / _c.Int(16, order="little"),
+            "encoder2" / _c.Int(16, order="little"),
+            "encoder3" / _c.Int(16, order="little"),
+            "roll" / _c.Int(16, signed=True, order="little"),
+            "pitch" / _c.Int(16, signed=True, order="little"),
+            "yaw" / _c.Int(16, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(8, named=StatusStatus)),
-        ("mode", _rt.IntegerRule(8, named=RobotMode)),
-        ("voltage", _rt.IntegerRule(16, unit="mV")),
-        ("current", _rt.IntegerRule(16, special={"read_error": 65535}, unit="mA")),
-        ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
-        ("angle", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
-        ("encoder0", _rt.IntegerRule(16, unit="mm")),
-        ("encoder1", _rt.IntegerRule(16, unit="mm")),
-        ("encoder2", _rt.IntegerRule(16, unit="mm")),
-        ("encoder3", _rt.IntegerRule(16, unit="mm")),
-        ("roll", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
-        ("pitch", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
-        ("yaw", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="deg")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(8, named=StatusStatus)),
+            ("mode", _rt.IntegerRule(8, named=RobotMode)),
+            ("voltage", _rt.IntegerRule(16, unit="mV")),
+            ("current", _rt.IntegerRule(16, special={"read_error": 65535}, unit="mA")),
+            ("speed", _rt.IntegerRule(16, signed=True, unit="mm/s")),
+            ("angle", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+            ("encoder0", _rt.IntegerRule(16, unit="mm")),
+            ("encoder1", _rt.IntegerRule(16, unit="mm")),
+            ("encoder2", _rt.IntegerRule(16, unit="mm")),
+            ("encoder3", _rt.IntegerRule(16, unit="mm")),
+            ("roll", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+            ("pitch", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+            ("yaw", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="deg")),
+        )
     )
 
     angle_deg = _rt.Physical("angle")
@@ -380,7 +407,7 @@ class Status(_rt.Message):
     """Yaw in deg, -327.68..327.67."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (004_bc163d01a5f01dc1.txt, lines 45-48).
 
@@ -395,13 +422,15 @@ class Gps(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x50,)  # command "P"
     SIZES = _rt.Sizes(0, 121)
-    FORMAT = _c.Struct(
-        "nmea" / _c.Latin1Fill(121),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "nmea" / _c.Latin1Fill(121),
+        )
     )
-    RULES = (("nmea", _rt.TextRule(greatest=121)),)
+    RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=121)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Version(_rt.Message):
     """Which robot this is, and its firmware (esp/matty-v4.txt, lines 52-55)."""
 
@@ -415,20 +444,24 @@ class Version(_rt.Message):
     SENDERS = ("esp",)
     IDENTITY = (0x56,)  # command "V"
     SIZES = _rt.Sizes(2, 2)
-    FORMAT = _c.Struct(
-        "serial_number" / _c.Int(8),
-        "version" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "serial_number" / _c.Int(8),
+            "version" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("serial_number", _rt.IntegerRule(8)),
-        ("version", _rt.IntegerRule(8)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("serial_number", _rt.IntegerRule(8)),
+            ("version", _rt.IntegerRule(8)),
+        )
     )
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -438,34 +471,36 @@ class Parts:
     """Which command or message this is."""
 
 
-PC_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("sync", b"U"),
-        _rt.LengthPart(
-            "length",
-            _rt.Number(8),
-            counts=("counter", "command", "payload"),
-            least=2,
-            greatest=124,
+def _pc_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("sync", b"U"),
+            _rt.LengthPart(
+                "length",
+                _rt.Number(8),
+                counts=("counter", "command", "payload"),
+                least=2,
+                greatest=124,
+            ),
+            _rt.CounterPart("counter", _rt.Number(8), least=0, greatest=255),
+            _rt.IdentityPart("command", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "crc",
+                _rt.Number(8),
+                algorithm=_checksum.Sum8(negated=True),
+                covers=("length", "counter", "command", "payload"),
+            ),
         ),
-        _rt.CounterPart("counter", _rt.Number(8), least=0, greatest=255),
-        _rt.IdentityPart("command", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "crc",
-            _rt.Number(8),
-            algorithm=_checksum.Sum8(negated=True),
-            covers=("length", "counter", "command", "payload"),
-        ),
-    ),
-    start=_rt.StartLiteral(b"U", protected=True),
-    end=None,
-    least=5,
-    greatest=252,
-    greatest_payload=122,
-    transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
-    stuffed=("length", "counter", "command", "payload", "crc"),
-)
+        start=_rt.StartLiteral(b"U", protected=True),
+        end=None,
+        least=5,
+        greatest=252,
+        greatest_payload=122,
+        transparency=_transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert"),
+        stuffed=("length", "counter", "command", "payload", "crc"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -1107,7 +1142,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
     "pc",
-    PC_FRAME,
+    _pc_frame_spec,
     Parts,
     messages=(Stop, Reset, Mode, Go, Limits, Timing, GpsMode, VersionQuery, Led),
     cut=_cut_pc,
@@ -1115,15 +1150,15 @@ PC_SENDER: _rt.SenderSpec[PcMessage, Parts] = _rt.SenderSpec(
 )
 ESP_SENDER: _rt.SenderSpec[EspMessage, Parts] = _rt.SenderSpec(
     "esp",
-    PC_FRAME,
+    _pc_frame_spec,
     Parts,
     messages=(Ack, Nack, Status, Gps, Version),
     cut=_cut_esp,
     waits=_waits_esp,
 )
-PC_FORMAT = _rt.FrameFormat(PC_SENDER)
+PC_FORMAT: _rt.FrameFormat
 """The frame of pc as a construct declaration."""
-ESP_FORMAT = _rt.FrameFormat(ESP_SENDER)
+ESP_FORMAT: _rt.FrameFormat
 """The frame of esp as a construct declaration."""
 PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     "matty_v4",
@@ -1131,6 +1166,10 @@ PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     ESP_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), PC_FORMAT=PC_SENDER, ESP_FORMAT=ESP_SENDER)
 
 
 def encode(

@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "c6c32f0e21623c09fce54740524abf73e27033a6c90c7ea41df4db600404903a"
@@ -82,7 +81,7 @@ class IoValue(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SonarDataReadings(_rt.Record):
     """Sonar data readings (lines 226-229)."""
 
@@ -93,20 +92,24 @@ class SonarDataReadings(_rt.Record):
     """Sonar data of this cluster; the document gives no unit, 0..65535, 32766 = invalid (lines
     227-228)."""
 
-    FORMAT = _c.Struct(
-        "cluster" / _c.Int(8),
-        "distance" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "cluster" / _c.Int(8),
+            "distance" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("cluster", _rt.IntegerRule(8)),
-        ("distance", _rt.IntegerRule(16, special={"invalid": 32766})),
+    RULES = _rt.lazily(
+        lambda: (
+            ("cluster", _rt.IntegerRule(8)),
+            ("distance", _rt.IntegerRule(16, special={"invalid": 32766})),
+        )
     )
 
 
 # --- messages of linux ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class RequestSystemStatus(_rt.Message):
     """Requests the system status (lines 52, 55)."""
 
@@ -115,11 +118,11 @@ class RequestSystemStatus(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor00(_rt.Message):
     """Motor packet 00, whose purpose the document does not know (lines 67-75)."""
 
@@ -131,13 +134,15 @@ class Motor00(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x00)
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(8),
+        )
     )
-    RULES = (("unknown", _rt.IntegerRule(8)),)
+    RULES = _rt.lazily(lambda: (("unknown", _rt.IntegerRule(8)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorCommand(_rt.Message):
     """Sets the velocity of one axis (lines 79, 83-89)."""
 
@@ -157,23 +162,27 @@ class MotorCommand(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(14, 14)
-    FORMAT = _c.Struct(
-        "axis" / _c.Int(8),
-        "velocity" / _c.Int(32, order="big"),
-        "acceleration" / _c.Int(32, order="big"),
-        "torque" / _c.Int(32, order="big"),
-        "direction" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "axis" / _c.Int(8),
+            "velocity" / _c.Int(32, order="big"),
+            "acceleration" / _c.Int(32, order="big"),
+            "torque" / _c.Int(32, order="big"),
+            "direction" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("axis", _rt.IntegerRule(8, named=Axis)),
-        ("velocity", _rt.IntegerRule(32)),
-        ("acceleration", _rt.IntegerRule(32)),
-        ("torque", _rt.IntegerRule(32)),
-        ("direction", _rt.IntegerRule(8, named=MotorCommandDirection)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+            ("velocity", _rt.IntegerRule(32)),
+            ("acceleration", _rt.IntegerRule(32)),
+            ("torque", _rt.IntegerRule(32)),
+            ("direction", _rt.IntegerRule(8, named=MotorCommandDirection)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor0a(_rt.Message):
     """Motor packet 0A, whose purpose the document does not know; sent at startup (lines 101, ...
 
@@ -186,11 +195,11 @@ class Motor0a(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0A)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor0c(_rt.Message):
     """Motor packet 0C, whose purpose the document does not know; sent at startup (lines 108, ...
 
@@ -203,11 +212,11 @@ class Motor0c(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class StartStopMotorPackets(_rt.Message):
     """Starts or stops the sending of motor packets (lines 136, 139-141)."""
 
@@ -221,17 +230,21 @@ class StartStopMotorPackets(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "start_stop" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "start_stop" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("start_stop", _rt.IntegerRule(32, named=StartStopMotorPacketsStartStop)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("start_stop", _rt.IntegerRule(32, named=StartStopMotorPacketsStartStop)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (lines 157, 160)."""
 
@@ -240,11 +253,11 @@ class RequestJoystickData(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class StartStopSonarPackets(_rt.Message):
     """Starts or stops the sending of sonar packets (lines 195, 199-203)."""
 
@@ -262,21 +275,25 @@ class StartStopSonarPackets(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(13, 13)
-    FORMAT = _c.Struct(
-        "frequency" / _c.Int(32, order="big"),
-        "unknown_1" / _c.Int(32, order="big"),
-        "unknown_2" / _c.Int(8),
-        "start_stop" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "frequency" / _c.Int(32, order="big"),
+            "unknown_1" / _c.Int(32, order="big"),
+            "unknown_2" / _c.Int(8),
+            "start_stop" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("frequency", _rt.IntegerRule(32)),
-        ("unknown_1", _rt.IntegerRule(32)),
-        ("unknown_2", _rt.IntegerRule(8)),
-        ("start_stop", _rt.IntegerRule(32, named=StartStopSonarPacketsStartStop)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("frequency", _rt.IntegerRule(32)),
+            ("unknown_1", _rt.IntegerRule(32)),
+            ("unknown_2", _rt.IntegerRule(8)),
+            ("start_stop", _rt.IntegerRule(32, named=StartStopSonarPacketsStartStop)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class InitializeDigitalIo(_rt.Message):
     """Initialises the digital I/O; starts or stops the sending of its packets (lines 246, ...
 
@@ -293,13 +310,15 @@ class InitializeDigitalIo(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (("unknown", _rt.IntegerRule(32)),)
+    RULES = _rt.lazily(lambda: (("unknown", _rt.IntegerRule(32)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class CheckIoChanged(_rt.Message):
     """Asks whether digital inputs have changed (lines 261, 264-265)."""
 
@@ -311,16 +330,18 @@ class CheckIoChanged(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (("timestamp", _rt.IntegerRule(32)),)
+    RULES = _rt.lazily(lambda: (("timestamp", _rt.IntegerRule(32)),))
 
 
 # --- messages of flex ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SystemStatus(_rt.Message):
     """Battery and brake status (lines 52, 58-61)."""
 
@@ -336,19 +357,23 @@ class SystemStatus(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(9, 9)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "battery_voltage" / _c.Int(32, order="big"),
-        "brake" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "battery_voltage" / _c.Int(32, order="big"),
+            "brake" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("battery_voltage", _rt.IntegerRule(32)),
-        ("brake", _rt.IntegerRule(8, named=SystemStatusBrake)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("battery_voltage", _rt.IntegerRule(32)),
+            ("brake", _rt.IntegerRule(8, named=SystemStatusBrake)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmMotorCommand(_rt.Message):
     """Confirms a motor command (lines 80, 92-95)."""
 
@@ -364,19 +389,23 @@ class ConfirmMotorCommand(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(9, 9)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "axis" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "axis" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("axis", _rt.IntegerRule(8, named=Axis)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Motor0cAnswer(_rt.Message):
     """Answers motor packet 0C (lines 108, 117-119)."""
 
@@ -390,17 +419,21 @@ class Motor0cAnswer(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ReadMotor(_rt.Message):
     """State of one axis, sent while motor packets are on (lines 125-133)."""
 
@@ -424,27 +457,31 @@ class ReadMotor(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x21)
     SIZES = _rt.Sizes(25, 25)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "axis" / _c.Int(8),
-        "position" / _c.Int(32, signed=True, order="big"),
-        "velocity" / _c.Int(32, signed=True, order="big"),
-        "acceleration" / _c.Int(32, signed=True, order="big"),
-        "torque" / _c.Int(32, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "axis" / _c.Int(8),
+            "position" / _c.Int(32, signed=True, order="big"),
+            "velocity" / _c.Int(32, signed=True, order="big"),
+            "acceleration" / _c.Int(32, signed=True, order="big"),
+            "torque" / _c.Int(32, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("axis", _rt.IntegerRule(8, named=Axis)),
-        ("position", _rt.IntegerRule(32, signed=True)),
-        ("velocity", _rt.IntegerRule(32, signed=True)),
-        ("acceleration", _rt.IntegerRule(32, signed=True)),
-        ("torque", _rt.IntegerRule(32, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+            ("position", _rt.IntegerRule(32, signed=True)),
+            ("velocity", _rt.IntegerRule(32, signed=True)),
+            ("acceleration", _rt.IntegerRule(32, signed=True)),
+            ("torque", _rt.IntegerRule(32, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmStartStopMotorPackets(_rt.Message):
     """Confirms the start or the stop of motor packets (lines 137, 148-150)."""
 
@@ -458,17 +495,21 @@ class ConfirmStartStopMotorPackets(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class JoystickData(_rt.Message):
     """Position and buttons of the joystick (lines 157, 167-171)."""
 
@@ -486,21 +527,25 @@ class JoystickData(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(13, 13)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "horizontal" / _c.Int(32, signed=True, order="big"),
-        "vertical" / _c.Int(32, signed=True, order="big"),
-        "buttons" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "horizontal" / _c.Int(32, signed=True, order="big"),
+            "vertical" / _c.Int(32, signed=True, order="big"),
+            "buttons" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("horizontal", _rt.IntegerRule(32, signed=True)),
-        ("vertical", _rt.IntegerRule(32, signed=True)),
-        ("buttons", _rt.IntegerRule(8, named=JoystickDataButtons)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("horizontal", _rt.IntegerRule(32, signed=True)),
+            ("vertical", _rt.IntegerRule(32, signed=True)),
+            ("buttons", _rt.IntegerRule(8, named=JoystickDataButtons)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmStartStopSonarPackets(_rt.Message):
     """Confirms the start or the stop of sonar packets (lines 196, 213-215)."""
 
@@ -514,17 +559,21 @@ class ConfirmStartStopSonarPackets(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SonarData(_rt.Message):
     """Readings of the sonars of one fire group (lines 180-182, 220-239).
 
@@ -545,19 +594,23 @@ class SonarData(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x02)
     SIZES = _rt.Sizes(8, 254, step=3)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "readings" / _c.Fill(SonarDataReadings.FORMAT, 82),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "readings" / _c.Fill(SonarDataReadings.FORMAT, 82),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("readings", _rt.ArrayRule(_rt.StructRule(SonarDataReadings), greatest=82)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("readings", _rt.ArrayRule(_rt.StructRule(SonarDataReadings), greatest=82)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmInitializeDigitalIo(_rt.Message):
     """Confirms that sending of digital I/O packets has started or stopped (lines 301, 309).
 
@@ -574,17 +627,21 @@ class ConfirmInitializeDigitalIo(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ChangedBumpers(_rt.Message):
     """Bumpers that have changed (lines 253, 257-258).
 
@@ -604,19 +661,23 @@ class ChangedBumpers(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x01)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "position" / _c.Int(8),
-        "value" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "position" / _c.Int(8),
+            "value" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("position", _rt.IntegerRule(8)),
-        ("value", _rt.IntegerRule(16, named=IoValue)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("position", _rt.IntegerRule(8)),
+            ("value", _rt.IntegerRule(16, named=IoValue)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class CheckIoChangedAnswer(_rt.Message):
     """Says how many packets answer the check (lines 261, 269-273)."""
 
@@ -632,19 +693,23 @@ class CheckIoChangedAnswer(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(12, 12)
-    FORMAT = _c.Struct(
-        "unknown" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "package_count" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "package_count" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("unknown", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("package_count", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("package_count", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ChangedByte(_rt.Message):
     """New value of a byte of the digital I/O (lines 275, 278-281)."""
 
@@ -661,22 +726,26 @@ class ChangedByte(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x03)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "position" / _c.Int(8),
-        "value" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "position" / _c.Int(8),
+            "value" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("position", _rt.IntegerRule(8)),
-        ("value", _rt.IntegerRule(16, named=IoValue)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("position", _rt.IntegerRule(8)),
+            ("value", _rt.IntegerRule(16, named=IoValue)),
+        )
     )
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -689,59 +758,63 @@ class Parts:
     """What the packet is within its class."""
 
 
-LINUX_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("start", bytes.fromhex("1B 02")),
-        _rt.IdentityPart("class_id", _rt.Number(8)),
-        _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=255),
-        _rt.IdentityPart("subclass", _rt.Number(8)),
-        _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "checksum",
-            _rt.Number(8),
-            algorithm=_checksum.Xor8(),
-            covers=("payload",),
+def _linux_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("start", bytes.fromhex("1B 02")),
+            _rt.IdentityPart("class_id", _rt.Number(8)),
+            _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=255),
+            _rt.IdentityPart("subclass", _rt.Number(8)),
+            _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "checksum",
+                _rt.Number(8),
+                algorithm=_checksum.Xor8(),
+                covers=("payload",),
+            ),
+            _rt.LiteralPart("end", bytes.fromhex("1B 03")),
         ),
-        _rt.LiteralPart("end", bytes.fromhex("1B 03")),
-    ),
-    start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
-    end=_rt.End(bytes.fromhex("1B 03"), protected=True),
-    least=9,
-    greatest=782,
-    greatest_payload=255,
-    transparency=_transparency.Substitution(
-        {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
-    ),
-    stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
-)
+        start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
+        end=_rt.End(bytes.fromhex("1B 03"), protected=True),
+        least=9,
+        greatest=782,
+        greatest_payload=255,
+        transparency=_transparency.Substitution(
+            {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
+        ),
+        stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
+    )
 
-FLEX_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("start", bytes.fromhex("1B 02")),
-        _rt.IdentityPart("class_id", _rt.Number(8)),
-        _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=255),
-        _rt.IdentityPart("subclass", _rt.Number(8)),
-        _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "checksum",
-            _rt.Number(8),
-            algorithm=_checksum.Xor8(),
-            covers=("payload",),
+
+def _flex_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("start", bytes.fromhex("1B 02")),
+            _rt.IdentityPart("class_id", _rt.Number(8)),
+            _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=255),
+            _rt.IdentityPart("subclass", _rt.Number(8)),
+            _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "checksum",
+                _rt.Number(8),
+                algorithm=_checksum.Xor8(),
+                covers=("payload",),
+            ),
+            _rt.LiteralPart("end", bytes.fromhex("1B 03")),
         ),
-        _rt.LiteralPart("end", bytes.fromhex("1B 03")),
-    ),
-    start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
-    end=_rt.End(bytes.fromhex("1B 03"), protected=True),
-    least=16,
-    greatest=782,
-    greatest_payload=255,
-    transparency=_transparency.Substitution(
-        {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
-    ),
-    stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
-)
+        start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
+        end=_rt.End(bytes.fromhex("1B 03"), protected=True),
+        least=16,
+        greatest=782,
+        greatest_payload=255,
+        transparency=_transparency.Substitution(
+            {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
+        ),
+        stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -1747,7 +1820,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 LINUX_SENDER: _rt.SenderSpec[LinuxMessage, Parts] = _rt.SenderSpec(
     "linux",
-    LINUX_FRAME,
+    _linux_frame_spec,
     Parts,
     messages=(
         RequestSystemStatus,
@@ -1766,7 +1839,7 @@ LINUX_SENDER: _rt.SenderSpec[LinuxMessage, Parts] = _rt.SenderSpec(
 )
 FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
     "flex",
-    FLEX_FRAME,
+    _flex_frame_spec,
     Parts,
     messages=(
         SystemStatus,
@@ -1785,9 +1858,9 @@ FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
     cut=_cut_flex,
     waits=_waits_flex,
 )
-LINUX_FORMAT = _rt.FrameFormat(LINUX_SENDER)
+LINUX_FORMAT: _rt.FrameFormat
 """The frame of linux as a construct declaration."""
-FLEX_FORMAT = _rt.FrameFormat(FLEX_SENDER)
+FLEX_FORMAT: _rt.FrameFormat
 """The frame of flex as a construct declaration."""
 PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     "rflex",
@@ -1795,6 +1868,10 @@ PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     FLEX_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), LINUX_FORMAT=LINUX_SENDER, FLEX_FORMAT=FLEX_SENDER)
 
 
 def encode(

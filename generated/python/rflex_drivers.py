@@ -13,13 +13,11 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "1505b9412ac30877e4786b80edfb26c1644687195cd01d012659df4eb4bcf04e"
@@ -84,7 +82,7 @@ class JoystickDataButtons(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SonarDataReadings(_rt.Record):
     """Sonar data readings (003_037af2f07b705118.txt, lines 226-229)."""
 
@@ -95,20 +93,24 @@ class SonarDataReadings(_rt.Record):
     """Sonar data of this cluster; the document gives no unit, 0..65535, 32766 = invalid
     (003_037af2f07b705118.txt, lines 227-228)."""
 
-    FORMAT = _c.Struct(
-        "cluster" / _c.Int(8),
-        "distance" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "cluster" / _c.Int(8),
+            "distance" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("cluster", _rt.IntegerRule(8)),
-        ("distance", _rt.IntegerRule(16, special={"invalid": 32766})),
+    RULES = _rt.lazily(
+        lambda: (
+            ("cluster", _rt.IntegerRule(8)),
+            ("distance", _rt.IntegerRule(16, special={"invalid": 32766})),
+        )
     )
 
 
 # --- messages of linux ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class RequestSystemStatus(_rt.Message):
     """Requests the system status (003_037af2f07b705118.txt, lines 52, 55)."""
 
@@ -117,11 +119,11 @@ class RequestSystemStatus(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class AxisGetSystem(_rt.Message):
     """Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75)."""
 
@@ -133,13 +135,15 @@ class AxisGetSystem(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x00)
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "axis" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "axis" / _c.Int(8),
+        )
     )
-    RULES = (("axis", _rt.IntegerRule(8, named=Axis)),)
+    RULES = _rt.lazily(lambda: (("axis", _rt.IntegerRule(8, named=Axis)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorCommand(_rt.Message):
     """Sets the velocity of one axis (003_037af2f07b705118.txt, lines 79, 83-89)."""
 
@@ -162,23 +166,27 @@ class MotorCommand(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(14, 14)
-    FORMAT = _c.Struct(
-        "axis" / _c.Int(8),
-        "velocity" / _c.Int(32, order="big"),
-        "acceleration" / _c.Int(32, order="big"),
-        "torque" / _c.Int(32, order="big"),
-        "direction" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "axis" / _c.Int(8),
+            "velocity" / _c.Int(32, order="big"),
+            "acceleration" / _c.Int(32, order="big"),
+            "torque" / _c.Int(32, order="big"),
+            "direction" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("axis", _rt.IntegerRule(8, named=Axis)),
-        ("velocity", _rt.IntegerRule(32)),
-        ("acceleration", _rt.IntegerRule(32)),
-        ("torque", _rt.IntegerRule(32)),
-        ("direction", _rt.IntegerRule(8, named=MotorCommandDirection)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+            ("velocity", _rt.IntegerRule(32)),
+            ("acceleration", _rt.IntegerRule(32)),
+            ("torque", _rt.IntegerRule(32)),
+            ("direction", _rt.IntegerRule(8, named=MotorCommandDirection)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SetDefaults(_rt.Message):
     """Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295)."""
 
@@ -187,11 +195,11 @@ class SetDefaults(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0A)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class BrakeSet(_rt.Message):
     """Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET)."""
 
@@ -200,11 +208,11 @@ class BrakeSet(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0B)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class BrakeRelease(_rt.Message):
     """Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296)."""
 
@@ -213,11 +221,11 @@ class BrakeRelease(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class StartStopMotorPackets(_rt.Message):
     """Starts or stops the sending of motor packets (003_037af2f07b705118.txt, lines 136, ...
 
@@ -235,17 +243,21 @@ class StartStopMotorPackets(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "period" / _c.Int(32, order="big"),
-        "mask" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "period" / _c.Int(32, order="big"),
+            "mask" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("period", _rt.IntegerRule(32, unit="us")),
-        ("mask", _rt.IntegerRule(32, named=StartStopMotorPacketsMask)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("period", _rt.IntegerRule(32, unit="us")),
+            ("mask", _rt.IntegerRule(32, named=StartStopMotorPacketsMask)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160)."""
 
@@ -254,11 +266,11 @@ class RequestJoystickData(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(0, 0)
-    FORMAT = _c.Struct()
+    FORMAT = _rt.lazily(_c.empty)
     RULES = ()
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class StartStopSonarPackets(_rt.Message):
     """Starts or stops the sending of sonar packets (003_037af2f07b705118.txt, lines 195, ...
 
@@ -280,21 +292,25 @@ class StartStopSonarPackets(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(13, 13)
-    FORMAT = _c.Struct(
-        "echo_delay" / _c.Int(32, order="big"),
-        "ping_delay" / _c.Int(32, order="big"),
-        "set_delay" / _c.Int(32, order="big"),
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "echo_delay" / _c.Int(32, order="big"),
+            "ping_delay" / _c.Int(32, order="big"),
+            "set_delay" / _c.Int(32, order="big"),
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("echo_delay", _rt.IntegerRule(32, unit="us")),
-        ("ping_delay", _rt.IntegerRule(32, unit="us")),
-        ("set_delay", _rt.IntegerRule(32, unit="us")),
-        ("mode", _rt.IntegerRule(8, named=StartStopSonarPacketsMode)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("echo_delay", _rt.IntegerRule(32, unit="us")),
+            ("ping_delay", _rt.IntegerRule(32, unit="us")),
+            ("set_delay", _rt.IntegerRule(32, unit="us")),
+            ("mode", _rt.IntegerRule(8, named=StartStopSonarPacketsMode)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class InitializeDigitalIo(_rt.Message):
     """Initialises the digital I/O; starts or stops the sending of its packets ...
 
@@ -311,13 +327,15 @@ class InitializeDigitalIo(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "period" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "period" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (("period", _rt.IntegerRule(32, unit="us")),)
+    RULES = _rt.lazily(lambda: (("period", _rt.IntegerRule(32, unit="us")),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class CheckIoChanged(_rt.Message):
     """Asks whether digital inputs have changed (003_037af2f07b705118.txt, lines 261, 264-265)."""
 
@@ -329,13 +347,15 @@ class CheckIoChanged(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (("timestamp", _rt.IntegerRule(32)),)
+    RULES = _rt.lazily(lambda: (("timestamp", _rt.IntegerRule(32)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class IrRun(_rt.Message):
     """Starts or stops the infrared sensors (rflex_commands.cc, rflex_ir_on, rflex_ir_off)."""
 
@@ -358,28 +378,32 @@ class IrRun(_rt.Message):
     SENDERS = ("linux",)
     IDENTITY = (0x06, 0x00)
     SIZES = _rt.Sizes(21, 21)
-    FORMAT = _c.Struct(
-        "unknown_1" / _c.Int(32, order="big"),
-        "unknown_2" / _c.Int(32, order="big"),
-        "unknown_3" / _c.Int(32, order="big"),
-        "unknown_4" / _c.Int(32, order="big"),
-        "unknown_5" / _c.Int(32, order="big"),
-        "mode" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "unknown_1" / _c.Int(32, order="big"),
+            "unknown_2" / _c.Int(32, order="big"),
+            "unknown_3" / _c.Int(32, order="big"),
+            "unknown_4" / _c.Int(32, order="big"),
+            "unknown_5" / _c.Int(32, order="big"),
+            "mode" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("unknown_1", _rt.IntegerRule(32)),
-        ("unknown_2", _rt.IntegerRule(32)),
-        ("unknown_3", _rt.IntegerRule(32)),
-        ("unknown_4", _rt.IntegerRule(32)),
-        ("unknown_5", _rt.IntegerRule(32)),
-        ("mode", _rt.IntegerRule(8, named=IrRunMode)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("unknown_1", _rt.IntegerRule(32)),
+            ("unknown_2", _rt.IntegerRule(32)),
+            ("unknown_3", _rt.IntegerRule(32)),
+            ("unknown_4", _rt.IntegerRule(32)),
+            ("unknown_5", _rt.IntegerRule(32)),
+            ("mode", _rt.IntegerRule(8, named=IrRunMode)),
+        )
     )
 
 
 # --- messages of flex ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SystemStatus(_rt.Message):
     """Battery and brake status (003_037af2f07b705118.txt, lines 52, 58-61)."""
 
@@ -396,15 +420,19 @@ class SystemStatus(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x01)
     SIZES = _rt.Sizes(9, 9)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "battery_voltage" / _c.Int(32, order="big"),
-        "brake" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "battery_voltage" / _c.Int(32, order="big"),
+            "brake" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("battery_voltage", _rt.IntegerRule(32, scale=_Fraction(1, 100), unit="V")),
-        ("brake", _rt.IntegerRule(8, named=SystemStatusBrake)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("battery_voltage", _rt.IntegerRule(32, scale=_rt.Fraction(1, 100), unit="V")),
+            ("brake", _rt.IntegerRule(8, named=SystemStatusBrake)),
+        )
     )
 
     battery_voltage_v = _rt.Physical("battery_voltage")
@@ -412,7 +440,7 @@ class SystemStatus(_rt.Message):
     0..42949672.95."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class LcdDump(_rt.Message):
     """One row of the display (rflex-protocol.txt, SYS_LCD_DUMP)."""
 
@@ -431,21 +459,25 @@ class LcdDump(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x01, 0x00)
     SIZES = _rt.Sizes(6, 255)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "row" / _c.Int(8),
-        "byte_count" / _c.Int(8),
-        "pixels" / _c.Octets("byte_count"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "row" / _c.Int(8),
+            "byte_count" / _c.Int(8),
+            "pixels" / _c.Octets("byte_count"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("row", _rt.IntegerRule(8)),
-        ("byte_count", _rt.IntegerRule(8)),
-        ("pixels", _rt.OctetsRule(size="byte_count")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("row", _rt.IntegerRule(8)),
+            ("byte_count", _rt.IntegerRule(8)),
+            ("pixels", _rt.OctetsRule(size="byte_count")),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmMotorCommand(_rt.Message):
     """Confirms a motor command (003_037af2f07b705118.txt, lines 80, 92-95)."""
 
@@ -462,19 +494,23 @@ class ConfirmMotorCommand(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x07)
     SIZES = _rt.Sizes(9, 9)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "axis" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "axis" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("axis", _rt.IntegerRule(8, named=Axis)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class BrakeReleaseAnswer(_rt.Message):
     """Answers the release of the brake (003_037af2f07b705118.txt, lines 108, 117-119)."""
 
@@ -489,17 +525,21 @@ class BrakeReleaseAnswer(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x0C)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ReadMotor(_rt.Message):
     """State of one axis, sent while motor packets are on (003_037af2f07b705118.txt, lines ...
 
@@ -527,27 +567,31 @@ class ReadMotor(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x21)
     SIZES = _rt.Sizes(25, 25)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "axis" / _c.Int(8),
-        "position" / _c.Int(32, signed=True, order="big"),
-        "velocity" / _c.Int(32, signed=True, order="big"),
-        "acceleration" / _c.Int(32, signed=True, order="big"),
-        "torque" / _c.Int(32, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "axis" / _c.Int(8),
+            "position" / _c.Int(32, signed=True, order="big"),
+            "velocity" / _c.Int(32, signed=True, order="big"),
+            "acceleration" / _c.Int(32, signed=True, order="big"),
+            "torque" / _c.Int(32, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("axis", _rt.IntegerRule(8, named=Axis)),
-        ("position", _rt.IntegerRule(32, signed=True)),
-        ("velocity", _rt.IntegerRule(32, signed=True)),
-        ("acceleration", _rt.IntegerRule(32, signed=True)),
-        ("torque", _rt.IntegerRule(32, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("axis", _rt.IntegerRule(8, named=Axis)),
+            ("position", _rt.IntegerRule(32, signed=True)),
+            ("velocity", _rt.IntegerRule(32, signed=True)),
+            ("acceleration", _rt.IntegerRule(32, signed=True)),
+            ("torque", _rt.IntegerRule(32, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmStartStopMotorPackets(_rt.Message):
     """Confirms the start or the stop of motor packets (003_037af2f07b705118.txt, lines 137, ...
 
@@ -565,17 +609,21 @@ class ConfirmStartStopMotorPackets(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x02, 0x22)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class JoystickData(_rt.Message):
     """Position and buttons of the joystick (003_037af2f07b705118.txt, lines 157, 167-171)."""
 
@@ -593,21 +641,25 @@ class JoystickData(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x03, 0x00)
     SIZES = _rt.Sizes(13, 13)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "horizontal" / _c.Int(32, signed=True, order="big"),
-        "vertical" / _c.Int(32, signed=True, order="big"),
-        "buttons" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "horizontal" / _c.Int(32, signed=True, order="big"),
+            "vertical" / _c.Int(32, signed=True, order="big"),
+            "buttons" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("horizontal", _rt.IntegerRule(32, signed=True)),
-        ("vertical", _rt.IntegerRule(32, signed=True)),
-        ("buttons", _rt.IntegerRule(8, named=JoystickDataButtons)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("horizontal", _rt.IntegerRule(32, signed=True)),
+            ("vertical", _rt.IntegerRule(32, signed=True)),
+            ("buttons", _rt.IntegerRule(8, named=JoystickDataButtons)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmStartStopSonarPackets(_rt.Message):
     """Confirms the start or the stop of sonar packets (003_037af2f07b705118.txt, lines 196, ...
 
@@ -625,17 +677,21 @@ class ConfirmStartStopSonarPackets(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x00)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class SonarData(_rt.Message):
     """Readings of the sonars of one fire group (003_037af2f07b705118.txt, lines 180-182, ...
 
@@ -658,19 +714,23 @@ class SonarData(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x04, 0x02)
     SIZES = _rt.Sizes(8, 254, step=3)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "readings" / _c.Fill(SonarDataReadings.FORMAT, 82),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "readings" / _c.Fill(SonarDataReadings.FORMAT, 82),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("readings", _rt.ArrayRule(_rt.StructRule(SonarDataReadings), greatest=82)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("readings", _rt.ArrayRule(_rt.StructRule(SonarDataReadings), greatest=82)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ConfirmInitializeDigitalIo(_rt.Message):
     """Confirms that sending of digital I/O packets has started or stopped ...
 
@@ -689,17 +749,21 @@ class ConfirmInitializeDigitalIo(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x00)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ChangedBumpers(_rt.Message):
     """Bumpers that have changed (003_037af2f07b705118.txt, lines 253, 257-258)."""
 
@@ -716,19 +780,23 @@ class ChangedBumpers(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x01)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "address" / _c.Int(8),
-        "data" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "address" / _c.Int(8),
+            "data" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("address", _rt.IntegerRule(8)),
-        ("data", _rt.IntegerRule(16)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("address", _rt.IntegerRule(8)),
+            ("data", _rt.IntegerRule(16)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class CheckIoChangedAnswer(_rt.Message):
     """Says how many packets answer the check (003_037af2f07b705118.txt, lines 261, 269-273)."""
 
@@ -746,19 +814,23 @@ class CheckIoChangedAnswer(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x02)
     SIZES = _rt.Sizes(12, 12)
-    FORMAT = _c.Struct(
-        "retval" / _c.Int(32, order="big"),
-        "timestamp" / _c.Int(32, order="big"),
-        "package_count" / _c.Int(32, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "retval" / _c.Int(32, order="big"),
+            "timestamp" / _c.Int(32, order="big"),
+            "package_count" / _c.Int(32, order="big"),
+        )
     )
-    RULES = (
-        ("retval", _rt.IntegerRule(32)),
-        ("timestamp", _rt.IntegerRule(32)),
-        ("package_count", _rt.IntegerRule(32)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("retval", _rt.IntegerRule(32)),
+            ("timestamp", _rt.IntegerRule(32)),
+            ("package_count", _rt.IntegerRule(32)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class ChangedByte(_rt.Message):
     """New value of a byte of the digital I/O (003_037af2f07b705118.txt, lines 275, 278-281)."""
 
@@ -775,19 +847,23 @@ class ChangedByte(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x05, 0x03)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "timestamp" / _c.Int(32, order="big"),
-        "address" / _c.Int(8),
-        "data" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "timestamp" / _c.Int(32, order="big"),
+            "address" / _c.Int(8),
+            "data" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("timestamp", _rt.IntegerRule(32)),
-        ("address", _rt.IntegerRule(8)),
-        ("data", _rt.IntegerRule(16)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("timestamp", _rt.IntegerRule(32)),
+            ("address", _rt.IntegerRule(8)),
+            ("data", _rt.IntegerRule(16)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class IrReport(_rt.Message):
     """Readings of the infrared sensors (rflex_commands.cc, parseIrReport).
 
@@ -802,16 +878,18 @@ class IrReport(_rt.Message):
     SENDERS = ("flex",)
     IDENTITY = (0x06, 0x01)
     SIZES = _rt.Sizes(1, 255)
-    FORMAT = _c.Struct(
-        "data" / _c.OctetsFill(255),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "data" / _c.OctetsFill(255),
+        )
     )
-    RULES = (("data", _rt.OctetsRule(greatest=255)),)
+    RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=255)),))
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -825,59 +903,63 @@ class Parts:
     """What the packet is within its class."""
 
 
-LINUX_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("start", bytes.fromhex("1B 02")),
-        _rt.IdentityPart("class_id", _rt.Number(8)),
-        _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=0),
-        _rt.IdentityPart("subclass", _rt.Number(8)),
-        _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "checksum",
-            _rt.Number(8),
-            algorithm=_checksum.Xor8(),
-            covers=("class_id", "number", "subclass", "length", "payload"),
+def _linux_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("start", bytes.fromhex("1B 02")),
+            _rt.IdentityPart("class_id", _rt.Number(8)),
+            _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=0),
+            _rt.IdentityPart("subclass", _rt.Number(8)),
+            _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "checksum",
+                _rt.Number(8),
+                algorithm=_checksum.Xor8(),
+                covers=("class_id", "number", "subclass", "length", "payload"),
+            ),
+            _rt.LiteralPart("end", bytes.fromhex("1B 03")),
         ),
-        _rt.LiteralPart("end", bytes.fromhex("1B 03")),
-    ),
-    start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
-    end=_rt.End(bytes.fromhex("1B 03"), protected=True),
-    least=9,
-    greatest=780,
-    greatest_payload=255,
-    transparency=_transparency.Substitution(
-        {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
-    ),
-    stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
-)
+        start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
+        end=_rt.End(bytes.fromhex("1B 03"), protected=True),
+        least=9,
+        greatest=780,
+        greatest_payload=255,
+        transparency=_transparency.Substitution(
+            {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
+        ),
+        stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
+    )
 
-FLEX_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("start", bytes.fromhex("1B 02")),
-        _rt.IdentityPart("class_id", _rt.Number(8)),
-        _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=0),
-        _rt.IdentityPart("subclass", _rt.Number(8)),
-        _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
-        _rt.PayloadPart("payload"),
-        _rt.ChecksumPart(
-            "checksum",
-            _rt.Number(8),
-            algorithm=_checksum.Xor8(),
-            covers=("class_id", "number", "subclass", "length", "payload"),
+
+def _flex_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("start", bytes.fromhex("1B 02")),
+            _rt.IdentityPart("class_id", _rt.Number(8)),
+            _rt.ValuePart("number", _rt.Number(8), least=0, greatest=255, default=0),
+            _rt.IdentityPart("subclass", _rt.Number(8)),
+            _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
+            _rt.PayloadPart("payload"),
+            _rt.ChecksumPart(
+                "checksum",
+                _rt.Number(8),
+                algorithm=_checksum.Xor8(),
+                covers=("class_id", "number", "subclass", "length", "payload"),
+            ),
+            _rt.LiteralPart("end", bytes.fromhex("1B 03")),
         ),
-        _rt.LiteralPart("end", bytes.fromhex("1B 03")),
-    ),
-    start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
-    end=_rt.End(bytes.fromhex("1B 03"), protected=True),
-    least=10,
-    greatest=780,
-    greatest_payload=255,
-    transparency=_transparency.Substitution(
-        {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
-    ),
-    stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
-)
+        start=_rt.StartLiteral(bytes.fromhex("1B 02"), protected=True),
+        end=_rt.End(bytes.fromhex("1B 03"), protected=True),
+        least=10,
+        greatest=780,
+        greatest_payload=255,
+        transparency=_transparency.Substitution(
+            {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
+        ),
+        stuffed=("class_id", "number", "subclass", "length", "payload", "checksum"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -2023,7 +2105,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 LINUX_SENDER: _rt.SenderSpec[LinuxMessage, Parts] = _rt.SenderSpec(
     "linux",
-    LINUX_FRAME,
+    _linux_frame_spec,
     Parts,
     messages=(
         RequestSystemStatus,
@@ -2044,7 +2126,7 @@ LINUX_SENDER: _rt.SenderSpec[LinuxMessage, Parts] = _rt.SenderSpec(
 )
 FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
     "flex",
-    FLEX_FRAME,
+    _flex_frame_spec,
     Parts,
     messages=(
         SystemStatus,
@@ -2065,9 +2147,9 @@ FLEX_SENDER: _rt.SenderSpec[FlexMessage, Parts] = _rt.SenderSpec(
     cut=_cut_flex,
     waits=_waits_flex,
 )
-LINUX_FORMAT = _rt.FrameFormat(LINUX_SENDER)
+LINUX_FORMAT: _rt.FrameFormat
 """The frame of linux as a construct declaration."""
-FLEX_FORMAT = _rt.FrameFormat(FLEX_SENDER)
+FLEX_FORMAT: _rt.FrameFormat
 """The frame of flex as a construct declaration."""
 PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     "rflex_drivers",
@@ -2075,6 +2157,10 @@ PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     FLEX_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), LINUX_FORMAT=LINUX_SENDER, FLEX_FORMAT=FLEX_SENDER)
 
 
 def encode(

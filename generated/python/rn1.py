@@ -14,13 +14,10 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from dataclasses import field as _field
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 
 SPEC_HASH = "565ea17f0e53401a51734accef5f6311e381b9176fff89e4804f1d33d5f40210"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
@@ -77,36 +74,40 @@ class SonarStatus(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MaintenanceArgumentReconfigUart(_rt.Record):
     """The speed."""
 
     baud_rate_register: int
     """What the STM32F205 gets to hold in its baud rate register, 0..65535 (line 46)."""
 
-    FORMAT = _c.Struct(
-        "baud_rate_register" / _c.SevenBit(16, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "baud_rate_register" / _c.SevenBit(16, order="little"),
+        )
     )
-    RULES = (("baud_rate_register", _rt.IntegerRule(16)),)
+    RULES = _rt.lazily(lambda: (("baud_rate_register", _rt.IntegerRule(16)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     """The motor controller."""
 
     motor_controller: int
     """Number of the motor controller, 1..4 (line 53)."""
 
-    FORMAT = _c.Struct(
-        "motor_controller" / _c.SevenBit(7),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "motor_controller" / _c.SevenBit(7),
+        )
     )
-    RULES = (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),)
+    RULES = _rt.lazily(lambda: (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),))
 
 
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MoveManual(_rt.Message):
     """Drive by hand, with a speed and an arc (lines 27-29)."""
 
@@ -120,17 +121,21 @@ class MoveManual(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(2, 2)
-    FORMAT = _c.Struct(
-        "speed" / _c.SevenBit(7, signed=True),
-        "arc" / _c.SevenBit(7, signed=True),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.SevenBit(7, signed=True),
+            "arc" / _c.SevenBit(7, signed=True),
+        )
     )
-    RULES = (
-        ("speed", _rt.IntegerRule(7, signed=True)),
-        ("arc", _rt.IntegerRule(7, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("speed", _rt.IntegerRule(7, signed=True)),
+            ("arc", _rt.IntegerRule(7, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MoveRelativeTwostep(_rt.Message):
     """Turn on the spot, then drive straight (lines 31-34)."""
 
@@ -144,20 +149,24 @@ class MoveRelativeTwostep(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "angle" / _c.SevenBit(14, signed=True, order="little"),
-        "forward" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "angle" / _c.SevenBit(14, signed=True, order="little"),
+            "forward" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("angle", _rt.IntegerRule(14, signed=True, scale=_Fraction(1, 16), unit="deg")),
-        ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("angle", _rt.IntegerRule(14, signed=True, scale=_rt.Fraction(1, 16), unit="deg")),
+            ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+        )
     )
 
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MoveRelativeArc(_rt.Message):
     """Turn and drive at the same time, along an arc (lines 36-39)."""
 
@@ -171,20 +180,24 @@ class MoveRelativeArc(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "angle" / _c.SevenBit(14, signed=True, order="little"),
-        "forward" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "angle" / _c.SevenBit(14, signed=True, order="little"),
+            "forward" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("angle", _rt.IntegerRule(14, signed=True, scale=_Fraction(1, 16), unit="deg")),
-        ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("angle", _rt.IntegerRule(14, signed=True, scale=_rt.Fraction(1, 16), unit="deg")),
+            ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+        )
     )
 
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Maintenance(_rt.Message):
     """Reconfigure the UART, cut the power or start a flasher (lines 42-56).
 
@@ -192,7 +205,7 @@ class Maintenance(_rt.Message):
     115200 8N1 and nothing on it follows this protocol any more, until the brain resets.
     """
 
-    magic: list[int] = _field(default_factory=lambda: [66, 17, 122])
+    magic: list[int] = _rt.field(default_factory=lambda: [66, 17, 122])
     """Magic key numbers, 0..127, 3 elements, constant (line 43)."""
     operation: MaintenanceOperation | int
     """What to do (lines 44-56)."""
@@ -209,44 +222,48 @@ class Maintenance(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0xFE,)
     SIZES = _rt.Sizes(4, 7)
-    FORMAT = _c.Struct(
-        "magic" / _c.Fixed(_c.Counted(3, _c.SevenBit(7)), [66, 17, 122]),
-        "operation" / _c.SevenBit(7),
-        "argument"
-        / _c.Cases(
-            "operation",
-            {
-                65: MaintenanceArgumentReconfigUart.FORMAT,
-                81: _c.Pass,
-                82: _c.Pass,
-                83: MaintenanceArgumentRunMotorControllerFlasher.FORMAT,
-            },
-            rest=_c.OctetsFill(3, seven_bit=True),
-        ),
-    )
-    RULES = (
-        ("magic", _rt.ArrayRule(_rt.IntegerRule(7), count=3, const=[66, 17, 122])),
-        ("operation", _rt.IntegerRule(7, named=MaintenanceOperation)),
-        (
-            "argument",
-            _rt.SwitchRule(
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "magic" / _c.Fixed(_c.Counted(3, _c.SevenBit(7)), [66, 17, 122]),
+            "operation" / _c.SevenBit(7),
+            "argument"
+            / _c.Cases(
                 "operation",
                 {
-                    65: _rt.StructRule(MaintenanceArgumentReconfigUart),
-                    81: None,
-                    82: None,
-                    83: _rt.StructRule(MaintenanceArgumentRunMotorControllerFlasher),
+                    65: MaintenanceArgumentReconfigUart.FORMAT,
+                    81: _c.Pass,
+                    82: _c.Pass,
+                    83: MaintenanceArgumentRunMotorControllerFlasher.FORMAT,
                 },
-                rest=_rt.OctetsRule(greatest=3),
+                rest=_c.OctetsFill(3, seven_bit=True),
             ),
-        ),
+        )
+    )
+    RULES = _rt.lazily(
+        lambda: (
+            ("magic", _rt.ArrayRule(_rt.IntegerRule(7), count=3, const=[66, 17, 122])),
+            ("operation", _rt.IntegerRule(7, named=MaintenanceOperation)),
+            (
+                "argument",
+                _rt.SwitchRule(
+                    "operation",
+                    {
+                        65: _rt.StructRule(MaintenanceArgumentReconfigUart),
+                        81: None,
+                        82: None,
+                        83: _rt.StructRule(MaintenanceArgumentRunMotorControllerFlasher),
+                    },
+                    rest=_rt.OctetsRule(greatest=3),
+                ),
+            ),
+        )
     )
 
 
 # --- messages of brain ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gyro(_rt.Message):
     """Readings of the three-axis gyroscope (lines 61-65)."""
 
@@ -264,21 +281,25 @@ class Gyro(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "int_x" / _c.SevenBit(14, signed=True, order="little"),
-        "int_y" / _c.SevenBit(14, signed=True, order="little"),
-        "int_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "int_x" / _c.SevenBit(14, signed=True, order="little"),
+            "int_y" / _c.SevenBit(14, signed=True, order="little"),
+            "int_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=GyroStatus)),
-        ("int_x", _rt.IntegerRule(14, signed=True)),
-        ("int_y", _rt.IntegerRule(14, signed=True)),
-        ("int_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=GyroStatus)),
+            ("int_x", _rt.IntegerRule(14, signed=True)),
+            ("int_y", _rt.IntegerRule(14, signed=True)),
+            ("int_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Xcel(_rt.Message):
     """Readings of the three-axis accelerometer (lines 67-71)."""
 
@@ -296,21 +317,25 @@ class Xcel(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "int_x" / _c.SevenBit(14, signed=True, order="little"),
-        "int_y" / _c.SevenBit(14, signed=True, order="little"),
-        "int_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "int_x" / _c.SevenBit(14, signed=True, order="little"),
+            "int_y" / _c.SevenBit(14, signed=True, order="little"),
+            "int_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=XcelStatus)),
-        ("int_x", _rt.IntegerRule(14, signed=True)),
-        ("int_y", _rt.IntegerRule(14, signed=True)),
-        ("int_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=XcelStatus)),
+            ("int_x", _rt.IntegerRule(14, signed=True)),
+            ("int_y", _rt.IntegerRule(14, signed=True)),
+            ("int_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Compass(_rt.Message):
     """Readings of the three-axis compass (lines 73-77)."""
 
@@ -328,21 +353,25 @@ class Compass(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "avg_x" / _c.SevenBit(14, signed=True, order="little"),
-        "avg_y" / _c.SevenBit(14, signed=True, order="little"),
-        "avg_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "avg_x" / _c.SevenBit(14, signed=True, order="little"),
+            "avg_y" / _c.SevenBit(14, signed=True, order="little"),
+            "avg_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=CompassStatus)),
-        ("avg_x", _rt.IntegerRule(14, signed=True)),
-        ("avg_y", _rt.IntegerRule(14, signed=True)),
-        ("avg_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=CompassStatus)),
+            ("avg_x", _rt.IntegerRule(14, signed=True)),
+            ("avg_y", _rt.IntegerRule(14, signed=True)),
+            ("avg_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Optflow(_rt.Message):
     """Readings of the optical flow sensor that looks at the ground (lines 79-83)."""
 
@@ -360,21 +389,25 @@ class Optflow(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x83,)
     SIZES = _rt.Sizes(6, 6)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "dx" / _c.SevenBit(14, signed=True, order="little"),
-        "dy" / _c.SevenBit(14, signed=True, order="little"),
-        "q" / _c.SevenBit(7),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "dx" / _c.SevenBit(14, signed=True, order="little"),
+            "dy" / _c.SevenBit(14, signed=True, order="little"),
+            "q" / _c.SevenBit(7),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7)),
-        ("dx", _rt.IntegerRule(14, signed=True)),
-        ("dy", _rt.IntegerRule(14, signed=True)),
-        ("q", _rt.IntegerRule(7)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7)),
+            ("dx", _rt.IntegerRule(14, signed=True)),
+            ("dy", _rt.IntegerRule(14, signed=True)),
+            ("q", _rt.IntegerRule(7)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Lidar(_rt.Message):
     """The latest full turn of the LIDAR (lines 85-90).
 
@@ -393,20 +426,27 @@ class Lidar(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x84,)
     SIZES = _rt.Sizes(721, 721)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "distances" / _c.Counted(360, _c.SevenBit(14, order="little")),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "distances" / _c.Counted(360, _c.SevenBit(14, order="little")),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=LidarStatus)),
-        (
-            "distances",
-            _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=360),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=LidarStatus)),
+            (
+                "distances",
+                _rt.ArrayRule(
+                    _rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"),
+                    count=360,
+                ),
+            ),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """The latest distances of up to seven sonars (lines 92-94)."""
 
@@ -420,20 +460,24 @@ class Sonar(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x85,)
     SIZES = _rt.Sizes(15, 15)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "distances" / _c.Counted(7, _c.SevenBit(14, order="little")),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "distances" / _c.Counted(7, _c.SevenBit(14, order="little")),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=SonarStatus)),
-        (
-            "distances",
-            _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=7),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=SonarStatus)),
+            (
+                "distances",
+                _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=7),
+            ),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Facing(_rt.Message):
     """Direction and speed of the robot as its sensors tell (lines 97-100)."""
 
@@ -449,22 +493,26 @@ class Facing(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0xA0,)
     SIZES = _rt.Sizes(5, 5)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "heading" / _c.SevenBit(14, order="little"),
-        "speed" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "heading" / _c.SevenBit(14, order="little"),
+            "speed" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7)),
-        ("heading", _rt.IntegerRule(14, unit="deg")),
-        ("speed", _rt.IntegerRule(14, signed=True, unit="mm/s")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7)),
+            ("heading", _rt.IntegerRule(14, unit="deg")),
+            ("speed", _rt.IntegerRule(14, signed=True, unit="mm/s")),
+        )
     )
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -472,29 +520,33 @@ class Parts:
     """Tells which message this is."""
 
 
-HOST_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.IdentityPart("start", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("stop", bytes.fromhex("FF")),
-    ),
-    start=_rt.StartSet(0x80, 0xFE, protected=True),
-    end=_rt.End(bytes.fromhex("FF"), protected=True),
-    least=4,
-    greatest=9,
-    greatest_payload=7,
-    seven_bit=True,
-)
+def _host_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.IdentityPart("start", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("stop", bytes.fromhex("FF")),
+        ),
+        start=_rt.StartSet(0x80, 0xFE, protected=True),
+        end=_rt.End(bytes.fromhex("FF"), protected=True),
+        least=4,
+        greatest=9,
+        greatest_payload=7,
+        seven_bit=True,
+    )
 
-BRAIN_FRAME = _rt.FrameSpec(
-    parts=(_rt.IdentityPart("start", _rt.Number(8)), _rt.PayloadPart("payload")),
-    start=_rt.StartSet(0x80, 0xFE, protected=True),
-    end=None,
-    least=6,
-    greatest=722,
-    greatest_payload=721,
-    seven_bit=True,
-)
+
+def _brain_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(_rt.IdentityPart("start", _rt.Number(8)), _rt.PayloadPart("payload")),
+        start=_rt.StartSet(0x80, 0xFE, protected=True),
+        end=None,
+        least=6,
+        greatest=722,
+        greatest_payload=721,
+        seven_bit=True,
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -1098,7 +1150,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     "host",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(MoveManual, MoveRelativeTwostep, MoveRelativeArc, Maintenance),
     cut=_cut_host,
@@ -1106,15 +1158,15 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
 )
 BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     "brain",
-    BRAIN_FRAME,
+    _brain_frame_spec,
     Parts,
     messages=(Gyro, Xcel, Compass, Optflow, Lidar, Sonar, Facing),
     cut=_cut_brain,
     waits=_waits_brain,
 )
-HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
+HOST_FORMAT: _rt.FrameFormat
 """The frame of host as a construct declaration."""
-BRAIN_FORMAT = _rt.FrameFormat(BRAIN_SENDER)
+BRAIN_FORMAT: _rt.FrameFormat
 """The frame of brain as a construct declaration."""
 PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     "rn1",
@@ -1122,6 +1174,10 @@ PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     BRAIN_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), HOST_FORMAT=HOST_SENDER, BRAIN_FORMAT=BRAIN_SENDER)
 
 
 def encode(

@@ -14,13 +14,10 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from dataclasses import field as _field
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 
 SPEC_HASH = "a8d17e0fa1202aa9fdab7fc4015dac24998a756fc884d8eaf4b7d6931bc328dd"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
@@ -71,23 +68,25 @@ class SonarStatus(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     """The motor controller."""
 
     motor_controller: int
     """Number of the motor controller, 1..4 (000_c7d74cf9c866b63b.txt, line 53)."""
 
-    FORMAT = _c.Struct(
-        "motor_controller" / _c.SevenBit(7),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "motor_controller" / _c.SevenBit(7),
+        )
     )
-    RULES = (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),)
+    RULES = _rt.lazily(lambda: (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),))
 
 
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MoveManual(_rt.Message):
     """Drive by hand, with a speed and an arc (000_c7d74cf9c866b63b.txt, lines 27-29)."""
 
@@ -102,17 +101,21 @@ class MoveManual(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(2, 2)
-    FORMAT = _c.Struct(
-        "speed" / _c.SevenBit(7, signed=True),
-        "arc" / _c.SevenBit(7, signed=True),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "speed" / _c.SevenBit(7, signed=True),
+            "arc" / _c.SevenBit(7, signed=True),
+        )
     )
-    RULES = (
-        ("speed", _rt.IntegerRule(7, signed=True)),
-        ("arc", _rt.IntegerRule(7, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("speed", _rt.IntegerRule(7, signed=True)),
+            ("arc", _rt.IntegerRule(7, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MoveRelativeTwostep(_rt.Message):
     """Turn on the spot, then drive straight (main.c, lines 433-435).
 
@@ -130,20 +133,24 @@ class MoveRelativeTwostep(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "angle" / _c.SevenBit(14, signed=True, order="big"),
-        "forward" / _c.SevenBit(14, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "angle" / _c.SevenBit(14, signed=True, order="big"),
+            "forward" / _c.SevenBit(14, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("angle", _rt.IntegerRule(14, signed=True, scale=_Fraction(1, 16), unit="deg")),
-        ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("angle", _rt.IntegerRule(14, signed=True, scale=_rt.Fraction(1, 16), unit="deg")),
+            ("forward", _rt.IntegerRule(14, signed=True, unit="mm")),
+        )
     )
 
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class DecreasePhaseAngle(_rt.Message):
     """Debugging, sends command 13 to motor controllers 2 and 3 (main.c, lines 437-441).
 
@@ -159,13 +166,15 @@ class DecreasePhaseAngle(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0xD1,)
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "ignored" / _c.SevenBit(7),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "ignored" / _c.SevenBit(7),
+        )
     )
-    RULES = (("ignored", _rt.IntegerRule(7)),)
+    RULES = _rt.lazily(lambda: (("ignored", _rt.IntegerRule(7)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class IncreasePhaseAngle(_rt.Message):
     """Debugging, sends command 14 to motor controllers 2 and 3 (main.c, lines 443-446).
 
@@ -181,13 +190,15 @@ class IncreasePhaseAngle(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0xD2,)
     SIZES = _rt.Sizes(1, 1)
-    FORMAT = _c.Struct(
-        "ignored" / _c.SevenBit(7),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "ignored" / _c.SevenBit(7),
+        )
     )
-    RULES = (("ignored", _rt.IntegerRule(7)),)
+    RULES = _rt.lazily(lambda: (("ignored", _rt.IntegerRule(7)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Maintenance(_rt.Message):
     """Reconfigure the UART, cut the power or start a flasher (000_c7d74cf9c866b63b.txt, ...
 
@@ -198,7 +209,7 @@ class Maintenance(_rt.Message):
     resets.
     """
 
-    magic: list[int] = _field(default_factory=lambda: [66, 17, 122])
+    magic: list[int] = _rt.field(default_factory=lambda: [66, 17, 122])
     """Magic key numbers, 0..127, 3 elements, constant (000_c7d74cf9c866b63b.txt, line 43)."""
     operation: MaintenanceOperation | int
     """What to do (000_c7d74cf9c866b63b.txt, lines 44-56)."""
@@ -210,34 +221,38 @@ class Maintenance(_rt.Message):
     SENDERS = ("host",)
     IDENTITY = (0xFE,)
     SIZES = _rt.Sizes(4, 5)
-    FORMAT = _c.Struct(
-        "magic" / _c.Fixed(_c.Counted(3, _c.SevenBit(7)), [66, 17, 122]),
-        "operation" / _c.SevenBit(7),
-        "argument"
-        / _c.Cases(
-            "operation",
-            {82: _c.Pass, 83: MaintenanceArgumentRunMotorControllerFlasher.FORMAT},
-            rest=_c.OctetsFill(1, seven_bit=True),
-        ),
-    )
-    RULES = (
-        ("magic", _rt.ArrayRule(_rt.IntegerRule(7), count=3, const=[66, 17, 122])),
-        ("operation", _rt.IntegerRule(7, named=MaintenanceOperation)),
-        (
-            "argument",
-            _rt.SwitchRule(
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "magic" / _c.Fixed(_c.Counted(3, _c.SevenBit(7)), [66, 17, 122]),
+            "operation" / _c.SevenBit(7),
+            "argument"
+            / _c.Cases(
                 "operation",
-                {82: None, 83: _rt.StructRule(MaintenanceArgumentRunMotorControllerFlasher)},
-                rest=_rt.OctetsRule(greatest=1),
+                {82: _c.Pass, 83: MaintenanceArgumentRunMotorControllerFlasher.FORMAT},
+                rest=_c.OctetsFill(1, seven_bit=True),
             ),
-        ),
+        )
+    )
+    RULES = _rt.lazily(
+        lambda: (
+            ("magic", _rt.ArrayRule(_rt.IntegerRule(7), count=3, const=[66, 17, 122])),
+            ("operation", _rt.IntegerRule(7, named=MaintenanceOperation)),
+            (
+                "argument",
+                _rt.SwitchRule(
+                    "operation",
+                    {82: None, 83: _rt.StructRule(MaintenanceArgumentRunMotorControllerFlasher)},
+                    rest=_rt.OctetsRule(greatest=1),
+                ),
+            ),
+        )
     )
 
 
 # --- messages of brain ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Gyro(_rt.Message):
     """Readings of the three-axis gyroscope (main.c, lines 800-807).
 
@@ -261,21 +276,25 @@ class Gyro(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x80,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "int_x" / _c.SevenBit(14, signed=True, order="little"),
-        "int_y" / _c.SevenBit(14, signed=True, order="little"),
-        "int_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "int_x" / _c.SevenBit(14, signed=True, order="little"),
+            "int_y" / _c.SevenBit(14, signed=True, order="little"),
+            "int_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=GyroStatus)),
-        ("int_x", _rt.IntegerRule(14, signed=True)),
-        ("int_y", _rt.IntegerRule(14, signed=True)),
-        ("int_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=GyroStatus)),
+            ("int_x", _rt.IntegerRule(14, signed=True)),
+            ("int_y", _rt.IntegerRule(14, signed=True)),
+            ("int_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Xcel(_rt.Message):
     """Readings of the three-axis accelerometer (main.c, lines 809-816).
 
@@ -299,21 +318,25 @@ class Xcel(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x81,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "int_x" / _c.SevenBit(14, signed=True, order="little"),
-        "int_y" / _c.SevenBit(14, signed=True, order="little"),
-        "int_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "int_x" / _c.SevenBit(14, signed=True, order="little"),
+            "int_y" / _c.SevenBit(14, signed=True, order="little"),
+            "int_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=XcelStatus)),
-        ("int_x", _rt.IntegerRule(14, signed=True)),
-        ("int_y", _rt.IntegerRule(14, signed=True)),
-        ("int_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=XcelStatus)),
+            ("int_x", _rt.IntegerRule(14, signed=True)),
+            ("int_y", _rt.IntegerRule(14, signed=True)),
+            ("int_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Compass(_rt.Message):
     """Readings of the three-axis compass (main.c, lines 818-825).
 
@@ -337,21 +360,25 @@ class Compass(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x82,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "avg_x" / _c.SevenBit(14, signed=True, order="little"),
-        "avg_y" / _c.SevenBit(14, signed=True, order="little"),
-        "avg_z" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "avg_x" / _c.SevenBit(14, signed=True, order="little"),
+            "avg_y" / _c.SevenBit(14, signed=True, order="little"),
+            "avg_z" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=CompassStatus)),
-        ("avg_x", _rt.IntegerRule(14, signed=True)),
-        ("avg_y", _rt.IntegerRule(14, signed=True)),
-        ("avg_z", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=CompassStatus)),
+            ("avg_x", _rt.IntegerRule(14, signed=True)),
+            ("avg_y", _rt.IntegerRule(14, signed=True)),
+            ("avg_z", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Lidar(_rt.Message):
     """The latest full turn of the LIDAR (000_c7d74cf9c866b63b.txt, lines 85-90).
 
@@ -370,20 +397,27 @@ class Lidar(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x84,)
     SIZES = _rt.Sizes(721, 721)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "distances" / _c.Counted(360, _c.SevenBit(14, order="little")),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "distances" / _c.Counted(360, _c.SevenBit(14, order="little")),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=LidarStatus)),
-        (
-            "distances",
-            _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=360),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=LidarStatus)),
+            (
+                "distances",
+                _rt.ArrayRule(
+                    _rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"),
+                    count=360,
+                ),
+            ),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """The latest distances of the three sonars (main.c, lines 926-937)."""
 
@@ -398,20 +432,24 @@ class Sonar(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0x85,)
     SIZES = _rt.Sizes(7, 7)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "distances" / _c.Counted(3, _c.SevenBit(14, order="little")),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "distances" / _c.Counted(3, _c.SevenBit(14, order="little")),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7, named=SonarStatus)),
-        (
-            "distances",
-            _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=3),
-        ),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7, named=SonarStatus)),
+            (
+                "distances",
+                _rt.ArrayRule(_rt.IntegerRule(14, special={"no_datapoint": 0}, unit="mm"), count=3),
+            ),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Facing(_rt.Message):
     """Direction and speed of the robot as its sensors tell (main.c, lines 909-915)."""
 
@@ -428,19 +466,23 @@ class Facing(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0xA0,)
     SIZES = _rt.Sizes(5, 5)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "heading" / _c.SevenBit(14, signed=True, order="little"),
-        "speed" / _c.SevenBit(14, signed=True, order="little"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "heading" / _c.SevenBit(14, signed=True, order="little"),
+            "speed" / _c.SevenBit(14, signed=True, order="little"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7)),
-        ("heading", _rt.IntegerRule(14, signed=True, unit="deg")),
-        ("speed", _rt.IntegerRule(14, signed=True, unit="mm/s")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7)),
+            ("heading", _rt.IntegerRule(14, signed=True, unit="deg")),
+            ("speed", _rt.IntegerRule(14, signed=True, unit="mm/s")),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class OptflowIntegral(_rt.Message):
     """Way seen by the optical flow sensor (main.c, lines 918-924).
 
@@ -460,19 +502,23 @@ class OptflowIntegral(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0xA1,)
     SIZES = _rt.Sizes(5, 5)
-    FORMAT = _c.Struct(
-        "status" / _c.SevenBit(7),
-        "int_x" / _c.SevenBit(14, signed=True, order="big"),
-        "int_y" / _c.SevenBit(14, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "status" / _c.SevenBit(7),
+            "int_x" / _c.SevenBit(14, signed=True, order="big"),
+            "int_y" / _c.SevenBit(14, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("status", _rt.IntegerRule(7)),
-        ("int_x", _rt.IntegerRule(14, signed=True)),
-        ("int_y", _rt.IntegerRule(14, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("status", _rt.IntegerRule(7)),
+            ("int_x", _rt.IntegerRule(14, signed=True)),
+            ("int_y", _rt.IntegerRule(14, signed=True)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorControllerMessage(_rt.Message):
     """Debugging, the latest word from motor controller 3 (main.c, lines 940-944)."""
 
@@ -484,13 +530,15 @@ class MotorControllerMessage(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0xD1,)
     SIZES = _rt.Sizes(2, 2)
-    FORMAT = _c.Struct(
-        "last_msg" / _c.SevenBit(14, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "last_msg" / _c.SevenBit(14, order="big"),
+        )
     )
-    RULES = (("last_msg", _rt.IntegerRule(14)),)
+    RULES = _rt.lazily(lambda: (("last_msg", _rt.IntegerRule(14)),))
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class DebugNumbers(_rt.Message):
     """Debugging, four numbers that a developer picks (main.c, lines 946-971).
 
@@ -511,24 +559,28 @@ class DebugNumbers(_rt.Message):
     SENDERS = ("brain",)
     IDENTITY = (0xD2,)
     SIZES = _rt.Sizes(20, 20)
-    FORMAT = _c.Struct(
-        "dbg1" / _c.SevenBit(32, signed=True, order="big"),
-        "dbg2" / _c.SevenBit(32, signed=True, order="big"),
-        "dbg3" / _c.SevenBit(32, signed=True, order="big"),
-        "dbg4" / _c.SevenBit(32, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "dbg1" / _c.SevenBit(32, signed=True, order="big"),
+            "dbg2" / _c.SevenBit(32, signed=True, order="big"),
+            "dbg3" / _c.SevenBit(32, signed=True, order="big"),
+            "dbg4" / _c.SevenBit(32, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("dbg1", _rt.IntegerRule(32, signed=True)),
-        ("dbg2", _rt.IntegerRule(32, signed=True)),
-        ("dbg3", _rt.IntegerRule(32, signed=True)),
-        ("dbg4", _rt.IntegerRule(32, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("dbg1", _rt.IntegerRule(32, signed=True)),
+            ("dbg2", _rt.IntegerRule(32, signed=True)),
+            ("dbg3", _rt.IntegerRule(32, signed=True)),
+            ("dbg4", _rt.IntegerRule(32, signed=True)),
+        )
     )
 
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -536,29 +588,33 @@ class Parts:
     """Tells which message this is."""
 
 
-HOST_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.IdentityPart("start", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("stop", bytes.fromhex("FF")),
-    ),
-    start=_rt.StartSet(0x80, 0xFE, protected=True),
-    end=_rt.End(bytes.fromhex("FF"), protected=True),
-    least=3,
-    greatest=7,
-    greatest_payload=5,
-    seven_bit=True,
-)
+def _host_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.IdentityPart("start", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("stop", bytes.fromhex("FF")),
+        ),
+        start=_rt.StartSet(0x80, 0xFE, protected=True),
+        end=_rt.End(bytes.fromhex("FF"), protected=True),
+        least=3,
+        greatest=7,
+        greatest_payload=5,
+        seven_bit=True,
+    )
 
-BRAIN_FRAME = _rt.FrameSpec(
-    parts=(_rt.IdentityPart("start", _rt.Number(8)), _rt.PayloadPart("payload")),
-    start=_rt.StartSet(0x80, 0xFE, protected=True),
-    end=None,
-    least=3,
-    greatest=722,
-    greatest_payload=721,
-    seven_bit=True,
-)
+
+def _brain_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(_rt.IdentityPart("start", _rt.Number(8)), _rt.PayloadPart("payload")),
+        start=_rt.StartSet(0x80, 0xFE, protected=True),
+        end=None,
+        least=3,
+        greatest=722,
+        greatest_payload=721,
+        seven_bit=True,
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -1219,7 +1275,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
     "host",
-    HOST_FRAME,
+    _host_frame_spec,
     Parts,
     messages=(MoveManual, MoveRelativeTwostep, DecreasePhaseAngle, IncreasePhaseAngle, Maintenance),
     cut=_cut_host,
@@ -1227,7 +1283,7 @@ HOST_SENDER: _rt.SenderSpec[HostMessage, Parts] = _rt.SenderSpec(
 )
 BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     "brain",
-    BRAIN_FRAME,
+    _brain_frame_spec,
     Parts,
     messages=(
         Gyro,
@@ -1243,9 +1299,9 @@ BRAIN_SENDER: _rt.SenderSpec[BrainMessage, Parts] = _rt.SenderSpec(
     cut=_cut_brain,
     waits=_waits_brain,
 )
-HOST_FORMAT = _rt.FrameFormat(HOST_SENDER)
+HOST_FORMAT: _rt.FrameFormat
 """The frame of host as a construct declaration."""
-BRAIN_FORMAT = _rt.FrameFormat(BRAIN_SENDER)
+BRAIN_FORMAT: _rt.FrameFormat
 """The frame of brain as a construct declaration."""
 PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     "rn1_firmware",
@@ -1253,6 +1309,10 @@ PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     BRAIN_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(globals(), HOST_FORMAT=HOST_SENDER, BRAIN_FORMAT=BRAIN_SENDER)
 
 
 def encode(

@@ -12,12 +12,10 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "38490cb78d21d42471aca2b27899ab3dab1efed0a378179e7f6a540c9bd1c76e"
@@ -42,7 +40,7 @@ class MotorsServosLedsLeds(_rt.Flags):
 # --- messages of daemon --------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorsServosLeds(_rt.Message):
     """Set both motors, eight servos and the LEDs (lines 40-43)."""
 
@@ -60,21 +58,25 @@ class MotorsServosLeds(_rt.Message):
     SENDERS = ("daemon",)
     IDENTITY = (0x00,)
     SIZES = _rt.Sizes(21, 21)
-    FORMAT = _c.Struct(
-        "motor_1" / _c.Int(16, signed=True, order="big"),
-        "motor_2" / _c.Int(16, signed=True, order="big"),
-        "servos" / _c.Counted(8, _c.Int(16, order="big")),
-        "leds" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "motor_1" / _c.Int(16, signed=True, order="big"),
+            "motor_2" / _c.Int(16, signed=True, order="big"),
+            "servos" / _c.Counted(8, _c.Int(16, order="big")),
+            "leds" / _c.Int(8),
+        )
     )
-    RULES = (
-        ("motor_1", _rt.IntegerRule(16, signed=True)),
-        ("motor_2", _rt.IntegerRule(16, signed=True)),
-        ("servos", _rt.ArrayRule(_rt.IntegerRule(16), count=8)),
-        ("leds", _rt.IntegerRule(8, named=MotorsServosLedsLeds)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("motor_1", _rt.IntegerRule(16, signed=True)),
+            ("motor_2", _rt.IntegerRule(16, signed=True)),
+            ("servos", _rt.ArrayRule(_rt.IntegerRule(16), count=8)),
+            ("leds", _rt.IntegerRule(8, named=MotorsServosLedsLeds)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorsTwoServos(_rt.Message):
     """Set both motors and two servos (lines 45-48)."""
 
@@ -90,19 +92,23 @@ class MotorsTwoServos(_rt.Message):
     SENDERS = ("daemon",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(8, 8)
-    FORMAT = _c.Struct(
-        "motor_1" / _c.Int(16, signed=True, order="big"),
-        "motor_2" / _c.Int(16, signed=True, order="big"),
-        "servos" / _c.Counted(2, _c.Int(16, order="big")),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "motor_1" / _c.Int(16, signed=True, order="big"),
+            "motor_2" / _c.Int(16, signed=True, order="big"),
+            "servos" / _c.Counted(2, _c.Int(16, order="big")),
+        )
     )
-    RULES = (
-        ("motor_1", _rt.IntegerRule(16, signed=True)),
-        ("motor_2", _rt.IntegerRule(16, signed=True)),
-        ("servos", _rt.ArrayRule(_rt.IntegerRule(16), count=2)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("motor_1", _rt.IntegerRule(16, signed=True)),
+            ("motor_2", _rt.IntegerRule(16, signed=True)),
+            ("servos", _rt.ArrayRule(_rt.IntegerRule(16), count=2)),
+        )
     )
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorTest(_rt.Message):
     """Set both motors and nothing else (lines 55-58)."""
 
@@ -116,20 +122,24 @@ class MotorTest(_rt.Message):
     SENDERS = ("daemon",)
     IDENTITY = (0x03,)
     SIZES = _rt.Sizes(4, 4)
-    FORMAT = _c.Struct(
-        "motor_1" / _c.Int(16, signed=True, order="big"),
-        "motor_2" / _c.Int(16, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "motor_1" / _c.Int(16, signed=True, order="big"),
+            "motor_2" / _c.Int(16, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("motor_1", _rt.IntegerRule(16, signed=True)),
-        ("motor_2", _rt.IntegerRule(16, signed=True)),
+    RULES = _rt.lazily(
+        lambda: (
+            ("motor_1", _rt.IntegerRule(16, signed=True)),
+            ("motor_2", _rt.IntegerRule(16, signed=True)),
+        )
     )
 
 
 # --- messages of board ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """A voltage, a current and a temperature (lines 50-53).
 
@@ -148,15 +158,22 @@ class Status(_rt.Message):
     SENDERS = ("board",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(6, 6)
-    FORMAT = _c.Struct(
-        "voltage" / _c.Int(16, signed=True, order="big"),
-        "current" / _c.Int(16, signed=True, order="big"),
-        "temperature" / _c.Int(16, signed=True, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "voltage" / _c.Int(16, signed=True, order="big"),
+            "current" / _c.Int(16, signed=True, order="big"),
+            "temperature" / _c.Int(16, signed=True, order="big"),
+        )
     )
-    RULES = (
-        ("voltage", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="V")),
-        ("current", _rt.IntegerRule(16, signed=True, unit="mA")),
-        ("temperature", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 100), unit="degC")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("voltage", _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="V")),
+            ("current", _rt.IntegerRule(16, signed=True, unit="mA")),
+            (
+                "temperature",
+                _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 100), unit="degC"),
+            ),
+        )
     )
 
     voltage_v = _rt.Physical("voltage")
@@ -169,7 +186,7 @@ class Status(_rt.Message):
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -177,51 +194,55 @@ class Parts:
     """Tells which message this is."""
 
 
-DAEMON_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("begin", b"b"),
-        _rt.LengthPart(
-            "length",
-            _rt.Number(8),
-            counts=("length", "type", "payload"),
-            least=2,
-            greatest=255,
+def _daemon_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("begin", b"b"),
+            _rt.LengthPart(
+                "length",
+                _rt.Number(8),
+                counts=("length", "type", "payload"),
+                least=2,
+                greatest=255,
+            ),
+            _rt.IdentityPart("type", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("end", b"e"),
         ),
-        _rt.IdentityPart("type", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("end", b"e"),
-    ),
-    start=_rt.StartLiteral(b"b", protected=True),
-    end=_rt.End(b"e", protected=True),
-    least=14,
-    greatest=512,
-    greatest_payload=253,
-    transparency=_transparency.Base16Upper(),
-    stuffed=("length", "type", "payload"),
-)
+        start=_rt.StartLiteral(b"b", protected=True),
+        end=_rt.End(b"e", protected=True),
+        least=14,
+        greatest=512,
+        greatest_payload=253,
+        transparency=_transparency.Base16Upper(),
+        stuffed=("length", "type", "payload"),
+    )
 
-BOARD_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("begin", b"b"),
-        _rt.LengthPart(
-            "length",
-            _rt.Number(8),
-            counts=("length", "type", "payload"),
-            least=2,
-            greatest=255,
+
+def _board_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("begin", b"b"),
+            _rt.LengthPart(
+                "length",
+                _rt.Number(8),
+                counts=("length", "type", "payload"),
+                least=2,
+                greatest=255,
+            ),
+            _rt.IdentityPart("type", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("end", b"e"),
         ),
-        _rt.IdentityPart("type", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("end", b"e"),
-    ),
-    start=_rt.StartLiteral(b"b", protected=True),
-    end=_rt.End(b"e", protected=True),
-    least=18,
-    greatest=512,
-    greatest_payload=253,
-    transparency=_transparency.Base16Upper(),
-    stuffed=("length", "type", "payload"),
-)
+        start=_rt.StartLiteral(b"b", protected=True),
+        end=_rt.End(b"e", protected=True),
+        least=18,
+        greatest=512,
+        greatest_payload=253,
+        transparency=_transparency.Base16Upper(),
+        stuffed=("length", "type", "payload"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -524,7 +545,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
     "daemon",
-    DAEMON_FRAME,
+    _daemon_frame_spec,
     Parts,
     messages=(MotorsServosLeds, MotorsTwoServos, MotorTest),
     cut=_cut_daemon,
@@ -532,15 +553,15 @@ DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
 )
 BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     "board",
-    BOARD_FRAME,
+    _board_frame_spec,
     Parts,
     messages=(Status,),
     cut=_cut_board,
     waits=_waits_board,
 )
-DAEMON_FORMAT = _rt.FrameFormat(DAEMON_SENDER)
+DAEMON_FORMAT: _rt.FrameFormat
 """The frame of daemon as a construct declaration."""
-BOARD_FORMAT = _rt.FrameFormat(BOARD_SENDER)
+BOARD_FORMAT: _rt.FrameFormat
 """The frame of board as a construct declaration."""
 PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     "uherobot",
@@ -548,6 +569,14 @@ PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     BOARD_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(
+        globals(),
+        DAEMON_FORMAT=DAEMON_SENDER,
+        BOARD_FORMAT=BOARD_SENDER,
+    )
 
 
 def encode(

@@ -13,12 +13,10 @@ from __future__ import annotations
 
 import struct as _struct
 import typing as _typing
-from dataclasses import dataclass as _dataclass
-from fractions import Fraction as _Fraction
 
 from protogen.runtime import api as _rt
-from protogen.runtime import constructs as _c
 from protogen.runtime import fast as _fast
+from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "84595217bb8f0b4945c273c8db3cf602beae96e9d1d6792d7e7313c09907c08b"
@@ -46,7 +44,7 @@ class MotorsServosLedsLeds(_rt.Flags):
 # --- messages of daemon --------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class MotorsServosLeds(_rt.Message):
     """Set both motors, eight servos and the LEDs (robotboard2interpreter.cpp, lines 55-296).
 
@@ -69,37 +67,41 @@ class MotorsServosLeds(_rt.Message):
     SENDERS = ("daemon",)
     IDENTITY = (0x00,)
     SIZES = _rt.Sizes(21, 21)
-    FORMAT = _c.Struct(
-        "right_motor" / _c.Int(16, signed=True, order="big"),
-        "left_motor" / _c.Int(16, signed=True, order="big"),
-        "servos" / _c.Counted(8, _c.Int(16, order="big")),
-        "leds" / _c.Int(8),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "right_motor" / _c.Int(16, signed=True, order="big"),
+            "left_motor" / _c.Int(16, signed=True, order="big"),
+            "servos" / _c.Counted(8, _c.Int(16, order="big")),
+            "leds" / _c.Int(8),
+        )
     )
-    RULES = (
-        (
-            "right_motor",
-            _rt.IntegerRule(
-                16,
-                signed=True,
-                least=-3200,
-                greatest=3200,
-                scale=_Fraction(1, 32),
-                unit="percent",
+    RULES = _rt.lazily(
+        lambda: (
+            (
+                "right_motor",
+                _rt.IntegerRule(
+                    16,
+                    signed=True,
+                    least=-3200,
+                    greatest=3200,
+                    scale=_rt.Fraction(1, 32),
+                    unit="percent",
+                ),
             ),
-        ),
-        (
-            "left_motor",
-            _rt.IntegerRule(
-                16,
-                signed=True,
-                least=-3200,
-                greatest=3200,
-                scale=_Fraction(1, 32),
-                unit="percent",
+            (
+                "left_motor",
+                _rt.IntegerRule(
+                    16,
+                    signed=True,
+                    least=-3200,
+                    greatest=3200,
+                    scale=_rt.Fraction(1, 32),
+                    unit="percent",
+                ),
             ),
-        ),
-        ("servos", _rt.ArrayRule(_rt.IntegerRule(16, least=0, greatest=250), count=8)),
-        ("leds", _rt.IntegerRule(8, named=MotorsServosLedsLeds)),
+            ("servos", _rt.ArrayRule(_rt.IntegerRule(16, least=0, greatest=250), count=8)),
+            ("leds", _rt.IntegerRule(8, named=MotorsServosLedsLeds)),
+        )
     )
 
     right_motor_percent = _rt.Physical("right_motor")
@@ -112,7 +114,7 @@ class MotorsServosLeds(_rt.Message):
 # --- messages of board ---------------------------------------------------------------------------
 
 
-@_dataclass(slots=True, kw_only=True)
+@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """A temperature, and currents and voltages of processor and motors (main.c, lines 102-173).
 
@@ -138,21 +140,28 @@ class Status(_rt.Message):
     SENDERS = ("board",)
     IDENTITY = (0x01,)
     SIZES = _rt.Sizes(12, 12)
-    FORMAT = _c.Struct(
-        "reserved" / _c.Int(16, signed=True, order="big"),
-        "pcb_temperature" / _c.Int(16, signed=True, order="big"),
-        "cpu_current" / _c.Int(16, order="big"),
-        "cpu_voltage" / _c.Int(16, order="big"),
-        "motor_current" / _c.Int(16, order="big"),
-        "motor_voltage" / _c.Int(16, order="big"),
+    FORMAT = _rt.lazily(
+        lambda: _c.Struct(
+            "reserved" / _c.Int(16, signed=True, order="big"),
+            "pcb_temperature" / _c.Int(16, signed=True, order="big"),
+            "cpu_current" / _c.Int(16, order="big"),
+            "cpu_voltage" / _c.Int(16, order="big"),
+            "motor_current" / _c.Int(16, order="big"),
+            "motor_voltage" / _c.Int(16, order="big"),
+        )
     )
-    RULES = (
-        ("reserved", _rt.IntegerRule(16, signed=True)),
-        ("pcb_temperature", _rt.IntegerRule(16, signed=True, scale=_Fraction(1, 10), unit="degC")),
-        ("cpu_current", _rt.IntegerRule(16, unit="mA")),
-        ("cpu_voltage", _rt.IntegerRule(16, unit="mV")),
-        ("motor_current", _rt.IntegerRule(16, unit="mA")),
-        ("motor_voltage", _rt.IntegerRule(16, unit="mV")),
+    RULES = _rt.lazily(
+        lambda: (
+            ("reserved", _rt.IntegerRule(16, signed=True)),
+            (
+                "pcb_temperature",
+                _rt.IntegerRule(16, signed=True, scale=_rt.Fraction(1, 10), unit="degC"),
+            ),
+            ("cpu_current", _rt.IntegerRule(16, unit="mA")),
+            ("cpu_voltage", _rt.IntegerRule(16, unit="mV")),
+            ("motor_current", _rt.IntegerRule(16, unit="mA")),
+            ("motor_voltage", _rt.IntegerRule(16, unit="mV")),
+        )
     )
 
     pcb_temperature_degc = _rt.Physical("pcb_temperature")
@@ -162,7 +171,7 @@ class Status(_rt.Message):
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_dataclass(frozen=True, slots=True)
+@_rt.dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of a frame that are no message's field."""
 
@@ -170,45 +179,49 @@ class Parts:
     """Tells which message this is."""
 
 
-DAEMON_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("begin", b"b"),
-        _rt.LengthPart(
-            "length",
-            _rt.Number(8),
-            counts=("length", "type", "payload"),
-            least=2,
-            greatest=255,
+def _daemon_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("begin", b"b"),
+            _rt.LengthPart(
+                "length",
+                _rt.Number(8),
+                counts=("length", "type", "payload"),
+                least=2,
+                greatest=255,
+            ),
+            _rt.IdentityPart("type", _rt.Number(8)),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("end", bytes.fromhex("0A")),
         ),
-        _rt.IdentityPart("type", _rt.Number(8)),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("end", bytes.fromhex("0A")),
-    ),
-    start=_rt.StartLiteral(b"b", protected=True),
-    end=_rt.End(bytes.fromhex("0A"), protected=True),
-    least=48,
-    greatest=512,
-    greatest_payload=253,
-    transparency=_transparency.Base16Upper(),
-    stuffed=("length", "type", "payload"),
-)
+        start=_rt.StartLiteral(b"b", protected=True),
+        end=_rt.End(bytes.fromhex("0A"), protected=True),
+        least=48,
+        greatest=512,
+        greatest_payload=253,
+        transparency=_transparency.Base16Upper(),
+        stuffed=("length", "type", "payload"),
+    )
 
-BOARD_FRAME = _rt.FrameSpec(
-    parts=(
-        _rt.LiteralPart("begin", b"b"),
-        _rt.IdentityPart("type", _rt.Number(8)),
-        _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
-        _rt.PayloadPart("payload"),
-        _rt.LiteralPart("end", bytes.fromhex("0D 0A")),
-    ),
-    start=_rt.StartLiteral(b"b", protected=True),
-    end=_rt.End(bytes.fromhex("0D 0A"), protected=True),
-    least=31,
-    greatest=517,
-    greatest_payload=255,
-    transparency=_transparency.Base16Upper(),
-    stuffed=("type", "length", "payload"),
-)
+
+def _board_frame_spec() -> _rt.FrameSpec:
+    return _rt.FrameSpec(
+        parts=(
+            _rt.LiteralPart("begin", b"b"),
+            _rt.IdentityPart("type", _rt.Number(8)),
+            _rt.LengthPart("length", _rt.Number(8), counts=("payload",), least=0, greatest=255),
+            _rt.PayloadPart("payload"),
+            _rt.LiteralPart("end", bytes.fromhex("0D 0A")),
+        ),
+        start=_rt.StartLiteral(b"b", protected=True),
+        end=_rt.End(bytes.fromhex("0D 0A"), protected=True),
+        least=31,
+        greatest=517,
+        greatest_payload=255,
+        transparency=_transparency.Base16Upper(),
+        stuffed=("type", "length", "payload"),
+    )
+
 
 # --- the fast engine ----------------------------------------------------------------------------
 #
@@ -471,7 +484,7 @@ MESSAGES: dict[str, type[_rt.Message]] = {
 
 DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
     "daemon",
-    DAEMON_FRAME,
+    _daemon_frame_spec,
     Parts,
     messages=(MotorsServosLeds,),
     cut=_cut_daemon,
@@ -479,15 +492,15 @@ DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
 )
 BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     "board",
-    BOARD_FRAME,
+    _board_frame_spec,
     Parts,
     messages=(Status,),
     cut=_cut_board,
     waits=_waits_board,
 )
-DAEMON_FORMAT = _rt.FrameFormat(DAEMON_SENDER)
+DAEMON_FORMAT: _rt.FrameFormat
 """The frame of daemon as a construct declaration."""
-BOARD_FORMAT = _rt.FrameFormat(BOARD_SENDER)
+BOARD_FORMAT: _rt.FrameFormat
 """The frame of board as a construct declaration."""
 PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     "uherobot_daemon",
@@ -495,6 +508,14 @@ PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     BOARD_SENDER,
     spec_hash=SPEC_HASH,
 )
+
+if not _typing.TYPE_CHECKING:
+    # Declarations are made when they are first asked for: construct takes long to import.
+    __getattr__ = _fast.frame_formats(
+        globals(),
+        DAEMON_FORMAT=DAEMON_SENDER,
+        BOARD_FORMAT=BOARD_SENDER,
+    )
 
 
 def encode(

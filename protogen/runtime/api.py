@@ -1,27 +1,18 @@
-"""The names that generated modules, and those who use them, need."""
+"""The names that generated modules, and those who use them, need.
+
+What belongs to the reference is imported when it is first asked for.
+"""
+
+from typing import TYPE_CHECKING
 
 from protogen.runtime.codec import Encoder, Protocol
+from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.decoder import Decoder, Engine
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import CodecError, DecodeError, EncodeError, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEvent
-from protogen.runtime.frame import (
-    AfterEnd,
-    Anywhere,
-    ChecksumPart,
-    CounterPart,
-    End,
-    FrameSpec,
-    IdentityPart,
-    LengthPart,
-    LiteralPart,
-    PayloadPart,
-    StartLiteral,
-    StartSet,
-    ValuePart,
-)
-from protogen.runtime.frame_format import FrameFormat
-from protogen.runtime.message import Message, Sizes
+from protogen.runtime.late import importer, lazily
+from protogen.runtime.message import Message, Record, Sizes
 from protogen.runtime.number import Number
 from protogen.runtime.physical import (
     BitRange,
@@ -30,15 +21,6 @@ from protogen.runtime.physical import (
     PhysicalList,
     PhysicalListOrNone,
     PhysicalOrNone,
-)
-from protogen.runtime.records import ArrayRule, FieldRules, Record, StructRule, SwitchRule
-from protogen.runtime.rules import (
-    BoolRule,
-    FloatRule,
-    IntegerRule,
-    OctetsRule,
-    TextRule,
-    Violation,
 )
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
@@ -62,6 +44,7 @@ __all__ = [
     "FieldRules",
     "Flags",
     "FloatRule",
+    "Fraction",
     "FrameFormat",
     "FrameSpec",
     "IdentityPart",
@@ -94,4 +77,73 @@ __all__ = [
     "UnknownEvent",
     "ValuePart",
     "Violation",
+    "dataclass",
+    "field",
+    "lazily",
 ]
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from protogen.runtime.frame import (
+        AfterEnd,
+        Anywhere,
+        ChecksumPart,
+        CounterPart,
+        End,
+        FrameSpec,
+        IdentityPart,
+        LengthPart,
+        LiteralPart,
+        PayloadPart,
+        StartLiteral,
+        StartSet,
+        ValuePart,
+    )
+    from protogen.runtime.frame_format import FrameFormat
+    from protogen.runtime.records import ArrayRule, FieldRules, StructRule, SwitchRule
+    from protogen.runtime.rules import (
+        BoolRule,
+        FloatRule,
+        IntegerRule,
+        OctetsRule,
+        TextRule,
+        Violation,
+    )
+else:
+    __getattr__ = importer(
+        globals(),
+        {
+            "fractions": ("Fraction",),
+            ".frame": (
+                "AfterEnd",
+                "Anywhere",
+                "ChecksumPart",
+                "CounterPart",
+                "End",
+                "FrameSpec",
+                "IdentityPart",
+                "LengthPart",
+                "LiteralPart",
+                "PayloadPart",
+                "StartLiteral",
+                "StartSet",
+                "ValuePart",
+            ),
+            ".frame_format": ("FrameFormat",),
+            ".records": (
+                "ArrayRule",
+                "FieldRules",
+                "StructRule",
+                "SwitchRule",
+            ),
+            ".rules": (
+                "BoolRule",
+                "FloatRule",
+                "IntegerRule",
+                "OctetsRule",
+                "TextRule",
+                "Violation",
+            ),
+        },
+    )

@@ -9,11 +9,12 @@ Each is an immutable value with one method, `compute`, from the covered bytes to
 import binascii
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
 from typing import Protocol
 from zlib import adler32
+
+from protogen.runtime.dataclass import dataclass
 
 GREATEST_WIDTH = 64
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
-from protogen.runtime.assembly import encode_frame
+from protogen.runtime import late
 from protogen.runtime.decoder import Engine, check_engine
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import Event, FrameEvent, MessageEvent, UnknownEvent
-from protogen.runtime.frame import CounterPart
-from protogen.runtime.lines import encode_line, split_parts
 from protogen.runtime.message import Message
-from protogen.runtime.reading import read_frame
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+
+if TYPE_CHECKING:
+    from protogen.runtime.frame import CounterPart
 
 
 class Protocol(Generic[MessageT_co, PartsT_co]):
@@ -60,7 +60,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         Raises EncodeError where something is missing, or the identity belongs to a message.
         """
         spec = self.sender(sender)
-        identity, given = split_parts(spec, parts)
+        identity, given = late.split_parts(spec, parts)
         kin = spec.kin(identity)
         if kin is not None:
             if not identity:
@@ -68,7 +68,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
                 raise EncodeError("message", problem)
             problem = f"{identity} is the identity of {kin.messages[0].NAME}"
             raise EncodeError(spec.layout.identity[0].name, problem)
-        return encode_frame(spec, identity, payload, given, strict=False)
+        return late.encode_frame(spec, identity, payload, given, strict=False)
 
     def encode_line(self, line: Mapping[str, Any]) -> bytes:
         """The bytes that a JSON line of a decoder stands for. Raises EncodeError."""
@@ -78,11 +78,11 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         spec = self.senders.get(str(name))
         if spec is None:
             raise EncodeError("sender", f"{name!r} sends nothing; {', '.join(self.senders)} do")
-        return encode_line(spec, line)
+        return late.encode_line(spec, line)
 
     def read(self, frame: bytes, sender: str) -> FrameEvent[MessageT_co, PartsT_co]:
         """The event of exactly one valid frame. Raises DecodeError."""
-        return read_frame(self.sender(sender), frame)
+        return late.read_frame(self.sender(sender), frame)
 
     def decode(self, frame: bytes, sender: str, engine: Engine = "fast") -> MessageT_co:
         """The message of exactly one frame. Raises DecodeError."""
@@ -129,7 +129,7 @@ def _encode(
     sender: SenderSpec[Any, Any], message: Message, parts: Mapping[str, int | None], strict: bool
 ) -> bytes:
     payload = message.to_payload(strict)
-    return encode_frame(sender, message.IDENTITY, payload, parts, strict)
+    return late.encode_frame(sender, message.IDENTITY, payload, parts, strict)
 
 
 class Encoder:
@@ -142,7 +142,7 @@ class Encoder:
         self._sender = sender
         self._encode = encode or self._encode_by_reference
         self._counters = {
-            part.name: part for part in sender.layout.values if isinstance(part, CounterPart)
+            part.name: part for part in sender.layout.values if isinstance(part, late.CounterPart)
         }
         self._next = {
             name: part.least if part.default is None else part.default

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from protogen.runtime.constructs import PayloadError
+from protogen.runtime import late
 from protogen.runtime.errors import ByteError, Reason
 from protogen.runtime.frame import (
     ChecksumPart,
@@ -185,7 +185,7 @@ class Content:
         start = bytes(self.bytes[self._layout.head_size :])
         try:
             self._set_payload(self._kin.measure(start))
-        except PayloadError as error:
+        except late.PayloadError as error:
             if not error.missing:
                 raise Rejected(error.reason, error.problem) from None
             self._next = len(self.bytes) + error.missing

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Generic, Literal
+from typing import TYPE_CHECKING, Generic, Literal
 
-from protogen.runtime.constructs import PayloadError
+from protogen.runtime import late
 from protogen.runtime.errors import Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
-from protogen.runtime.frame import AfterEnd, Anywhere
-from protogen.runtime.machine import Candidate, Cut, Failure
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.starts import starts_of
+
+if TYPE_CHECKING:
+    from protogen.runtime.machine import Candidate, Cut, Failure
 
 Engine = Literal["fast", "construct"]
 """What decodes and encodes. `construct` is the reference: byte by byte, and construct's own parser.
@@ -36,10 +36,10 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._sender = sender
         self._cut = sender.cut if engine == "fast" else None
         self._waits = sender.waits if engine == "fast" else None
-        self._starts = starts_of(sender.frame)
+        self._starts = late.starts_of(sender.frame)
         self._least = sender.frame.least
         self._greatest = sender.frame.greatest
-        self._is_anywhere = isinstance(sender.frame.start, Anywhere)
+        self._is_anywhere = isinstance(sender.frame.start, late.Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
         self._offset = 0  # Of the first of these bytes in the input.
@@ -75,7 +75,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Take the end of the input, or a silence on the line; all remaining events."""
         if self._is_waiting:
             self._is_waiting = False
-            self._candidate = Candidate(self._sender)
+            self._candidate = late.Candidate(self._sender)
         self._run(final=True)
         events = self._deliver()
         self._offset += len(self._data)
@@ -119,7 +119,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return False
 
     def _next_start(self) -> int:
-        if self._is_fresh and isinstance(self._sender.frame.start, AfterEnd):
+        if self._is_fresh and isinstance(self._sender.frame.start, late.AfterEnd):
             return self._scan
         return self._starts.find(self._data, self._scan, len(self._data) + 1)
 
@@ -133,7 +133,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return True
         self._is_waiting = not final and self._still_waits(start)
         if not self._is_waiting:
-            self._candidate = Candidate(self._sender)
+            self._candidate = late.Candidate(self._sender)
         return not self._is_waiting
 
     def _still_waits(self, start: int) -> bool:
@@ -144,7 +144,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Go on with what was waited for: a whole frame now, or something for a candidate."""
         self._is_waiting = False
         if not self._cut_frames():
-            self._candidate = Candidate(self._sender)
+            self._candidate = late.Candidate(self._sender)
 
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
@@ -178,7 +178,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return False
 
     def _judge(self, verdict: Cut | Failure) -> bool:
-        self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
+        self._failure = self._read(verdict) if isinstance(verdict, late.Cut) else verdict
         if self._failure is None:
             self._give_up(self._done)
             if self._sender.layout.shares_delimiter and not self._cut_frames():
@@ -189,14 +189,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Where one literal starts and ends frames, that of a valid frame may do both."""
         self._pushed = self._scan
         self._shares_start = True
-        self._candidate = Candidate(self._sender, shares_start=True)
+        self._candidate = late.Candidate(self._sender, shares_start=True)
 
     def _read(self, cut: Cut) -> Failure | None:
         """Deliver the frame, unless its payload is not that of its message."""
         try:
             message = self._sender.read(cut.numbers, cut.payload)
-        except PayloadError as error:
-            return Failure(cut.size, error.reason, str(error))
+        except late.PayloadError as error:
+            return late.Failure(cut.size, error.reason, str(error))
         self._frame(cut, message)
         return None
 

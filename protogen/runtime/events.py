@@ -6,13 +6,15 @@ The raw bytes of all events, joined, are the input.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Generic, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal
 
+from protogen.runtime import late
+from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.errors import EncodeError, Reason
-from protogen.runtime.lines import encode_line
-from protogen.runtime.machine import Cut
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+
+if TYPE_CHECKING:
+    from protogen.runtime.machine import Cut
 
 
 @dataclass(slots=True, repr=False)
@@ -56,7 +58,7 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     def as_json(self) -> dict[str, Any]:
         """A line for JSON. It has `raw` where encoding it would give other bytes."""
         line = _line(self, message=self.message.NAME)
-        line["parts"] = _parts(self.parts)
+        line["parts"] = _parts(self.parts, self.codec)
         line["fields"] = self.message.to_dict()
         return _exact(line, self.raw, self.codec)
 
@@ -82,7 +84,7 @@ class UnknownEvent(Generic[PartsT_co]):
     def as_json(self) -> dict[str, Any]:
         """A line for JSON. It has `raw` where encoding it would give other bytes."""
         line = _line(self)
-        line["parts"] = _parts(self.parts)
+        line["parts"] = _parts(self.parts, self.codec)
         line["payload"] = self.payload.hex()
         return _exact(line, self.raw, self.codec)
 
@@ -137,8 +139,8 @@ def _line(event: Any, **named: str) -> dict[str, Any]:
     return {**place, **named, "sender": event.sender}
 
 
-def _parts(parts: Any) -> dict[str, int]:
-    return {item.name: getattr(parts, item.name) for item in fields(parts)}
+def _parts(parts: Any, codec: SenderSpec[Any, Any]) -> dict[str, int]:
+    return {name: getattr(parts, name) for name in codec.layout.shown}
 
 
 def _exact(line: dict[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> dict[str, Any]:
@@ -149,6 +151,6 @@ def _exact(line: dict[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> dic
 
 def _gives_back(line: Mapping[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> bool:
     try:
-        return encode_line(codec, line) == raw
+        return late.encode_line(codec, line) == raw
     except EncodeError:
         return False

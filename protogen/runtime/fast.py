@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, Literal, Protocol, TypeVar
 
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
+from protogen.runtime.late import frame_formats
 from protogen.runtime.number import ByteOrder, Number
 from protogen.runtime.pairs import INTEGERS, PairCodes, PairLists, Pairs, Unclear, pair_values
 from protogen.runtime.sender import Cutter, SenderSpec
@@ -33,6 +34,7 @@ __all__ = [
     "Unclear",
     "checked",
     "closed",
+    "frame_formats",
     "new",
     "seven_bit_float",
     "unknown",

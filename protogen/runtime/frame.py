@@ -6,11 +6,14 @@ and only stated here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from protogen.runtime.checksum import Checksum
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.number import Number
-from protogen.runtime.transparency import Transparency
+
+if TYPE_CHECKING:
+    from protogen.runtime.checksum import Checksum
+    from protogen.runtime.transparency import Transparency
 
 # --- parts ------------------------------------------------------------------------------------
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.frame import (
     AfterEnd,
     ChecksumPart,

@@ -6,10 +6,10 @@ nothing but them, so that it does not matter how they arrive.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from protogen.runtime.content import Content, Rejected
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.errors import Reason
 from protogen.runtime.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
 from protogen.runtime.layout import Slice

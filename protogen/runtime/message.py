@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar, Self
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from protogen.runtime.constructs import PayloadError, whole
+from protogen.runtime import late
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.errors import DecodeError, EncodeError
-from protogen.runtime.records import Record, outermost, record_from_wire, record_to_wire
+
+if TYPE_CHECKING:
+    from protogen.runtime.constructs import Construct
+    from protogen.runtime.records import FieldRules
+    from protogen.runtime.rules import Violation
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +38,42 @@ class Sizes:
         return f"{self.least}..{self.greatest}{steps}"
 
 
+class Record:
+    """A dataclass with a rule for each field: a message, or a struct inside of one."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        FORMAT: ClassVar[Construct]
+        """The construct declaration: how the fields lie on the wire."""
+        RULES: ClassVar[FieldRules]
+        """What the fields' values mean, in wire order."""
+
+    def violations(self) -> list[Violation]:
+        """Values that the schema does not foresee: out of range, or without a name.
+
+        A decoder keeps them. Strict encoding refuses the forbidden ones among them.
+        """
+        return late.record_violations(self, late.outermost())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields for JSON.
+
+        Numbers are raw; bytes are hexadecimal text; not-a-number and the infinities, for which
+        JSON has no numbers, are the texts `nan`, `inf` and `-inf`; structs are mappings.
+        """
+        return late.record_to_json(self, late.outermost())
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """The record of what `to_dict` gives; names of values may stand for their numbers.
+
+        Raises EncodeError with the field's path where a field is missing, unknown or of another
+        kind. Whether the values can be sent is asked when they are.
+        """
+        return late.record_from_json(cls, data, late.outermost())
+
+
 class Message(Record):
     """Base of the generated messages."""
 
@@ -55,10 +96,10 @@ class Message(Record):
         Raises EncodeError where a value is out of range or does not fit; with `strict=False` a
         value may be anything that fits the wire.
         """
-        values = record_to_wire(self, outermost(), strict)
+        values = late.record_to_wire(self, late.outermost(), strict)
         try:
             payload = bytes(type(self).FORMAT.build(values))
-        except PayloadError as error:
+        except late.PayloadError as error:
             raise EncodeError(error.path, error.problem) from None
         if len(payload) not in self.SIZES:
             problem = f"makes {len(payload)} bytes of payload; {self.NAME} has {self.SIZES}"
@@ -70,7 +111,7 @@ class Message(Record):
         """The message of a payload's bytes. Raises DecodeError: size, value or encoding."""
         try:
             return cls.parse_payload(payload)
-        except PayloadError as error:
+        except late.PayloadError as error:
             raise DecodeError(
                 error.reason, error.problem, offset=error.offset, path=error.path
             ) from None
@@ -80,6 +121,6 @@ class Message(Record):
         """The same, but raises construct's kind of error: PayloadError."""
         if len(payload) not in cls.SIZES:
             problem = f"{cls.NAME} has {cls.SIZES} bytes of payload, not {len(payload)}"
-            raise PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
-        raw = whole(cls.FORMAT).parse(payload)
-        return record_from_wire(cls, raw, outermost())
+            raise late.PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
+        raw = late.whole(cls.FORMAT).parse(payload)
+        return late.record_from_wire(cls, raw, late.outermost())

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import Literal
 
+from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.errors import ByteError
 
 ByteOrder = Literal["little", "big"]

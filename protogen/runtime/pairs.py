@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
+from protogen.runtime.dataclass import dataclass
 from protogen.runtime.number import ByteOrder, Number
 
 INTEGERS = frozenset((int,))

@@ -9,10 +9,13 @@ Each stands in a class body beside the field that holds the raw value:
 
 from __future__ import annotations
 
-from typing import Any, Generic, Self, TypeVar, cast, overload
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast, overload
 
-from protogen.runtime.records import ArrayRule
-from protogen.runtime.rules import FloatRule, IntegerRule
+from protogen.runtime import late
+
+if TYPE_CHECKING:
+    from protogen.runtime.rules import FloatRule, IntegerRule
 
 EnumT = TypeVar("EnumT", bound=int)
 ValueT = TypeVar("ValueT")
@@ -44,11 +47,14 @@ class _View(Generic[ValueT]):
 class _PhysicalView(_View[ValueT]):
     """A property that follows the field's rule."""
 
-    _rule: IntegerRule | FloatRule
-
     def __set_name__(self, owner: Any, name: str) -> None:
-        rule = dict(owner.RULES)[self._field]
-        self._rule = cast(Any, rule.element if isinstance(rule, ArrayRule) else rule)
+        self._owner = owner
+
+    @cached_property
+    def _rule(self) -> IntegerRule | FloatRule:
+        rule = dict(self._owner.RULES)[self._field]
+        chosen: Any = rule.element if isinstance(rule, late.ArrayRule) else rule
+        return cast("IntegerRule | FloatRule", chosen)
 
     def _shown_or_none(self, raw: Any) -> float | None:
         value = self._rule.physical(raw)

@@ -5,49 +5,14 @@ from __future__ import annotations
 from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, TypeVar
 
-from protogen.runtime.constructs import Construct
 from protogen.runtime.errors import EncodeError
+from protogen.runtime.message import Record
 from protogen.runtime.rules import OctetsRule, Rule, Scope, Violation
 
 FieldRules = tuple[tuple[str, Rule], ...]
 """Name and rule of each field, in wire order."""
-
-
-class Record:
-    """A dataclass with a rule for each field: a message, or a struct inside of one."""
-
-    __slots__ = ()
-
-    FORMAT: ClassVar[Construct]
-    """The construct declaration: how the fields lie on the wire."""
-    RULES: ClassVar[FieldRules]
-    """What the fields' values mean, in wire order."""
-
-    def violations(self) -> list[Violation]:
-        """Values that the schema does not foresee: out of range, or without a name.
-
-        A decoder keeps them. Strict encoding refuses the forbidden ones among them.
-        """
-        return record_violations(self, outermost())
-
-    def to_dict(self) -> dict[str, Any]:
-        """The fields for JSON.
-
-        Numbers are raw; bytes are hexadecimal text; not-a-number and the infinities, for which
-        JSON has no numbers, are the texts `nan`, `inf` and `-inf`; structs are mappings.
-        """
-        return record_to_json(self, outermost())
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """The record of what `to_dict` gives; names of values may stand for their numbers.
-
-        Raises EncodeError with the field's path where a field is missing, unknown or of another
-        kind. Whether the values can be sent is asked when they are.
-        """
-        return record_from_json(cls, data, outermost())
 
 
 RecordT = TypeVar("RecordT", bound=Record)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from protogen.runtime.constructs import prefix_size
-from protogen.runtime.frame import FrameSpec
-from protogen.runtime.layout import Layout
+from protogen.runtime import late
+from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.message import Message
+
+if TYPE_CHECKING:
+    from protogen.runtime.frame import FrameSpec
+    from protogen.runtime.layout import Layout
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
@@ -43,7 +46,7 @@ class Kin(Generic[MessageT_co]):
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
-        return prefix_size(self.messages[0].FORMAT, start)
+        return late.prefix_size(self.messages[0].FORMAT, start)
 
     def read(self, payload: bytes) -> MessageT_co:
         """The message of a payload. Raises PayloadError: size, value or encoding."""
@@ -51,7 +54,6 @@ class Kin(Generic[MessageT_co]):
         return next(fitting, self.messages[0]).parse_payload(payload)
 
 
-@dataclass(frozen=True, slots=True)
 class SenderSpec(Generic[MessageT_co, PartsT_co]):
     """What one endpoint sends.
 
@@ -60,24 +62,57 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     `encode_only`.
     """
 
-    name: str
-    frame: FrameSpec
-    parts: type[PartsT_co]
-    messages: tuple[type[MessageT_co], ...]
-    encode_only: tuple[type[MessageT_co], ...] = ()
-    cut: Cutter | None = field(default=None, repr=False, compare=False)
-    """Takes whole frames that are plainly in order; None where only the reference cuts them."""
-    waits: Waiter | None = field(default=None, repr=False, compare=False)
-    """Tells plain beginnings of frames; None where the reference takes all that is not whole."""
-    layout: Layout = field(init=False, repr=False, compare=False)
-    _kin: Mapping[Identity, Kin[MessageT_co]] = field(init=False, repr=False, compare=False)
+    def __init__(
+        self,
+        name: str,
+        frame: FrameSpec | Callable[[], FrameSpec],
+        parts: type[PartsT_co],
+        messages: tuple[type[MessageT_co], ...],
+        encode_only: tuple[type[MessageT_co], ...] = (),
+        cut: Cutter | None = None,
+        waits: Waiter | None = None,
+    ) -> None:
+        """`frame` may be what makes the frame's description, when it is first needed."""
+        self.name = name
+        self._frame = frame
+        self.parts = parts
+        self.messages = messages
+        self.encode_only = encode_only
+        self.cut = cut
+        """Takes whole frames that are plainly in order; None where only the reference cuts them."""
+        self.waits = waits
+        """Tells plain beginnings of frames; None: the reference takes all that is not whole."""
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def frame(self) -> FrameSpec:
+        """How the frame is made up, and how it is found."""
+        return self._frame() if callable(self._frame) else self._frame
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the frame's parts lie."""
+        return late.Layout(self.frame)
+
+    @cached_property
+    def _kin(self) -> Mapping[Identity, Kin[MessageT_co]]:
         kin: dict[Identity, tuple[type[MessageT_co], ...]] = {}
         for message in self.messages:
             kin[message.IDENTITY] = (*kin.get(message.IDENTITY, ()), message)
-        object.__setattr__(self, "layout", Layout(self.frame))
-        object.__setattr__(self, "_kin", {key: Kin(value) for key, value in kin.items()})
+        return {key: Kin(value) for key, value in kin.items()}
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.name, self.frame, self.parts, self.messages, self.encode_only
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SenderSpec):
+            return NotImplemented
+        return self is other or self._compared() == other._compared()
+
+    def __hash__(self) -> int:
+        return hash(self._compared())
+
+    def __repr__(self) -> str:
+        return f"<what {self.name} sends: {', '.join(item.NAME for item in self.messages)}>"
 
     def kin(self, identity: Identity) -> Kin[MessageT_co] | None:
         """The messages of an identity; None where it is unknown."""

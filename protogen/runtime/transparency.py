@@ -16,9 +16,10 @@ result gives the region back. What a `lenient` one accepts beyond that is said w
 import binascii
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from typing import Literal, Protocol
+
+from protogen.runtime.dataclass import dataclass, field
 
 TransparencyReason = Literal["stuffing", "encoding"]
 """What is wrong: bytes that are no escape sequence, or that break an encoding of the region."""

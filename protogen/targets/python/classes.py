@@ -26,7 +26,7 @@ from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import class_name, member_name, unit_suffix
-from protogen.targets.python.wrapping import docstring, remark, union, wrapped
+from protogen.targets.python.wrapping import WIDTH, docstring, remark, union, wrapped
 
 _INDENT = 4
 
@@ -141,7 +141,7 @@ def _record(
 
 def _format_line(field: Field) -> str:
     """One line of FORMAT; a long one is broken before the slash, as formatters do."""
-    name, indent = text(field.name), 2 * _INDENT
+    name, indent = text(field.name), 3 * _INDENT
     expression = field_format(field)
     if indent + len(name) + 3 + len(expression) + 1 <= 100 or "(" not in expression:
         return f"{name} / {expression},"
@@ -151,16 +151,24 @@ def _format_line(field: Field) -> str:
 
 def _rules(fields: tuple[Field, ...]) -> str:
     """The rules of all fields; several stand below each other."""
+    if not fields:
+        return "()"
+    indent = " " * _INDENT
     if len(fields) < 2:
-        only = [f"({text(field.name)}, {field_rule(field)})" for field in fields]
-        return wrapped(tuple_of(only), _INDENT + len("RULES = "), _INDENT, after=0)
-    lines = [" " * 2 * _INDENT + _rule_line(field) for field in fields]
-    return "\n".join(["(", *lines, " " * _INDENT + ")"])
+        only = tuple_of(f"({text(field.name)}, {field_rule(field)})" for field in fields)
+        whole = f"_rt.lazily(lambda: {only})"
+        if _INDENT + len("RULES = ") + len(whole) <= WIDTH:
+            return whole
+        made = wrapped(only, 2 * _INDENT + len("lambda: "), 2 * _INDENT, after=0)
+        return f"_rt.lazily(\n{2 * indent}lambda: {made}\n{indent})"
+    lines = [3 * indent + _rule_line(field) for field in fields]
+    head, end = f"_rt.lazily(\n{2 * indent}lambda: (", f"{2 * indent})\n{indent})"
+    return "\n".join([head, *lines, end])
 
 
 def _rule_line(field: Field) -> str:
     expression = f"({text(field.name)}, {field_rule(field)})"
-    return wrapped(expression, 2 * _INDENT, 2 * _INDENT) + ","
+    return wrapped(expression, 3 * _INDENT, 3 * _INDENT) + ","
 
 
 def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
@@ -224,7 +232,7 @@ def _default(field: Field) -> str | None:
         case None:
             return None
         case tuple():
-            return f"_field(default_factory=lambda: {list(value)})"
+            return f"_rt.field(default_factory=lambda: {list(value)})"
         case bytes():
             return octets_in_class(value)
         case str():

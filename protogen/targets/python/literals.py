@@ -11,7 +11,7 @@ def number(value: Fraction | int) -> str:
     exact = Fraction(value)
     if exact.denominator == 1:
         return str(exact.numerator)
-    return f"_Fraction({exact.numerator}, {exact.denominator})"
+    return f"_rt.Fraction({exact.numerator}, {exact.denominator})"
 
 
 def octets(value: bytes) -> str:

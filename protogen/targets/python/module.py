@@ -40,9 +40,9 @@ class SenderView:
     union_text: str
     parts: str
     frame: str
-    """Name of the constant."""
+    """Name of the function that describes it."""
     frame_text: str
-    """Its value; empty where another sender has the same frame."""
+    """What that gives; empty where another sender has the same frame."""
     spec_text: str
     decode_head: str
     """Of the overload of `decode`."""
@@ -72,6 +72,8 @@ class Module:
     """Counters and values that `encode` takes."""
     arguments_doc: str
     counts: bool
+    formats: str
+    """What gives the frames as construct declarations."""
     registry: str
     decoder_heads: tuple[str, ...]
     decode_stub: str
@@ -107,6 +109,7 @@ def view(protocol: Protocol) -> Module:
         arguments=arguments,
         arguments_doc=_arguments_doc(protocol),
         counts=any(_counters(sender) for sender in protocol.senders),
+        formats=_formats(senders),
         registry=_registry(protocol),
         decoder_heads=_decoder_heads(senders, any_message, any_parts),
         decode_stub=_decode_head("Sender", any_message, after=5),
@@ -121,7 +124,7 @@ def _uses(structs: tuple[RecordClass, ...], senders: tuple[SenderView, ...]) -> 
     texts += [item.text for record in records for item in record.attributes]
     texts += [sender.frame_text for sender in senders]
     joined = "\n".join(texts)
-    names = ("_Fraction(", "_field(", "_builtins.", "_checksum.", "_transparency.")
+    names = ("_builtins.", "_checksum.", "_transparency.")
     return frozenset(name.strip("(.") for name in names if name in joined)
 
 
@@ -194,7 +197,7 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
     for sender in protocol.senders:
         frame_text = _frame(sender)
         known = frame_text in frame_names
-        frame = frame_names.setdefault(frame_text, f"{sender.name.upper()}_FRAME")
+        frame = frame_names.setdefault(frame_text, f"_{sender.name}_frame_spec")
         new = [message for message in sender.messages if message.name not in printed]
         printed.update(message.name for message in new)
         union_name = f"{class_name(sender.name)}Message"
@@ -271,7 +274,7 @@ def _frame(sender: Sender) -> str:
         seven_bit="True" if framing.seven_bit else None,
         ambiguous_cut="True" if framing.cut_ambiguous else None,
     )
-    return wrapped(expression, len(sender.name) + 9, 0, after=0)
+    return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)
 
 
 def _unless(expression: str, default: str) -> str | None:
@@ -309,6 +312,12 @@ def _protocol_text(
     specs = [f"{sender.upper}_SENDER" for sender in senders]
     expression = call("_rt.Protocol", text(protocol.name), *specs, spec_hash="SPEC_HASH")
     return name + wrapped(expression, len(name), 0, after=0)
+
+
+def _formats(senders: tuple[SenderView, ...]) -> str:
+    named = [f"{item.upper}_FORMAT={item.upper}_SENDER" for item in senders]
+    expression = call("_fast.frame_formats", "globals()", *named)
+    return wrapped(expression, _INDENT + len("__getattr__ = "), _INDENT, after=0)
 
 
 def _registry(protocol: Protocol) -> str:

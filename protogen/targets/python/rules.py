@@ -103,7 +103,7 @@ def _physical(field: Field) -> dict[str, str | None]:
 
 
 def _fraction(value: Fraction) -> str:
-    return f"_Fraction({value.numerator}, {value.denominator})"
+    return f"_rt.Fraction({value.numerator}, {value.denominator})"
 
 
 def _extent(key: str, extent: Extent) -> dict[str, str | None]:
