@@ -38,6 +38,39 @@ matty.Encoder("esp").encode(matty.Ack(), counter=3)
 matty.Go.FORMAT.parse(b"")
 """
 
+GENERATED = """
+import dataclasses
+from typing import assert_type
+
+from generated.python import rn1
+from protogen.runtime.api import FrameFormat
+from protogen.runtime.constructs import Struct
+from protogen.runtime.records import FieldRules
+
+gyro = rn1.Gyro(status=1, int_x=2, int_y=3, int_z=4)
+assert_type(dataclasses.replace(gyro, status=2), rn1.Gyro)
+print(dataclasses.fields(gyro), dataclasses.asdict(gyro))
+match gyro:
+    case rn1.Gyro(int_x=int_x):
+        assert_type(int_x, int)
+assert_type(rn1.Gyro.FORMAT, Struct)
+rules: FieldRules = rn1.Gyro.RULES
+assert_type(rn1.HOST_FORMAT, FrameFormat)
+start = rn1.Parts(128).start
+"""
+
+GENERATED_MISUSE = """
+import dataclasses
+
+from generated.python import rn1
+
+rn1.Gyro(1, 2, 3, 4)
+rn1.Maintenance(operation=81)
+dataclasses.replace(rn1.Facing(status=1, heading=2, speed=3), status="1")
+rn1.Parts(start=128).start = 129
+rn1.NONSENSE_FORMAT
+"""
+
 MISUSE = """
 import handwritten_matty as matty
 
@@ -69,3 +102,9 @@ def test_right_use_is_accepted(tmp_path: Path, project_root: Path) -> None:
 def test_wrong_use_is_reported(tmp_path: Path, project_root: Path) -> None:
     found = errors(MISUSE, tmp_path, project_root)
     assert len({line.split(":")[1] for line in found}) == 5
+
+
+def test_generated_classes_are_dataclasses(tmp_path: Path, project_root: Path) -> None:
+    assert errors(GENERATED, tmp_path, project_root) == []
+    found = errors(GENERATED_MISUSE, tmp_path, project_root)
+    assert [int(line.split(":")[1]) for line in found] == [6, 7, 8, 9, 10]

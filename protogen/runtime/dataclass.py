@@ -155,9 +155,9 @@ class _Methods:
                 inside[name] = _Late(self, name, make)
         positional = [item.name for item in self.fields if item.init and not self.kw_only]
         inside.setdefault("__match_args__", tuple(positional))
-        inside["__hash__"] = None
+        if inside.get("__hash__") is None:
+            inside["__hash__"] = _Late(self, "__hash__", _hash) if self.frozen else None
         if self.frozen:
-            inside["__hash__"] = _Late(self, "__hash__", _hash)
             inside |= _frozen_methods(self)
         kind: Any = type(cls)
         self.cls = kind(cls.__name__, cls.__bases__, inside)
