@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
-from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.lines import Constants, Lines
@@ -330,8 +329,7 @@ class _Cutter(FrameFunction):
 
     def _counted_optional(self, length: LengthPart) -> int:
         """What the length counts less where the payload is empty."""
-        absent = (part for part in self.frame.checksums if part.when_payload)
-        return sum(fixed_size(part) for part in absent if part.name in length.counts)
+        return self.frame.counted_optional(length)
 
     def _optional_length(self, part: LengthPart) -> None:
         counted, number = self.counted(part), self.number("content", part)

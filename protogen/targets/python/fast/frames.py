@@ -12,6 +12,7 @@ from protogen.model.frame import (
     CounterPart,
     Escape,
     IdentityPart,
+    LengthPart,
     LiteralPart,
     Part,
     PayloadPart,
@@ -177,6 +178,22 @@ class FastFrame:
         return any(part.when_payload for part in self.checksums)
 
     @property
+    def optional_size(self) -> int:
+        """Bytes that are absent where the payload is empty."""
+        return sum(fixed_size(part) for part in self.checksums if part.when_payload)
+
+    def counted(self, part: LengthPart) -> int:
+        """What the length counts besides the payload."""
+        return sum(
+            fixed_size(other) for other in self.sender.frame.parts if other.name in part.counts
+        )
+
+    def counted_optional(self, length: LengthPart) -> int:
+        """What the length counts less where the payload is empty."""
+        absent = (part for part in self.checksums if part.when_payload)
+        return sum(fixed_size(part) for part in absent if part.name in length.counts)
+
+    @property
     def shares(self) -> bool:
         """Whether the end of a frame may be the start of the next as well."""
         return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
@@ -261,6 +278,19 @@ class FastFrame:
 
         The content's last `missing` bytes are not there yet.
         """
+        pieces = [
+            octets_in_class(run)
+            if isinstance(run, bytes)
+            else self.slice_of(content, *(_moved(bound, missing) for bound in run))
+            for run in self.covered_runs(part)
+        ]
+        return " + ".join(pieces) or 'b""'
+
+    def covered_runs(self, part: ChecksumPart) -> tuple[tuple[int, int] | bytes, ...]:
+        """What a checksum covers: bytes, or where they begin and end in the content.
+
+        A place below 0 is counted from the content's end, as is an end of 0.
+        """
         runs: list[tuple[int, int] | bytes] = []
         for name in part.covers:
             run = self._run(name)
@@ -269,13 +299,12 @@ class FastFrame:
                 runs[-1] = (before[0], run[1])
             else:
                 runs.append(run)
-        pieces = [
-            octets_in_class(run)
-            if isinstance(run, bytes)
-            else self.slice_of(content, *(_moved(bound, missing) for bound in run))
-            for run in runs
-        ]
-        return " + ".join(pieces) or 'b""'
+        return tuple(runs)
+
+    def is_start(self, part: LiteralPart) -> bool:
+        """Whether finding the start has checked the literal."""
+        behind = self.offset(part) + self.skipped + len(part.bytes)
+        return behind <= len(self.start_bytes)
 
     def is_skipped(self, part: LiteralPart) -> bool:
         """Whether a literal stands in front of the content."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from protogen.model.frame import LengthPart, LiteralPart, NumberPart
 from protogen.model.framing import StartSet
 from protogen.model.types import Integer
-from protogen.model.wire import fixed_size
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Lines
 
@@ -37,20 +36,15 @@ class FrameFunction:
     @property
     def optional_size(self) -> int:
         """Bytes that are absent where the payload is empty."""
-        return sum(fixed_size(part) for part in self.frame.checksums if part.when_payload)
+        return self.frame.optional_size
 
     def is_start(self, part: LiteralPart) -> bool:
         """Whether finding the start has checked the literal."""
-        behind = self.frame.offset(part) + self.frame.skipped + len(part.bytes)
-        return behind <= len(self.frame.start_bytes)
+        return self.frame.is_start(part)
 
     def counted(self, part: LengthPart) -> int:
         """What the length counts besides the payload."""
-        return sum(
-            fixed_size(other)
-            for other in self.frame.sender.frame.parts
-            if other.name in part.counts
-        )
+        return self.frame.counted(part)
 
     def number(self, source: str, part: NumberPart, base: str = "") -> str:
         """The value of a part of the head."""
