@@ -10,6 +10,7 @@ from random import Random
 
 import handwritten_streams
 import pytest
+from bulk_support import reading_at, tables_of
 from capture_support import assert_same_tables
 from cli_support import run
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
@@ -60,7 +61,10 @@ def native_tables(path: Path, sender: str, data: bytes) -> Tables:
 
 
 def check(path: Path, sender: str, data: bytes) -> None:
-    assert_same_tables(native_tables(path, sender, data), python_tables(path, sender, data))
+    native = native_tables(path, sender, data)
+    assert_same_tables(native, python_tables(path, sender, data))
+    for least in (0, 1):  # By events alone, and all that can be in bulk.
+        assert_same_tables(native, tables_of(reading_at(path, sender, least), [data]))
 
 
 # --- equality -------------------------------------------------------------------------------------

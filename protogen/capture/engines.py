@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, Literal, Protocol
 
+from protogen.capture.bulk.stretch import Bulk
 from protogen.capture.errors import CaptureError, SlowCaptureWarning
 from protogen.capture.layout import capture_schema
-from protogen.capture.pure import PythonEngine
+from protogen.capture.pure import PythonEngine, Reading
 from protogen.capture.tables import Tables
 from protogen.model.protocol import Protocol as Model
 from protogen.model.protocol import Sender
@@ -64,8 +66,24 @@ def _warn(why: str) -> None:
         warnings.warn(text, SlowCaptureWarning, stacklevel=5)
 
 
-def _python(protocol: Model, sender: Sender) -> PythonEngine:
+def reading_of(protocol: Model, sender: Sender) -> Reading:
+    """What Python reads the bytes of `sender` with."""
+    for model, name, found in _READINGS:
+        if model is protocol and name == sender.name:
+            return found
     from protogen.targets.python.live import module_of
 
-    decoder = module_of(protocol).Decoder(sender.name)
-    return PythonEngine(capture_schema(protocol, sender), decoder)
+    schema = capture_schema(protocol, sender)
+    spec = module_of(protocol).PROTOCOL.sender(sender.name)
+    bulk = Bulk(sender, spec, schema) if Bulk.can_read(sender) else None
+    found = Reading(schema, spec, bulk)
+    _READINGS.append((protocol, sender.name, found))
+    return found
+
+
+_READINGS: deque[tuple[Model, str, Reading]] = deque(maxlen=16)
+"""Those that were used last."""
+
+
+def _python(protocol: Model, sender: Sender) -> PythonEngine:
+    return PythonEngine(reading_of(protocol, sender))

@@ -20,6 +20,10 @@ _SLACK = 1.02
 """Rows beyond those that a capture would have if it went on as it began."""
 
 
+_LITTLE = 1 << 20
+"""Bytes that are copied sooner than a thread begins."""
+
+
 class _Column:
     """The rows of one table, in as few blocks as their number allows to foresee."""
 
@@ -102,7 +106,11 @@ def _add(
             foreseen = (column.count + len(rows)) * whole - column.count
             place = column.reserve(len(rows), foreseen)
             more = payloads if rows is piece.unknown else 0
-            copies.append(pool.submit(_copy, place, rows, payload_column(piece.schema), more))
+            work = (place, rows, payload_column(piece.schema), more)
+            if rows.nbytes < _LITTLE:
+                _copy(*work)
+            else:
+                copies.append(pool.submit(_copy, *work))
     return copies
 
 

@@ -1,12 +1,15 @@
-"""Fills tables from the events of the Python decoder."""
+"""Fills tables in Python: rows that were read in bulk, and rows from the decoder's events."""
 
 from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
+from protogen.capture.bulk.cutter import LEAST, BulkCutter
+from protogen.capture.bulk.stretch import Bulk, Run, rows_of_runs
 from protogen.capture.schema import (
     CaptureSchema,
     Choice,
@@ -19,26 +22,47 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
-from protogen.capture.tables import Tables, rows
+from protogen.capture.tables import Tables, chosen, concatenated, empty_rows, rows
 from protogen.runtime.decoder import Decoder
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows
-    from protogen.runtime.events import Event
+    from protogen.runtime.sender import SenderSpec
 
 Values = Sequence[Any]
 Scope = ChainMap[str, Values]
 """What the columns in front hold, for each row: it counts and selects."""
 
 
+class Reading:
+    """What the bytes of one endpoint are read with. It takes a while to make, and never changes."""
+
+    def __init__(
+        self, schema: CaptureSchema, spec: SenderSpec[Any, Any], bulk: Bulk | None = None
+    ) -> None:
+        """Without `bulk` all rows come from events."""
+        self.schema = schema
+        self.spec = spec
+        self.bulk = bulk
+        self.empty = empty_rows(schema)
+        self.invalid = rows(dtype_of(schema.invalid))
+        self.unknown = rows(dtype_of(schema.unknown))
+
+
 class PythonEngine:
-    """A stream that becomes tables, some bytes at a time."""
+    """A stream that becomes tables, some bytes at a time.
+
+    What is plainly in order becomes rows in bulk, and the decoder's events tell the rest.
+    """
 
     name = "python"
 
-    def __init__(self, schema: CaptureSchema, decoder: Decoder[Any, Any]) -> None:
-        self._schema = schema
-        self._decoder = decoder
+    def __init__(self, reading: Reading, least: int = LEAST) -> None:
+        """The rows of fewer bytes than `least` come from events."""
+        self._reading = reading
+        spec, bulk = reading.spec, reading.bulk
+        self._cutter = BulkCutter(bulk, spec, least) if bulk is not None else None
+        self._decoder = Decoder(replace(spec, cut=self._cutter or spec.cut))
         self._fed = 0
         self._offset = 0
         self._sequence = 0
@@ -52,31 +76,65 @@ class PythonEngine:
         """Take the end of the stream."""
         yield self._tables(self._decoder.flush())
 
-    def _tables(self, events: Sequence[Event[Any, Any]]) -> Tables:
-        numbered = list(enumerate(events, self._sequence))
+    def _tables(self, found: Sequence[Any]) -> Tables:
+        if self._cutter is not None:
+            self._cutter.forget()
+        numbered, runs, count = _numbered(found, self._sequence)
         offset, sequence = self._offset, self._sequence
         self._offset = self._fed - self._decoder.pending
-        self._sequence += len(events)
+        self._sequence += count
         unknown: list[tuple[int, Any]] = [item for item in numbered if item[1].kind == "unknown"]
         return Tables(
-            schema=self._schema,
+            schema=self._reading.schema,
             engine=self.name,
-            messages=self._messages(numbered),
-            invalid=_invalid(self._schema.invalid, numbered),
-            unknown=_unknown(self._schema.unknown, unknown),
+            messages=self._messages(numbered, runs),
+            invalid=_invalid(self._reading, numbered),
+            unknown=_unknown(self._reading, unknown),
             payloads=_octets(b"".join(event.payload for _, event in unknown)),
             offset=offset,
             size=self._offset - offset,
             sequence=sequence,
-            events=len(events),
+            events=count,
         )
 
-    def _messages(self, numbered: Sequence[tuple[int, Any]]) -> dict[str, Rows]:
-        found: dict[str, list[tuple[int, Any]]] = {name: [] for name in self._schema.messages}
+    def _messages(
+        self, numbered: Sequence[tuple[int, Any]], runs: Sequence[tuple[int, Run]]
+    ) -> dict[str, Rows]:
+        by_name: dict[str, list[tuple[int, Any]]] = {}
         for item in numbered:
             if item[1].kind == "message":
-                found[item[1].message.NAME].append(item)
-        return {name: _filled(self._schema.messages[name], item) for name, item in found.items()}
+                by_name.setdefault(item[1].message.NAME, []).append(item)
+        pieces = rows_of_runs(runs)
+        for name, items in by_name.items():
+            found = _filled(self._reading.schema.messages[name], items)
+            pieces.setdefault(name, []).append(found)
+        others = {name: _in_order(items) for name, items in pieces.items()}
+        return self._reading.empty | others
+
+
+def _numbered(
+    found: Sequence[Any], first: int
+) -> tuple[list[tuple[int, Any]], list[tuple[int, Run]], int]:
+    """Events and runs with their numbers, and how many events that makes."""
+    events: list[tuple[int, Any]] = []
+    runs: list[tuple[int, Run]] = []
+    number = first
+    for item in found:
+        if isinstance(item, Run):
+            runs.append((number, item))
+            number += item.stop - item.first
+        else:
+            events.append((number, item))
+            number += 1
+    return events, runs, number - first
+
+
+def _in_order(pieces: Sequence[Rows]) -> Rows:
+    """All rows, by their numbers."""
+    if len(pieces) == 1:
+        return pieces[0]
+    together = concatenated(pieces)
+    return chosen(together, numpy().argsort(together["sequence"]))
 
 
 def _octets(data: bytes) -> Rows:
@@ -96,14 +154,19 @@ def _framed(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
     return found
 
 
-def _invalid(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
-    chosen = [item for item in numbered if item[1].kind == "invalid"]
-    found = _framed(table, chosen)
-    found["reason"] = [InvalidReason[event.reason.upper()] for _, event in chosen]
+def _invalid(reading: Reading, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    invalid = [item for item in numbered if item[1].kind == "invalid"]
+    if not invalid:
+        return reading.invalid
+    found = _framed(reading.schema.invalid, invalid)
+    found["reason"] = [InvalidReason[event.reason.upper()] for _, event in invalid]
     return found
 
 
-def _unknown(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
+def _unknown(reading: Reading, numbered: Sequence[tuple[int, Any]]) -> Rows:
+    if not numbered:
+        return reading.unknown
+    table = reading.schema.unknown
     found = _framed(table, numbered)
     sizes = [len(event.payload) for _, event in numbered]
     places = {"payload_size": sizes, "payload_offset": [0, *_running(sizes)][: len(sizes)]}
@@ -122,8 +185,7 @@ def _running(sizes: Sequence[int]) -> Iterator[int]:
 
 def _filled(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
     found = _framed(table, numbered)
-    if numbered:
-        _fill(found, table.fields, [event.message for _, event in numbered], ChainMap())
+    _fill(found, table.fields, [event.message for _, event in numbered], ChainMap())
     return found
 
 
