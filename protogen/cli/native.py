@@ -26,18 +26,24 @@ def build(
     """
     from protogen.cli.schemas import open_protocol, schema_files
     from protogen.native.build import build as build_library
+    from protogen.native.build import build_printer
     from protogen.native.errors import NativeError
 
     protocols = [open_protocol(file) for file in schema_files(schemas)]
-    for protocol in protocols:
-        for sender in protocol.senders:
-            try:
+    try:
+        for protocol in protocols:
+            for sender in protocol.senders:
                 built = build_library(protocol, sender)
-            except NativeError as error:
-                raise UsageError(str(error), "captures can still be read in Python") from None
-            state = "compiled" if built.is_new else "is there"
-            typer.echo(f"{protocol.name} {sender.name}: {state}")
+                _say(f"{protocol.name} {sender.name}", is_new=built.is_new)
+        _, is_new = build_printer()
+    except NativeError as error:
+        raise UsageError(str(error), "captures can still be read in Python") from None
+    _say("what prints rows as text", is_new=is_new)
     return CLEAN
+
+
+def _say(what: str, *, is_new: bool) -> None:
+    typer.echo(f"{what}: {'compiled' if is_new else 'is there'}")
 
 
 def path() -> int:

@@ -18,8 +18,11 @@ from protogen.convert import cells
 from protogen.convert.arrays import Array, Lists, Nothing, Numbers
 from protogen.convert.columns import ColumnBatch, Reading, Readings, payload_places
 from protogen.convert.plain_rows import json_fields, plain_rows
+from protogen.convert.printed_lines import PrintedLines
 from protogen.model.fields import Field
 from protogen.model.types import Struct
+from protogen.native.errors import NativeError
+from protogen.native.source import has_one_spelling
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.lines import encode_line
 from protogen.runtime.sender import SenderSpec
@@ -39,12 +42,17 @@ class _Template:
 
 
 class LineWriter:
-    """Makes lines of batches."""
+    """Makes lines of batches: by C that prints them, or where there is no compiler by NumPy."""
 
-    def __init__(self, readings: Readings, spec: SenderSpec[Any, Any]) -> None:
+    def __init__(
+        self, readings: Readings, spec: SenderSpec[Any, Any], *, prints: bool = False
+    ) -> None:
+        """`prints`: whether C may print them."""
+        self._prints = prints
+        self._printed: PrintedLines | None = None
         self._readings = readings
         self._spec = spec
-        one_spelling = _has_one_spelling(readings)
+        one_spelling = has_one_spelling(readings.tables.sender)
         self._templates = {
             name: _template(reading, readings) if one_spelling else None
             for name, reading in readings.messages.items()
@@ -52,9 +60,19 @@ class LineWriter:
 
     def write(self, batch: ColumnBatch) -> Iterable[bytes]:
         """The events of a batch as lines, in the order of the capture."""
+        if self._prints and self._printed is None:
+            try:
+                self._printed = PrintedLines(self._readings, self)
+            except NativeError:
+                self._prints = False
+        if self._printed is not None:
+            return self._printed.write(batch)
+        return self._joined(batch)
+
+    def _joined(self, batch: ColumnBatch) -> Iterable[bytes]:
         found = list(self._of_messages(batch))
         if len(batch.filled.unknown):
-            found.append(self._unknown(batch))
+            found.append(self.unknown(batch))
         if len(batch.filled.invalid):
             found.append(self._invalid(batch))
         if not found:
@@ -72,11 +90,11 @@ class LineWriter:
             reading, rows = self._readings.messages[name], batch.filled.messages[name]
             template = self._templates[name]
             if template is None:
-                yield rows["offset"], self._one_by_one(batch, reading, rows)
+                yield rows["offset"], self.one_by_one(batch, reading, rows)
                 continue
             doubtful = None if template.doubtful is None else template.doubtful(rows)
             if doubtful is not None and doubtful.any():
-                yield rows["offset"][doubtful], self._one_by_one(batch, reading, rows[doubtful])
+                yield rows["offset"][doubtful], self.one_by_one(batch, reading, rows[doubtful])
                 rows, others = rows[~doubtful], True
             if len(rows):
                 texts = list(self._at_once(batch, template, rows))
@@ -102,7 +120,8 @@ class LineWriter:
 
     # --- one by one -------------------------------------------------------------------------------
 
-    def _one_by_one(self, batch: ColumnBatch, reading: Reading, rows: Any) -> list[bytes]:
+    def one_by_one(self, batch: ColumnBatch, reading: Reading, rows: Any) -> list[bytes]:
+        """The lines of a message's rows, each of which is tried."""
         message = reading.table.message
         assert message is not None
         plain = plain_rows(reading.held, rows)
@@ -115,7 +134,8 @@ class LineWriter:
             lines.append(self._tried(batch, line, rows[place]))
         return self._finished(batch, rows, lines)
 
-    def _unknown(self, batch: ColumnBatch) -> Lines:
+    def unknown(self, batch: ColumnBatch) -> Lines:
+        """The lines of the frames of unknown identity, each of which is tried."""
         rows = batch.filled.unknown
         schema = self._readings.schema.unknown
         places = payload_places(schema)
@@ -179,17 +199,6 @@ def _parts(held: TableSchema, rows: Any) -> list[dict[str, int]]:
 
 
 # --- many at once ---------------------------------------------------------------------------------
-
-
-def _has_one_spelling(readings: Readings) -> bool:
-    """Whether a frame can only have the bytes that an encoder makes of what is in it."""
-    sender = readings.tables.sender
-    transparency = sender.frame.transparency
-    if transparency is not None and transparency.lenient:
-        return False
-    start, end = sender.framing.start, sender.framing.end
-    shared = end is not None and getattr(start, "bytes", None) == end.bytes
-    return not (sender.framing.cut_ambiguous or shared)
 
 
 def _template(reading: Reading, readings: Readings) -> _Template | None:

@@ -39,9 +39,8 @@ def column_decoders(
     from protogen.convert.columns import ColumnDecoder, Readings
 
     readings = Readings(tables, capture_schema(tables.protocol, tables.sender))
-    lines = LineWriter(readings, spec)
-
     filler, _ = makers(tables.protocol, tables.sender, cast(Any, engine))
+    lines = LineWriter(readings, spec, prints=engine != "python")
 
     def make(start: int) -> ColumnDecoder:
         return ColumnDecoder(readings, filler(), lines.write, start)

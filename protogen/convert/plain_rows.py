@@ -188,15 +188,16 @@ def _case(
 
 def json_fields(fields: Sequence[Field], values: Mapping[str, Any]) -> dict[str, Any]:
     """Plain values as JSON lines show them."""
-    return {item.name: _json(item.type, values[item.name]) for item in fields}
+    return {item.name: json_value(item.type, values[item.name]) for item in fields}
 
 
-def _json(type: Type, value: Any) -> Any:
+def json_value(type: Type, value: Any) -> Any:
+    """A plain value as JSON lines show it."""
     match type:
         case Octets():
             return value.hex()
         case Array(element=element):
-            return [_json(element, item) for item in value]
+            return [json_value(element, item) for item in value]
         case Struct(fields=fields):
             return json_fields(fields, value)
         case Switch(cases=cases):
@@ -204,6 +205,6 @@ def _json(type: Type, value: Any) -> Any:
             case = next((case for case in cases if case.name == name), None)
             if case is None:
                 return chosen.hex()
-            return _json(case.type, chosen) if chosen != {} else None
+            return json_value(case.type, chosen) if chosen != {} else None
         case _:
             return str(value) if isinstance(value, float) and value - value != 0 else value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -30,30 +31,49 @@ def build(protocol: Protocol, sender: Sender) -> Built:
     Two processes may do this at once. Raises NativeError where it can't be done.
     """
     driver = driver_of(protocol, sender)
-    found = compiler()
-    folder = safe_folder(cache_folder())
-    path = folder / f"{protocol.name}_{sender.name}-{_key(protocol, driver, found)}{SUFFIX}"
-    is_new = not path.exists()
-    if is_new:
-        _compile(driver, found, path)
-    check(path)
+    name = f"{protocol.name}_{sender.name}"
+    path, is_new = _compiled(name, driver.text, (protocol.spec_hash, sender.name))
     return Built(driver, path, is_new)
 
 
-def _key(protocol: Protocol, driver: Driver, found: Compiler) -> str:
+def build_printer() -> tuple[Path, bool]:
+    """The library that prints rows as text, and whether it was compiled just now.
+
+    It is the same for all schemas. Raises NativeError.
+    """
+    source = files("protogen.native").joinpath("templates", "printer.c")
+    return _compiled("printer", source.read_text("utf-8"), ())
+
+
+def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
+    """The library of a C source, and whether it was compiled just now.
+
+    `words`: what else it depends on. Raises NativeError.
+    """
+    found = compiler()
+    folder = safe_folder(cache_folder())
+    path = folder / f"{name}-{_key(text, words, found)}{SUFFIX}"
+    is_new = not path.exists()
+    if is_new:
+        _compile(text, found, path)
+    check(path)
+    return path, is_new
+
+
+def _key(text: str, words: tuple[str, ...], found: Compiler) -> str:
     """Of everything that the library is made from."""
-    text = hashlib.sha256(driver.text.encode()).hexdigest()
-    words = (VERSION, protocol.spec_hash, driver.sender, found.identity, text)
-    return hashlib.sha256("\n".join(words).encode()).hexdigest()[:24]
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    every = (VERSION, *words, found.identity, digest)
+    return hashlib.sha256("\n".join(every).encode()).hexdigest()[:24]
 
 
-def _compile(driver: Driver, found: Compiler, path: Path) -> None:
+def _compile(text: str, found: Compiler, path: Path) -> None:
     """Compile beside the library's place, and put it there at once."""
     try:
         with TemporaryDirectory(prefix=".build-", dir=path.parent) as name:
-            source = Path(name, f"{driver.protocol}.c")
+            source = Path(name, "source.c")
             library = Path(name, path.name)
-            source.write_text(driver.text, encoding="utf-8")
+            source.write_text(text, encoding="utf-8")
             found.build(source, library)
             library.chmod(0o700)
             library.replace(path)

@@ -64,6 +64,24 @@ class Library:
         self.flush = _function(library, "protogen_flush", None, pointer)
         self.lend = _function(quick, "protogen_lend", None, pointer, size, pointer, size)
         self.clear = _function(quick, "protogen_clear", None, pointer)
+        self._spell = None
+        if driver.spells:
+            spell = (size, pointer, size, pointer, long, pointer)
+            self._spell = _function(library, "protogen_spell", ctypes.c_int, *spell)
+
+    def differs(self, number: int, rows: Rows, line: bytes, start: int) -> Rows:
+        """For each row of a table, whether an encoder makes other bytes of it than `line` has.
+
+        `start` is the offset of the line's first byte.
+        """
+        assert self._spell is not None
+        whole = numpy().ascontiguousarray(rows)
+        found: Rows = numpy().zeros(len(rows), "u1")
+        data = numpy().frombuffer(line, "u1")
+        places = (data.ctypes.data, start, found.ctypes.data)
+        if not self._spell(number, whole.ctypes.data, len(rows), *places):
+            raise MemoryError
+        return found
 
 
 class Decoder:

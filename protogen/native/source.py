@@ -12,7 +12,7 @@ from protogen.capture.layout import capture_schema, message_record
 from protogen.capture.schema import CaptureSchema, Choice, Column, Record, TableSchema
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoder import DecoderView
-from protogen.targets.c.emit import texts, unit_of
+from protogen.targets.c.emit import Unit, texts, unit_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
 from protogen.targets.printing import environment
@@ -47,6 +47,17 @@ class _Direct:
 
 
 @dataclass(frozen=True, slots=True)
+class _Spelling:
+    """What makes the frame of a message again."""
+
+    number: int
+    """Of its table."""
+    function: str
+    room: str
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Driver:
     """A source to compile, and what is expected of the library."""
 
@@ -56,6 +67,8 @@ class Driver:
     schema: CaptureSchema
     layout: tuple[int, ...]
     """What the library's `protogen_layout` has to say."""
+    spells: bool
+    """Whether the library has `protogen_spell`."""
 
 
 _KEPT: dict[tuple[int, str], tuple[Protocol, Driver]] = {}
@@ -83,6 +96,7 @@ def _driver(protocol: Protocol, sender: Sender) -> Driver:
         _table(unit.module.message(name), table) for name, table in schema.messages.items()
     )
     layout = list(_layout(schema))
+    spellings = [] if has_one_spelling(sender) else _spellings(unit, list(schema.messages))
     text = (
         _environment()
         .get_template("driver.c.j2")
@@ -96,10 +110,35 @@ def _driver(protocol: Protocol, sender: Sender) -> Driver:
             module=unit.module.name,
             direct=_direct(decoder, list(schema.messages)),
             tables=tables,
+            spellings=spellings,
             layout=[expression for expression, _ in layout],
         )
     )
-    return Driver(protocol.name, sender.name, text, schema, tuple(size for _, size in layout))
+    sizes = tuple(size for _, size in layout)
+    return Driver(protocol.name, sender.name, text, schema, sizes, bool(spellings))
+
+
+def has_one_spelling(sender: Sender) -> bool:
+    """Whether a frame can only have the bytes that an encoder makes of what is in it."""
+    transparency = sender.frame.transparency
+    if transparency is not None and transparency.lenient:
+        return False
+    start, end = sender.framing.start, sender.framing.end
+    shared = end is not None and getattr(start, "bytes", None) == end.bytes
+    return not (sender.framing.cut_ambiguous or shared)
+
+
+def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
+    return [
+        _Spelling(
+            tables.index(item.name),
+            item.function,
+            f"{item.upper}_FRAME_ROOM",
+            tuple(part.name for part in item.frame.arguments),
+        )
+        for item in unit.framing.messages
+        if item.name in tables
+    ]
 
 
 def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:

@@ -1,0 +1,137 @@
+"""Rows printed by C: numbers as Python spells them, and the same lines as those of events."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from compiled import ROOT, module_at, name_of, protocol_of
+from test_convert_columns import batches_of, lines_of
+from test_json_lines import capture_of
+from tooling import require_tool
+
+np = pytest.importorskip("numpy")
+
+from protogen.convert.programs import PLAIN, QUOTED, Programs, operand  # noqa: E402
+from protogen.native.printer import CODES, Kind, Printer, Table  # noqa: E402
+from protogen.runtime.assembly import encode_frame  # noqa: E402
+
+SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+SENDERS = [(path, it.name) for path in SAMPLERS for it in protocol_of(path).senders]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _kept_apart(tmp_path_factory: pytest.TempPathFactory):
+    """A cache of the tests' own."""
+    require_tool("cc")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def printed(columns: list[Any], programs: Programs) -> str:
+    offsets = np.arange(len(columns[0]), dtype="u8")
+    table = Table([offsets, *columns], 0, len(offsets))
+    return b"".join(Printer(programs.script()).texts([table])).decode()
+
+
+def numbers(values: Any) -> list[str]:
+    code = "?" if values.dtype == bool else values.dtype.str[1:]
+    programs = Programs()
+    programs.number(operand(code, source=1), code, QUOTED)
+    programs.text("\n")
+    programs.end()
+    return printed([values], programs).splitlines()
+
+
+class TestNumbers:
+    def test_of_floats_are_the_shortest(self) -> None:
+        dice = Random(5)
+        values = [0.0, -0.0, 1e-4, 9.999e-5, 1e15, 1e16, 123456789012345.0, 5e-324, 1.7e308, 0.1]
+        values += [999999999999999.9, 2.0**53, 1e22, 100.0, -2880 / 16, 1 / 3, 4503599627370497.5]
+        for _ in range(3000):
+            digits = dice.randrange(17)
+            values.append(dice.randrange(-(10**digits), 10**digits + 1) / 10 ** dice.randrange(18))
+            values.append(dice.randrange(1 << 20) / (1 << dice.randrange(24)))
+            values.append(dice.uniform(-1, 1) * 10.0 ** dice.randrange(-6, 18))
+            (anything,) = struct.unpack("<d", dice.randbytes(8))
+            values += [anything] if anything - anything == 0 else []
+        assert numbers(np.array(values)) == [repr(value) for value in values]
+
+    def test_of_short_floats_are_those_of_long_ones(self) -> None:
+        values = np.array([0.1, 16777216.0, 1e-45, 3.4e38, -0.5], "f4")
+        assert numbers(values) == [repr(value) for value in values.tolist()]
+
+    def test_that_are_not_finite_are_texts(self) -> None:
+        found = numbers(np.array([float("nan"), float("inf"), -float("inf")]))
+        assert found == ['"nan"', '"inf"', '"-inf"']
+
+    @pytest.mark.parametrize("code", CODES[:8])
+    def test_of_integers_reach_the_limits(self, code: str) -> None:
+        limits = np.iinfo(code)
+        least, most = int(limits.min), int(limits.max)
+        every = {least, least + 1, 0, 1, 9, 10, 99, 100, most - 1, most}
+        every |= {10**power + more for power in range(20) for more in (-1, 0)}
+        values = sorted(value for value in every if least <= value <= most)
+        assert numbers(np.array(values, code)) == [str(value) for value in values]
+
+    def test_of_bools_are_words(self) -> None:
+        assert numbers(np.array([True, False])) == ["true", "false"]
+
+
+class TestTexts:
+    def test_are_as_long_as_they_are(self) -> None:
+        programs = Programs()
+        programs.step(Kind.STRING, b=4, c=PLAIN, x=operand("u1", source=1))
+        programs.text("|")
+        programs.end()
+        assert printed([np.array([b"ab", b"", b"a\0b", b"\xe9"], "S4")], programs) == "ab||a\0b|é|"
+
+    def test_may_be_longer_than_the_room(self) -> None:
+        programs = Programs()
+        programs.step(Kind.SPAN, 2, x=operand("u8", source=1), y=operand("u8", source=1, offset=8))
+        programs.end()
+        line = bytes(range(256)) * 8000
+        spans = np.array([[0, 2], [1, len(line) - 1]], "u8")
+        assert printed([spans, line], programs) == "0001" + line[1:].hex()
+
+    def test_are_chosen_by_number(self) -> None:
+        programs = Programs()
+        programs.name(operand("i2", source=1), ("a", "bc"))
+        programs.text(";")
+        programs.end()
+        assert printed([np.array([1, -1, 0, 2], "i2")], programs) == "bc;;a;;"
+
+
+@pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
+@pytest.mark.parametrize("timed", [False, True])
+def test_lines_are_those_of_events(path: Path, sender: str, timed: bool) -> None:
+    for seed in range(3):
+        data = capture_of(path, sender, seed, 150)
+        expected = batches_of(path, sender, data, "events", 1 << 40, timed)
+        assert lines_of(batches_of(path, sender, data, None, 1 << 40, timed)) == lines_of(expected)
+
+
+@pytest.mark.parametrize("bits", ["7fc00000", "ffc00000", "7fc00001", "7f800001", "7f800000"])
+def test_a_nan_that_json_does_not_tell_has_its_bytes(bits: str) -> None:
+    path = SAMPLERS[0]
+    spec = module_at(path).PROTOCOL.sender("one")
+    message = spec.named("floats")
+    assert message is not None
+    payload = bytes.fromhex(bits) + bytes(protocol_of(path).message("floats").sizes.greatest - 4)
+    data = encode_frame(spec, message.IDENTITY, payload, {}, strict=False)
+    (line,) = lines_of(batches_of(path, "one", data, None))
+    assert lines_of(batches_of(path, "one", data, "events")) == [line]
+    assert (b'"raw"' in line) == (bits not in ("7fc00000", "7f800000"))
+
+
+def test_without_a_compiler_lines_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    path, sender = SENDERS[0]
+    data = capture_of(path, sender, 1, 100)
+    expected = lines_of(batches_of(path, sender, data, None))
+    monkeypatch.setenv("CC", "no-such-cc")
+    with pytest.warns(UserWarning, match="captures are read in Python"):
+        assert lines_of(batches_of(path, sender, data, None)) == expected
