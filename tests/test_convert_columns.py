@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from cli_support import SINK
-from compiled import module_at, name_of, protocol_of, senders
+from compiled import ROOT, module_at, name_of, protocol_of, senders
 from corpus import portions
 from test_json_lines import capture_of
 
@@ -28,7 +28,9 @@ from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Scalar, t
 from protogen.convert.values import as_list  # noqa: E402
 
 ENGINES = ["python", None]
-EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
+SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+SAMPLED = [(path, it.name) for path in SAMPLERS for it in protocol_of(path).senders]
+EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders() + SAMPLED, ids=name_of)
 
 
 def batches_of(
@@ -51,6 +53,8 @@ def comparable(value: Any) -> Any:
         return "nan"
     if isinstance(value, list | tuple):
         return [comparable(item) for item in value]
+    if isinstance(value, dict):
+        return {name: comparable(item) for name, item in value.items()}
     return value
 
 

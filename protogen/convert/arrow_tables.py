@@ -46,8 +46,9 @@ def type_of(type: ColumnType) -> pa.DataType:
             # Levels of what is never missing need not be written.
             item = pa.field("element", type_of(element), nullable=gaps)
             return pa.list_(item) if count is None else pa.list_(item, count)
-        case Record(members=members):
-            return pa.struct([(name, type_of(member)) for name, member in members])
+        case Record(members=members, gaps=gaps):
+            fields = [(name, type_of(member)) for name, member in members]
+            return pa.struct([pa.field(*field, nullable=gaps) for field in fields])
 
 
 def batch_of(rows: Rows, schema: pa.Schema) -> pa.RecordBatch:

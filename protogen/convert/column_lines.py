@@ -202,7 +202,7 @@ def _parts(held: TableSchema, rows: Any) -> list[dict[str, int]]:
 
 
 def _template(reading: Reading, readings: Readings) -> _Template | None:
-    if reading.fields is None:
+    if not reading.is_flat:
         return None
     assert reading.table.message is not None
     pieces: list[bytes | Cell] = [b'{"offset": ']

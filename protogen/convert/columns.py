@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,10 @@ from protogen.capture.schema import Number as NumberShape
 from protogen.capture.schema import Text as TextShape
 from protogen.capture.tables import Tables as Filled
 from protogen.convert.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
-from protogen.convert.batches import Rows, Tally, value_in
+from protogen.convert.batches import Rows, Tally
 from protogen.convert.chunks import Chunk
 from protogen.convert.meanings import NameFinder, physical
-from protogen.convert.plain_rows import plain_rows
+from protogen.convert.nested import Same, Scattered, nested
 from protogen.convert.tables import REASONS, Column, Naming, Physical, Table, Tables
 from protogen.model.fields import Field
 from protogen.model.types import Fixed
@@ -40,13 +41,14 @@ _REASON_CODES = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """How rows of a message become columns: column by column, or else row by row."""
+    """How rows of a message become columns."""
 
     table: Table
     held: TableSchema
     frame: tuple[Reader, ...]
-    fields: tuple[Reader, ...] | None
-    """None: some field has no shorter way than row by row."""
+    fields: tuple[Reader, ...]
+    is_flat: bool
+    """Whether no column comes from inside of a list or a switch."""
 
 
 class Readings:
@@ -64,10 +66,9 @@ class Readings:
 
 def _reading(table: Table, held: TableSchema) -> Reading:
     frame = tuple(_frame_readers(table, held))
-    readers = [_field_reader(column, held) for column in table.columns]
-    whole = all(reader is not None for reader in readers)
-    fields = tuple(reader for reader in readers if reader is not None) if whole else None
-    return Reading(table, held, frame, fields)
+    fields = tuple(_field_reader(column, held) for column in table.columns)
+    is_flat = all(_flat_reader(column, held) is not None for column in table.columns)
+    return Reading(table, held, frame, fields, is_flat)
 
 
 def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
@@ -92,19 +93,35 @@ def _number_reader(name: str) -> Reader:
 # --- the columns of fields ------------------------------------------------------------------------
 
 
-def _field_reader(column: Column, held: TableSchema) -> Reader | None:
-    """How a column is taken out of rows at once; None where that is not possible."""
-    assert held.message is not None
-    raw = _raw_reader(column.path, held.message.fields, [held.row])
+def _field_reader(column: Column, held: TableSchema) -> Reader:
+    """How a column is taken out of rows."""
+    raw = _flat_reader(column, held) or _nested_reader(column, held)
     match column.derived:
-        case _ if raw is None:
-            return None
         case Physical() as meaning:
-            return lambda rows: physical(meaning, raw(rows))
+            return lambda rows: _derived(raw(rows), meaning, partial(physical, meaning))
         case Naming() as naming:
             finder = NameFinder(naming)
-            return lambda rows: finder.find(raw(rows))
+            return lambda rows: _derived(raw(rows), naming, finder.find)
     return raw
+
+
+def _derived(raw: Values, meaning: Physical | Naming, derive: Callable[[Any], Values]) -> Values:
+    match raw:
+        case Scattered(values=values, places=places):
+            return Scattered(_derived(values, meaning, derive), places)
+        case Same(value=value, count=count):
+            return Same(meaning.of(value), count)
+    return derive(raw)
+
+
+def _flat_reader(column: Column, held: TableSchema) -> Reader | None:
+    """The raw values of a column that is there in every row; None for others."""
+    assert held.message is not None
+    return _raw_reader(column.path, held.message.fields, [held.row])
+
+
+def _nested_reader(column: Column, held: TableSchema) -> Reader:
+    return lambda rows: nested(column.path, held, rows)
 
 
 def _raw_reader(
@@ -252,14 +269,7 @@ class ColumnBatch:
 
     def _message_rows(self, reading: Reading, rows: Any) -> Rows:
         frame = self._frame(reading.frame, rows)
-        if reading.fields is not None:
-            return Rows(reading.table, [*frame, *(reader(rows) for reader in reading.fields)])
-        plain = plain_rows(reading.held, rows)
-        columns = reading.table.columns
-        return Rows(
-            reading.table,
-            [*frame, *([value_in(column, row) for row in plain] for column in columns)],
-        )
+        return Rows(reading.table, [*frame, *(reader(rows) for reader in reading.fields)])
 
     def _unknown_rows(self) -> Rows:
         rows = self.filled.unknown

@@ -81,6 +81,8 @@ class Record:
     """Named values."""
 
     members: tuple[tuple[str, ColumnType], ...]
+    gaps: bool = False
+    """Whether some of them may be missing."""
 
 
 ColumnType = Scalar | Names | Listed | Record
@@ -355,7 +357,7 @@ def column_type(type: Type) -> ColumnType:
         case Switch(cases=cases, rest=rest):
             members = [(case.name, column_type(case.type)) for case in cases if not _is_empty(case)]
             tail = [] if rest is None else [(rest_name(type), BYTES)]
-            return Record((*members, *tail))
+            return Record((*members, *tail), gaps=True)
 
 
 def _scalar(type: Integer) -> Scalar:
