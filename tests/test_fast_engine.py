@@ -14,15 +14,13 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-import construct
 import pytest
-from compiled import DOCUMENTS, SCHEMAS, module_at, name_of, protocol_of, senders
+from compiled import DOCUMENTS, module_at, name_of, protocol_of, senders
 from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from protogen.runtime import late
-from protogen.runtime.constructs import PayloadError
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate
 from protogen.runtime.number import Number
@@ -268,57 +266,3 @@ def test_lists_of_pairs_are_written_as_their_numbers_are(
         lists.encode([*values, outside])
     with pytest.raises(ValueError, match="is not in"):
         one[outside]
-
-
-# --- FORMAT ---------------------------------------------------------------------------------------
-
-
-def parsed(format: Any, parse: Any, data: bytes) -> Any:
-    try:
-        found = parse(format, data)
-    except PayloadError as error:
-        return (error.reason, error.path, error.offset, error.problem)
-    return repr({name: value for name, value in found.items() if name != "_io"})
-
-
-def built(format: Any, build: Any, values: Any) -> Any:
-    try:
-        return build(format, values)
-    except PayloadError as error:
-        return (error.reason, error.path, error.offset, error.problem)
-
-
-@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
-@given(data=st.data())
-def test_a_format_gives_what_constructs_own_way_gives(path: Path, data: Any) -> None:
-    messages = [m for m in module_at(path).MESSAGES.values() if m.SIZES.fixed]
-    if not messages:
-        return
-    message = data.draw(st.sampled_from(messages))
-    size = message.SIZES.fixed
-    payload = data.draw(st.binary(min_size=size, max_size=size) | st.binary(max_size=size + 2))
-    masked = data.draw(st.sampled_from([payload, bytes(byte & 0x7F for byte in payload)]))
-    due = parsed(message.FORMAT, construct.Struct.parse, masked)
-    assert parsed(message.FORMAT, type(message.FORMAT).parse, masked) == due
-    if isinstance(due, tuple):
-        return
-    values = dict(message.FORMAT.parse(masked))
-    values.pop("_io", None)
-    changes = data.draw(
-        st.dictionaries(st.sampled_from([*values, "strange"]), STRANGE_VALUES, max_size=1)
-    )
-    for given_ in (values, {**values, **changes}, dict(list(values.items())[1:])):
-        due = built(message.FORMAT, construct.Struct.build, given_)
-        assert built(message.FORMAT, type(message.FORMAT).build, given_) == due
-
-
-def test_a_format_takes_no_float_for_an_integer_that_it_has_seen() -> None:
-    """1.0 is found in a dictionary where 1 is."""
-    angle = rn1().MoveRelativeArc.FORMAT
-    assert angle.build({"angle": 1, "forward": 1})
-    with pytest.raises(PayloadError):
-        angle.build({"angle": 1.0, "forward": 1})
-
-
-def rn1() -> Any:
-    return module_at(next(path for path in DOCUMENTS if path.stem == "rn1"))

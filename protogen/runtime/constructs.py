@@ -17,18 +17,16 @@ bytes behind the last field, keys that no field has, and a bad tail of a greedy 
 from __future__ import annotations
 
 import io
-import struct
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from types import MethodType
 from typing import Any, BinaryIO, Literal, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
-from construct import Construct, Container, Pass
+from construct import Construct, Container, Pass, Renamed
 
 from protogen.runtime.errors import ByteError, Reason
-from protogen.runtime.fused import UNFUSED, Convert, Fused, Item, fuse
 from protogen.runtime.number import ByteOrder, Number
-from protogen.runtime.pairs import PairCodes, PairLists, Pairs
 
 __all__ = [
     "Cases",
@@ -49,6 +47,7 @@ __all__ = [
     "Pass",
     "PayloadError",
     "Piece",
+    "Renamed",
     "SevenBit",
     "SevenBitFloat",
     "Struct",
@@ -104,10 +103,6 @@ class Piece(Construct):  # type: ignore[misc]
     def __rtruediv__(self, name: str) -> Any:
         """`"speed" / Int(16)` is a field called `speed`."""
         return super().__rtruediv__(name)
-
-    def item(self) -> Item | None:
-        """How the piece is read and written together with its neighbours; None: it can't be."""
-        return None
 
 
 class _Around(Piece, construct.Subconstruct):  # type: ignore[misc]
@@ -168,22 +163,6 @@ class _Scalar(Piece):
         self._codec = codec
         self._size = codec.size
 
-    def item(self) -> Item:
-        """A number of two bytes of 7 bits is looked up; others are converted."""
-        codec = self._codec
-        if isinstance(codec, Number) and codec.seven_bit and codec.size == 2:
-            arguments = codec.bits, codec.signed, codec.order
-            order = "<" if codec.order == "little" else ">"
-            codes = PairCodes(*arguments)
-
-            def code_of(value: Any) -> int:
-                if type(value) is not int:  # 1.0 is found where 1 is.
-                    raise TypeError(value)
-                return codes[value]
-
-            return Item("H", order, Pairs(*arguments).__getitem__, code_of)
-        return Item(f"{self._size}s", "", codec.decode, codec.encode)
-
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
         data = _read(stream, self._size, path)
         try:
@@ -209,16 +188,6 @@ class _Native(_Around):
 
     def __init__(self, code: str, order: ByteOrder) -> None:
         super().__init__(construct.FormatField("<" if order == "little" else ">", code))
-        self._item = Item(code, "" if code in "bB" else self.subcon.fmtstr[0])
-
-    def item(self) -> Item:
-        """The code itself."""
-        return self._item
-
-    def layout(self, count: int) -> str:
-        """So many of them, for `struct`."""
-        order, code = self.subcon.fmtstr
-        return f"{order}{count}{code}"
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
         offset = stream.tell()
@@ -307,37 +276,6 @@ Flag01 = _Scalar(_Boolean())
 # --- values that are checked --------------------------------------------------------------------
 
 
-def _checked_item(subcon: Construct, is_right: Callable[[Any], Any]) -> Item | None:
-    """The item of a piece whose value has to be right, either way."""
-    item = item_of(subcon)
-    if item is None:
-        return None
-    decode, encode = item.decode or _itself, item.encode or _itself
-
-    def checked(value: Any) -> Any:
-        if is_right(value) is not True:
-            raise ValueError(value)
-        return value
-
-    return Item(
-        item.code,
-        item.order,
-        lambda raw: checked(decode(raw)),
-        lambda value: encode(checked(value)),
-    )
-
-
-def _itself(value: Any) -> Any:
-    return value
-
-
-def item_of(format: Construct) -> Item | None:
-    """How a piece is read and written together with its neighbours; None where it can't be."""
-    while isinstance(format, construct.Renamed):
-        format = format.subcon
-    return format.item() if isinstance(format, Piece) else None
-
-
 class Fixed(_Around):
     """A constant. Building needs no value; another one is an error, either way."""
 
@@ -345,10 +283,6 @@ class Fixed(_Around):
         super().__init__(subcon)
         self._value = value
         self.flagbuildnone = True
-
-    def item(self) -> Item | None:
-        """That of the value, which has to be the constant."""
-        return _checked_item(self.subcon, self._value.__eq__)
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
         offset = stream.tell()
@@ -372,10 +306,6 @@ class Closed(_Around):
     def __init__(self, subcon: Construct, values: Iterable[int]) -> None:
         super().__init__(subcon)
         self._values = frozenset(values)
-
-    def item(self) -> Item | None:
-        """That of the value, which has to be one of the set."""
-        return _checked_item(self.subcon, self._values.__contains__)
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
         offset = stream.tell()
@@ -410,20 +340,6 @@ class Octets(Piece):
         super().__init__()
         self._extent = size
         self._seven_bit = seven_bit
-
-    def item(self) -> Item | None:
-        """So many bytes, where that is fixed."""
-        if not isinstance(self._extent, int):
-            return None
-        return Item(f"{self._extent}s", "", self._fitting, self._fitting)
-
-    def _fitting(self, data: Any) -> bytes:
-        """The same bytes, which `struct` would cut or fill up. Raises ValueError."""
-        if not isinstance(data, bytes) or len(data) != self._extent:
-            raise ValueError(data)
-        if self._seven_bit and not data.isascii():
-            raise ValueError(data)
-        return data
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> bytes:
         data = _read(stream, _extent(self._extent, context, path), path)
@@ -561,46 +477,61 @@ def Latin1Fill(greatest: int | None = None, seven_bit: bool = False) -> Piece:  
 # --- several values -----------------------------------------------------------------------------
 
 
+DIRECT = ("parse", "parse_stream", "build")
+"""The methods of a Struct for which it gets functions of its own."""
+
+
+class _Direct:
+    """A method of Struct that is replaced, where it is first asked for, by a function in front.
+
+    The function belongs to the one struct: it need not look anything up. Classes derived from
+    Struct may read and write in another way, so they have the method itself.
+    """
+
+    def __init__(self, method: Callable[..., Any]) -> None:
+        self._method = method
+        self._name = method.__name__
+
+    def __get__(self, struct: Struct | None, owner: type[Any]) -> Callable[..., Any]:
+        if struct is None:
+            return self._method
+        method: Callable[..., Any] = MethodType(self._method, struct)
+        if type(struct) is not Struct:
+            return method
+        from protogen.runtime.fused import direct
+
+        struct.__dict__[self._name] = entry = direct(struct, self._name, method)
+        return entry
+
+
 class Struct(construct.Struct):  # type: ignore[misc]
     """construct's Struct, which also rejects missing values and those that no field has.
 
-    `parse` and `build` of a fixed layout go straight to Python's `struct`. What `parse` gives then
-    has no `_io`, the stream that construct leaves in its containers.
+    Where the layout allows, `parse`, `parse_stream` and `build` ask nothing about it again: see
+    `protogen.runtime.fused`. What they give then is what construct gives, but has no `_io`, the
+    stream that construct leaves in its containers if it is not compiled.
     """
 
-    _fused: Fused | Literal[False] | None = None
-    """False until it is first asked for; then None where fields have to be taken one by one."""
-
-    def __init__(self, *subcons: Any, **subconskw: Any) -> None:
-        super().__init__(*subcons, **subconskw)
-        self._fused = False
-
-    def _fuse(self) -> Fused | None:
-        if self._fused is False:
-            self._fused = fuse((subcon.name, item_of(subcon)) for subcon in self.subcons)
-        return self._fused
-
+    @_Direct
     def parse(self, data: bytes, **contextkw: Any) -> Any:
-        """The values of the first bytes, as construct gives them. Raises PayloadError."""
-        fused = self._fused or self._fuse()
-        if fused is not None and not contextkw:
-            try:
-                return Container(zip(fused.names, fused.values(data), strict=False))
-            except UNFUSED:
-                fused = None  # construct says what is wrong.
-        return super().parse(data, **contextkw)
+        """The values of the first bytes. Raises PayloadError."""
+        return construct.Struct.parse_stream(self, io.BytesIO(data), **contextkw)
 
+    @_Direct
+    def parse_stream(self, stream: BinaryIO, **contextkw: Any) -> Any:
+        """The values of the next bytes. Raises PayloadError."""
+        return super().parse_stream(stream, **contextkw)
+
+    @_Direct
     def build(self, obj: Any, **contextkw: Any) -> bytes:
         """The bytes of a mapping of values. Raises PayloadError."""
-        fused = self._fused or self._fuse()
-        if fused is not None and not contextkw:
-            try:
-                if len(obj) == fused.count:
-                    return fused.data(fused.values_of(obj))
-            except UNFUSED:
-                fused = None  # construct says what is wrong.
         built: bytes = super().build(obj, **contextkw)
         return built
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the direct functions, which belong to this very struct."""
+        state: dict[str, Any] = super().__getstate__()
+        return {name: value for name, value in state.items() if name not in DIRECT}
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         values = {} if obj is None else obj
@@ -652,30 +583,6 @@ class Counted(_Around):
         super().__init__(element)
         self._count = count
         self.flagbuildnone = False
-
-    def item(self) -> Item | None:
-        """All elements as so many bytes, where they are fixed in number and simple in kind."""
-        codec = getattr(self.subcon, "_codec", None)
-        if not isinstance(self._count, int):
-            return None
-        if isinstance(codec, Number) and codec.seven_bit and codec.size == 2:
-            lists = PairLists(codec.bits, codec.signed, codec.order)
-            return self._list_item(2 * self._count, lists.decode, lists.encode)
-        if isinstance(self.subcon, _Native):
-            layout = struct.Struct(self.subcon.layout(self._count))
-            return self._list_item(
-                layout.size, lambda data: list(layout.unpack(data)), lambda all_: layout.pack(*all_)
-            )
-        return None
-
-    def _list_item(self, size: int, decode: Convert, encode: Convert) -> Item:
-        def encode_list(values: Any) -> bytes:
-            if not isinstance(values, list) or len(values) != self._count:
-                raise ValueError(values)
-            data: bytes = encode(values)
-            return data
-
-        return Item(f"{size}s", "", decode, encode_list)
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
         count = _extent(self._count, context, path)
@@ -803,5 +710,5 @@ def prefix_size(format: Construct, data: bytes) -> int:
     Raises PayloadError; its `missing` is greater than 0 where `data` is a good start but too short.
     """
     stream = io.BytesIO(data)
-    format.parse_stream(stream)
+    Construct.parse_stream(format, stream)
     return stream.tell()

@@ -1,88 +1,92 @@
-"""A struct of fixed layout as one item of Python's `struct`: construct's result without its way.
+"""Structs that are read and written in a few calls of Python's `struct`, not field by field.
 
-construct looks at each field anew for every payload. Where sizes are fixed, all fields are read
-and written together here; bytes and values that are not in order are left to construct.
+`fused_pieces.py` finds out what the declaration of a struct fixes (`fused_parts.py`);
+`fused_reading.py` and `fused_writing.py` print functions that do just that. They do only what is
+plainly in order. For all else they raise, and construct, which they stand in front of, does it in
+its own way, or says what is wrong.
+
+Nothing of this is imported before a struct is first used.
 """
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from operator import itemgetter
-from typing import Any
+import io
+from collections.abc import Callable
+from typing import Any, BinaryIO
 
-from protogen.runtime.pairs import Unclear
+from protogen.runtime.constructs import Struct
+from protogen.runtime.fused_function import Function
+from protogen.runtime.fused_parts import Record, Unfit
+from protogen.runtime.fused_pieces import record_of
+from protogen.runtime.fused_reading import read_record
+from protogen.runtime.fused_writing import write_record
 
-UNFUSED = (struct.error, ValueError, LookupError, TypeError, ArithmeticError, Unclear)
-"""What is raised where construct has to decide."""
+Entry = Callable[..., Any]
+"""`parse`, `parse_stream` or `build` of a construct."""
 
-Convert = Callable[[Any], Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Item:
-    """One value: its code for `struct`, the order of its bytes, and how it is converted.
-
-    `order` is empty where it does not matter. `decode` and `encode` may raise anything where
-    construct has to decide.
-    """
-
-    code: str
-    order: str = ""
-    decode: Convert | None = None
-    encode: Convert | None = None
+STREAMS = (io.BytesIO, io.BufferedReader)
+"""What goes back to where it was, once it was found that it can."""
 
 
-class Fused:
-    """All fields of a struct at once."""
-
-    def __init__(self, names: tuple[str, ...], items: tuple[Item, ...]) -> None:
-        """`items` are those of the fields called `names`, of one order of bytes."""
-        order = next((item.order for item in items if item.order), "<")
-        layout = struct.Struct(order + "".join(item.code for item in items))
-        self.names = names
-        self.count = len(names)
-        self.unpack = layout.unpack_from
-        self.pack = layout.pack
-        self.values_of: Callable[[Any], tuple[Any, ...]] = _getter(names)
-        self.decodes = tuple((i, item.decode) for i, item in enumerate(items) if item.decode)
-        self.encodes = tuple((i, item.encode) for i, item in enumerate(items) if item.encode)
-
-    def values(self, data: bytes) -> Iterable[Any]:
-        """The values of a payload's first bytes. Raises where construct has to decide."""
-        values = self.unpack(data)
-        if not self.decodes:
-            return values
-        converted = list(values)
-        for index, decode in self.decodes:
-            converted[index] = decode(converted[index])
-        return converted
-
-    def data(self, values: tuple[Any, ...]) -> bytes:
-        """The bytes of values. Raises where construct has to decide."""
-        if not self.encodes:
-            return self.pack(*values)
-        converted = list(values)
-        for index, encode in self.encodes:
-            converted[index] = encode(converted[index])
-        return self.pack(*converted)
+def parse(record: Record, otherwise: Entry) -> Entry:
+    """`parse` of this record; `otherwise` is asked where not all is plainly in order."""
+    function = Function("parse(data, **contextkw)")
+    read_record(record, function)
+    return _in_front(function, "data", otherwise)
 
 
-def _getter(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
-    if len(names) > 1:
-        return itemgetter(*names)
-    return lambda values: tuple(values[name] for name in names)
+def build(record: Record, otherwise: Entry) -> Entry:
+    """`build` of this record; `otherwise` is asked where not all is plainly in order."""
+    function = Function("build(obj, **contextkw)")
+    write_record(record, function, "obj")
+    return _in_front(function, "obj", otherwise)
 
 
-def fuse(fields: Iterable[tuple[str | None, Item | None]]) -> Fused | None:
-    """The fields of a struct as one; None where they do not go together."""
-    names: list[str] = []
-    items: list[Item] = []
-    for name, item in fields:
-        if not name or item is None:
-            return None
-        names.append(name)
-        items.append(item)
-    orders = {item.order for item in items if item.order}
-    return Fused(tuple(names), tuple(items)) if names and len(orders) < 2 else None
+def parse_stream(record: Record, otherwise: Entry) -> Entry:
+    """`parse_stream` of this record, whose size has to be fixed for it."""
+    function = Function("read(data)")
+    size = read_record(record, function)
+    if size is None:
+        return otherwise
+    read = function.compiled()
+
+    def parse_stream(stream: BinaryIO, **contextkw: Any) -> Any:
+        if contextkw or type(stream) not in STREAMS or not stream.seekable():
+            return otherwise(stream, **contextkw)
+        start = stream.tell()
+        data = stream.read(size)
+        try:
+            return read(data)
+        except Exception:  # Whatever it is, construct decides.
+            stream.seek(start)
+        return otherwise(stream)
+
+    return parse_stream
+
+
+def _in_front(function: Function, argument: str, otherwise: Entry) -> Entry:
+    slowly = function.name(otherwise)
+    function.lines = [
+        "if not contextkw:",
+        "    try:",
+        *(f"        {line}" for line in function.lines),
+        "    except Exception: pass",  # construct's error is not raised while this one is handled.
+        f"return {slowly}({argument}, **contextkw)",
+    ]
+    entry: Entry = function.compiled()
+    return entry
+
+
+_ENTRIES = {
+    "parse": parse,
+    "parse_stream": parse_stream,
+    "build": build,
+}
+
+
+def direct(struct: Struct, name: str, method: Callable[..., Any]) -> Callable[..., Any]:
+    """The function that does what a method of the struct does: the method itself if none can."""
+    try:
+        return _ENTRIES[name](record_of(struct), method)
+    except Unfit:
+        return method

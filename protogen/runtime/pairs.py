@@ -55,6 +55,15 @@ def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
     return tuple(map(value, range(1 << 15)))
 
 
+@lru_cache(16)
+def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]]:
+    """What `Pairs` and `PairCodes` find, of all integers: plain dictionaries are faster."""
+    great = 1 << bits
+    codes = [raw + (raw & 0x3F80) for raw in range(great)]
+    values = [*range(great // 2), *range(-great // 2, 0)] if signed else range(great)
+    return dict(zip(codes, values, strict=True)), dict(zip(values, codes, strict=True))
+
+
 @lru_cache(256)
 def _lanes(pattern: int, count: int) -> int:
     """A pattern of 16 bits, `count` times."""
