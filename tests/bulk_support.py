@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -62,6 +61,6 @@ def left_to_events(how: Reading, data: bytes) -> list[Any]:
     """The events of what was not read in bulk."""
     assert how.bulk is not None
     cutter = BulkCutter(how.bulk, how.spec, least=0)
-    decoder = Decoder(replace(how.spec, cut=cutter))
+    decoder = Decoder(how.spec.cut_by(cutter))
     events: list[Any] = [*decoder.feed(data), *decoder.flush()]
     return [event for event in events if not isinstance(event, Run)]

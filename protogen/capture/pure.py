@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
@@ -62,7 +61,7 @@ class PythonEngine:
         self._reading = reading
         spec, bulk = reading.spec, reading.bulk
         self._cutter = BulkCutter(bulk, spec, least) if bulk is not None else None
-        self._decoder = Decoder(replace(spec, cut=self._cutter or spec.cut))
+        self._decoder = Decoder(spec.cut_by(self._cutter or spec.cut))
         self._fed = 0
         self._offset = 0
         self._sequence = 0
