@@ -448,6 +448,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _TABLES.members(PowerCode, 8)
 _PACK_0 = _struct.Struct("<B").pack
@@ -615,7 +616,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if data.startswith(b"\x0a", at):
                 return at
             payload_size, read, numbers = _HOST_KINDS[data[at]]
@@ -655,7 +656,8 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -667,6 +669,42 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
     0x4C: (-513, _read_laser, (76,)),
     0x43: (-129, _read_command, (67,)),
 }
+
+def _decode_host(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data.startswith(b"\x0a"):
+        raise _fast.Unclear
+    payload_size, read, _ = _HOST_KINDS[data[0]]
+    if payload_size < 0:
+        end = data.find(b"\x0a", 1)
+        if end < 0:
+            raise _fast.Unclear
+        end += 1
+    elif payload_size:
+        end = 3 + payload_size
+    else:
+        end = 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 515:
+        raise _fast.Unclear
+    if not data.endswith(b"\x0a"):
+        raise _fast.Unclear
+    content = data[:-1]
+    if len(content) <= 2:
+        if len(content) != 1:
+            raise _fast.Unclear
+        payload = b""
+    else:
+        payload = content[1:-1]
+    if payload:
+        if content[-1] != _checksum.xor_of(content[:-1]):
+            raise _fast.Unclear
+    return read(payload)
+
 
 def _waits_host(data: bytes, at: int) -> bool:
     size = len(data) - at
@@ -707,7 +745,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if data.startswith(b"\x0a", at):
                 return at
             payload_size, read, numbers = _ROBOT_KINDS[data[at]]
@@ -747,7 +785,8 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -763,6 +802,42 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
     0x4C: (-513, _read_laser, (76,)),
     0x43: (-129, _read_command, (67,)),
 }
+
+def _decode_robot(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data.startswith(b"\x0a"):
+        raise _fast.Unclear
+    payload_size, read, _ = _ROBOT_KINDS[data[0]]
+    if payload_size < 0:
+        end = data.find(b"\x0a", 1)
+        if end < 0:
+            raise _fast.Unclear
+        end += 1
+    elif payload_size:
+        end = 3 + payload_size
+    else:
+        end = 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 515:
+        raise _fast.Unclear
+    if not data.endswith(b"\x0a"):
+        raise _fast.Unclear
+    content = data[:-1]
+    if len(content) <= 2:
+        if len(content) != 1:
+            raise _fast.Unclear
+        payload = b""
+    else:
+        payload = content[1:-1]
+    if payload:
+        if content[-1] != _checksum.xor_of(content[:-1]):
+            raise _fast.Unclear
+    return read(payload)
+
 
 def _waits_robot(data: bytes, at: int) -> bool:
     size = len(data) - at
@@ -808,7 +883,14 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 83)
+    if payload:
+        content = _PACK_0(83) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(83) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_gps(item: Gps, sender: str | None) -> bytes:
@@ -822,7 +904,14 @@ def _encode_gps(item: Gps, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 71)
+    if payload:
+        content = _PACK_0(71) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(71) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_bump(item: Bump, sender: str | None) -> bytes:
@@ -836,7 +925,14 @@ def _encode_bump(item: Bump, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 66)
+    if payload:
+        content = _PACK_0(66) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(66) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
@@ -850,7 +946,14 @@ def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 79)
+    if payload:
+        content = _PACK_0(79) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(79) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_speed(item: Speed, sender: str | None) -> bytes:
@@ -864,7 +967,14 @@ def _encode_speed(item: Speed, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 79)
+    if payload:
+        content = _PACK_0(79) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(79) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
@@ -878,7 +988,14 @@ def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 87)
+    if payload:
+        content = _PACK_0(87) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(87) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_battery(item: Battery, sender: str | None) -> bytes:
@@ -892,7 +1009,14 @@ def _encode_battery(item: Battery, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 98)
+    if payload:
+        content = _PACK_0(98) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(98) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
@@ -906,7 +1030,14 @@ def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 82)
+    if payload:
+        content = _PACK_0(82) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(82) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
@@ -920,7 +1051,14 @@ def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
     payload = v1
     if not 0 <= len(payload) <= 128:
         raise _fast.Unclear
-    return _frame_robot(payload, 72)
+    if payload:
+        content = _PACK_0(72) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_robot)
+    content = _PACK_0(72) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_robot)
 
 
 def _encode_motor(item: Motor, sender: str | None) -> bytes:
@@ -930,7 +1068,14 @@ def _encode_motor(item: Motor, sender: str | None) -> bytes:
     if type(v1) is not int:
         raise _fast.Unclear
     payload = _PACK_0(v1)
-    return _frame_host(payload, 77)
+    if payload:
+        content = _PACK_0(77) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(77) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
 
 
 def _encode_steering(item: Steering, sender: str | None) -> bytes:
@@ -940,7 +1085,14 @@ def _encode_steering(item: Steering, sender: str | None) -> bytes:
     if type(v1) is not int:
         raise _fast.Unclear
     payload = _PACK_0(v1)
-    return _frame_host(payload, 83)
+    if payload:
+        content = _PACK_0(83) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(83) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
 
 
 def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
@@ -950,29 +1102,50 @@ def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
     if type(v1) is not int:
         raise _fast.Unclear
     payload = _PACK_0(v1)
-    return _frame_host(payload, 82)
+    if payload:
+        content = _PACK_0(82) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(82) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
 
 
 def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not PowerCode:
         raise _fast.Unclear
     if v1 != 3:
         raise _fast.Unclear
     payload = _PACK_0(v1)
-    return _frame_host(payload, 80)
+    if payload:
+        content = _PACK_0(80) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(80) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
 
 
 def _encode_power(item: Power, sender: str | None) -> bytes:
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not PowerCode:
         raise _fast.Unclear
     payload = _PACK_0(v1)
-    return _frame_host(payload, 80)
+    if payload:
+        content = _PACK_0(80) + payload
+        content += _BYTES[_checksum.xor_of(content)]
+        wire = content + b"\x0a"
+        return _fast.checked(wire, payload, _cut_host)
+    content = _PACK_0(80) + payload
+    wire = content + b"\x0a"
+    return _fast.checked(wire, payload, _cut_host)
 
 
 def _encode_laser(item: Laser, sender: str | None) -> bytes:
@@ -1026,6 +1199,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Power: _encode_power,
     Laser: _encode_laser,
     Command: _encode_command,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], HostMessage | RobotMessage],
+] = {
+    "host": _decode_host,
+    "robot": _decode_robot,
 }
 # fmt: on
 
@@ -1146,6 +1326,11 @@ def decode(
 ) -> HostMessage | RobotMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | RobotMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

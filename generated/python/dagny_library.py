@@ -497,6 +497,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<5B").unpack_from
 _UNPACK_1 = _struct.Struct("<HHHhhhb").unpack
 _UNPACK_2 = _struct.Struct("<BBi").unpack
@@ -626,11 +627,12 @@ def _read_host_77(data: bytes) -> Motor | Drive:
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x0d", at)
             if end < 0:
                 return at
@@ -650,9 +652,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             if len(content) < 1:
                 return at
             payload = content[1:]
-            n0 = content[0]
-            numbers = (n0,)
-            payload_size, read = _HOST_KINDS[n0]
+            numbers, payload_size, read = _HOST_HEADS[content[0:1]]
             if 0 <= payload_size != len(payload):
                 return at
             event = _new(_MessageEvent)
@@ -665,7 +665,8 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -677,6 +678,44 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
     0x4C: (-513, _read_laser),
     0x5A: (7, _read_shutdown),
 }
+
+def _head_host(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0],), *_HOST_KINDS[head[0]]
+
+
+
+_HOST_HEADS = _fast.Heads(_head_host)
+
+def _decode_host(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    end = data.find(b"\x0d", 0)
+    if end < 0:
+        raise _fast.Unclear
+    end += 1
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 1027:
+        raise _fast.Unclear
+    content = data[:-1]
+    if 0x0D in content or 0x1B in content:
+        stuffed = content
+        content = content.replace(b"\x1b\x16", b"\x0d")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x0d", b"\x1b\x16")
+        if again != stuffed:
+            raise _fast.Unclear
+    if len(content) < 1:
+        raise _fast.Unclear
+    payload = content[1:]
+    _, payload_size, read = _HOST_HEADS[content[0:1]]
+    if 0 <= payload_size != len(payload):
+        raise _fast.Unclear
+    return read(payload)
+
 
 def _waits_host(data: bytes, at: int) -> bool:
     size = len(data) - at
@@ -717,11 +756,12 @@ def _frame_host(payload: bytes, id_: int | None) -> bytes:
 
 
 def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x0d", at)
             if end < 0:
                 return at
@@ -741,9 +781,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             if len(content) < 1:
                 return at
             payload = content[1:]
-            n0 = content[0]
-            numbers = (n0,)
-            payload_size, read = _ROBOT_KINDS[n0]
+            numbers, payload_size, read = _ROBOT_HEADS[content[0:1]]
             if 0 <= payload_size != len(payload):
                 return at
             event = _new(_MessageEvent)
@@ -756,7 +794,8 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -769,6 +808,44 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
     0x4C: (-513, _read_laser),
     0x5A: (7, _read_shutdown),
 }
+
+def _head_robot(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0],), *_ROBOT_KINDS[head[0]]
+
+
+
+_ROBOT_HEADS = _fast.Heads(_head_robot)
+
+def _decode_robot(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    end = data.find(b"\x0d", 0)
+    if end < 0:
+        raise _fast.Unclear
+    end += 1
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 1027:
+        raise _fast.Unclear
+    content = data[:-1]
+    if 0x0D in content or 0x1B in content:
+        stuffed = content
+        content = content.replace(b"\x1b\x16", b"\x0d")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x0d", b"\x1b\x16")
+        if again != stuffed:
+            raise _fast.Unclear
+    if len(content) < 1:
+        raise _fast.Unclear
+    payload = content[1:]
+    _, payload_size, read = _ROBOT_HEADS[content[0:1]]
+    if 0 <= payload_size != len(payload):
+        raise _fast.Unclear
+    return read(payload)
+
 
 def _waits_robot(data: bytes, at: int) -> bool:
     size = len(data) - at
@@ -835,7 +912,11 @@ def _encode_gps(item: Gps, sender: str | None) -> bytes:
     payload = v2
     if not 0 <= len(payload) <= 126:
         raise _fast.Unclear
-    return _frame_robot(payload, 71)
+    content = _PACK_0(71) + payload
+    if 0x0D in content or 0x1B in content:
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x0d", b"\x1b\x16")
+    return content + b"\x0d"
 
 
 def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
@@ -932,7 +1013,7 @@ def _encode_power(item: Power, sender: str | None) -> bytes:
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.code
-    if type(v1) is not PowerCode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not PowerCode:
         raise _fast.Unclear
     content = _PACK_7(80, v1)
     if 0x0D in content or 0x1B in content:
@@ -1001,6 +1082,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     GpsPosition: _encode_gps_position,
     Laser: _encode_laser,
     Shutdown: _encode_shutdown,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], HostMessage | RobotMessage],
+] = {
+    "host": _decode_host,
+    "robot": _decode_robot,
 }
 # fmt: on
 
@@ -1092,6 +1180,11 @@ def decode(
 ) -> HostMessage | RobotMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | RobotMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

@@ -396,6 +396,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _TABLES.members(RobotMode, 8)
 _UNPACK_1 = _struct.Struct("<hh").unpack
@@ -502,6 +503,7 @@ def _read_gps(data: bytes) -> Gps:
 
 
 def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
@@ -511,12 +513,10 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     except IndexError:
         return at
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                end = len(data)
-                if at == end:
-                    return at
+                end = size
             raw = data[at:end]
             if len(raw) > 250:
                 return at
@@ -529,19 +529,15 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 again = again.replace(b"\x55", b"\x56\xaa")
                 if again != stuffed:
                     return at
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length + 2:
                 return at
-            if len(content) != content[0] + 2:
-                return at
-            if not 2 <= content[0] <= 123:
+            if not 2 <= length <= 123:
                 return at
             payload = content[3:-1]
-            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+            if _adler32(content, 0) & 0xFF:
                 return at
-            n0 = content[1]
-            n1 = content[2]
-            numbers = (n0, n1)
-            read = _PC_KINDS.get(n1)
+            numbers, read = _PC_HEADS[content[1:3]]
             if read is None:
                 add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -556,7 +552,8 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -570,9 +567,52 @@ _PC_KINDS: dict[_typing.Any, _typing.Any] = {
     0x50: _read_gps_mode,
 }
 
+def _head_pc(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1]), _PC_KINDS.get(head[1])
+
+
+
+_PC_HEADS = _fast.Heads(_head_pc)
+
+def _decode_pc(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x55:
+        raise _fast.Unclear
+    if data.find(b"\x55", 1) > 0:
+        raise _fast.Unclear
+    if len(data) > 250:
+        raise _fast.Unclear
+    content = data[1:]
+    if 0x56 in content:
+        stuffed = content
+        content = content.replace(b"\x56\xaa", b"\x55")
+        content = content.replace(b"\x56\xa9", b"\x56")
+        again = content.replace(b"\x56", b"\x56\xa9")
+        again = again.replace(b"\x55", b"\x56\xaa")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[0]
+    if len(content) != length + 2:
+        raise _fast.Unclear
+    if not 2 <= length <= 123:
+        raise _fast.Unclear
+    payload = content[3:-1]
+    if _adler32(content, 0) & 0xFF:
+        raise _fast.Unclear
+    _, read = _PC_HEADS[content[1:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_pc(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 250:
+        return False
+    if not data.startswith(b"\x55", at):
         return False
     if data.find(b"\x55", at + 1) > 0:
         return False
@@ -601,7 +641,7 @@ def _waits_pc(data: bytes, at: int) -> bool:
 
 
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -612,6 +652,7 @@ def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> byt
 
 
 def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
@@ -621,12 +662,10 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     except IndexError:
         return at
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                end = len(data)
-                if at == end:
-                    return at
+                end = size
             raw = data[at:end]
             if len(raw) > 250:
                 return at
@@ -639,19 +678,15 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 again = again.replace(b"\x55", b"\x56\xaa")
                 if again != stuffed:
                     return at
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length + 2:
                 return at
-            if len(content) != content[0] + 2:
-                return at
-            if not 2 <= content[0] <= 123:
+            if not 2 <= length <= 123:
                 return at
             payload = content[3:-1]
-            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+            if _adler32(content, 0) & 0xFF:
                 return at
-            n0 = content[1]
-            n1 = content[2]
-            numbers = (n0, n1)
-            read = _ESP_KINDS.get(n1)
+            numbers, read = _ESP_HEADS[content[1:3]]
             if read is None:
                 add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -666,7 +701,8 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -677,9 +713,52 @@ _ESP_KINDS: dict[_typing.Any, _typing.Any] = {
     0x50: _read_gps,
 }
 
+def _head_esp(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1]), _ESP_KINDS.get(head[1])
+
+
+
+_ESP_HEADS = _fast.Heads(_head_esp)
+
+def _decode_esp(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x55:
+        raise _fast.Unclear
+    if data.find(b"\x55", 1) > 0:
+        raise _fast.Unclear
+    if len(data) > 250:
+        raise _fast.Unclear
+    content = data[1:]
+    if 0x56 in content:
+        stuffed = content
+        content = content.replace(b"\x56\xaa", b"\x55")
+        content = content.replace(b"\x56\xa9", b"\x56")
+        again = content.replace(b"\x56", b"\x56\xa9")
+        again = again.replace(b"\x55", b"\x56\xaa")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[0]
+    if len(content) != length + 2:
+        raise _fast.Unclear
+    if not 2 <= length <= 123:
+        raise _fast.Unclear
+    payload = content[3:-1]
+    if _adler32(content, 0) & 0xFF:
+        raise _fast.Unclear
+    _, read = _ESP_HEADS[content[1:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_esp(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 250:
+        return False
+    if not data.startswith(b"\x55", at):
         return False
     if data.find(b"\x55", at + 1) > 0:
         return False
@@ -708,7 +787,7 @@ def _waits_esp(data: bytes, at: int) -> bool:
 
 
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -721,7 +800,7 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
 def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 83)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -734,7 +813,7 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
 def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -747,10 +826,10 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
 def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.mode
-    if type(v1) is not RobotMode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not RobotMode:
+        raise _fast.Unclear
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -763,11 +842,9 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
 def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.speed
     v2 = item.steer
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(6, counter_, 71, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -780,11 +857,9 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
 def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.max_speed
     v2 = item.max_steer
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(6, counter_, 76, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -797,11 +872,9 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
 def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.period
     v2 = item.timeout
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_3(6, counter_, 84, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -814,10 +887,10 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
 def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.mode
-    if type(v1) is not GpsModeMode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not GpsModeMode:
+        raise _fast.Unclear
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -830,7 +903,7 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
 def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -843,7 +916,7 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
 def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -856,13 +929,11 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
 def _encode_status(item: Status, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not StatusStatus and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not StatusStatus:
         raise _fast.Unclear
     v2 = item.mode
-    if type(v2) is not RobotMode and type(v2) is not int:
+    if type(v2) is not int and type(v2) is not RobotMode:
         raise _fast.Unclear
     v3 = item.voltage
     v4 = item.current
@@ -872,9 +943,9 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     v8 = item.encoder1
     v9 = item.encoder2
     v10 = item.encoder3
-    if not (type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is type(v8) is int):
+    if not (type(counter_) is type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is int):
         raise _fast.Unclear
-    if not (type(v9) is type(v10) is int):
+    if not (type(v8) is type(v9) is type(v10) is int):
         raise _fast.Unclear
     content = _PACK_4(20, counter_, 73, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -894,7 +965,14 @@ def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
     payload = v2
     if not 0 <= len(payload) <= 121:
         raise _fast.Unclear
-    return _frame_esp(payload, 80, counter_)
+    if type(counter_) is not int:
+        raise _fast.Unclear
+    content = _PACK_0(len(payload) + 2, counter_, 80) + payload
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
+    return b"\x55" + content
 
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
@@ -909,6 +987,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Nack: _encode_nack,
     Status: _encode_status,
     Gps: _encode_gps,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], PcMessage | EspMessage],
+] = {
+    "pc": _decode_pc,
+    "esp": _decode_esp,
 }
 # fmt: on
 
@@ -998,6 +1083,11 @@ def decode(
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

@@ -512,6 +512,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<B").unpack
 _MEMBERS_0 = _TABLES.members(StopMode, 8)
 _MEMBERS_1 = _TABLES.members(RobotMode, 8)
@@ -647,6 +648,7 @@ def _read_version(data: bytes) -> Version:
 
 
 def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
@@ -656,12 +658,10 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     except IndexError:
         return at
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                end = len(data)
-                if at == end:
-                    return at
+                end = size
             raw = data[at:end]
             if len(raw) > 252:
                 return at
@@ -674,19 +674,15 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 again = again.replace(b"\x55", b"\x56\xaa")
                 if again != stuffed:
                     return at
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length + 2:
                 return at
-            if len(content) != content[0] + 2:
-                return at
-            if not 2 <= content[0] <= 124:
+            if not 2 <= length <= 124:
                 return at
             payload = content[3:-1]
-            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+            if _adler32(content, 0) & 0xFF:
                 return at
-            n0 = content[1]
-            n1 = content[2]
-            numbers = (n0, n1)
-            read = _PC_KINDS.get(n1)
+            numbers, read = _PC_HEADS[content[1:3]]
             if read is None:
                 add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -701,7 +697,8 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -717,9 +714,52 @@ _PC_KINDS: dict[_typing.Any, _typing.Any] = {
     0x44: _read_led,
 }
 
+def _head_pc(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1]), _PC_KINDS.get(head[1])
+
+
+
+_PC_HEADS = _fast.Heads(_head_pc)
+
+def _decode_pc(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x55:
+        raise _fast.Unclear
+    if data.find(b"\x55", 1) > 0:
+        raise _fast.Unclear
+    if len(data) > 252:
+        raise _fast.Unclear
+    content = data[1:]
+    if 0x56 in content:
+        stuffed = content
+        content = content.replace(b"\x56\xaa", b"\x55")
+        content = content.replace(b"\x56\xa9", b"\x56")
+        again = content.replace(b"\x56", b"\x56\xa9")
+        again = again.replace(b"\x55", b"\x56\xaa")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[0]
+    if len(content) != length + 2:
+        raise _fast.Unclear
+    if not 2 <= length <= 124:
+        raise _fast.Unclear
+    payload = content[3:-1]
+    if _adler32(content, 0) & 0xFF:
+        raise _fast.Unclear
+    _, read = _PC_HEADS[content[1:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_pc(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 252:
+        return False
+    if not data.startswith(b"\x55", at):
         return False
     if data.find(b"\x55", at + 1) > 0:
         return False
@@ -748,7 +788,7 @@ def _waits_pc(data: bytes, at: int) -> bool:
 
 
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -759,6 +799,7 @@ def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> byt
 
 
 def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
@@ -768,12 +809,10 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     except IndexError:
         return at
     try:
-        while True:
+        while at < size:
             end = data.find(b"\x55", at + 1)
             if end < 0:
-                end = len(data)
-                if at == end:
-                    return at
+                end = size
             raw = data[at:end]
             if len(raw) > 252:
                 return at
@@ -786,19 +825,15 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 again = again.replace(b"\x55", b"\x56\xaa")
                 if again != stuffed:
                     return at
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length + 2:
                 return at
-            if len(content) != content[0] + 2:
-                return at
-            if not 2 <= content[0] <= 124:
+            if not 2 <= length <= 124:
                 return at
             payload = content[3:-1]
-            if content[-1] != (-_adler32(content[:-1], 0) & 0xFF):
+            if _adler32(content, 0) & 0xFF:
                 return at
-            n0 = content[1]
-            n1 = content[2]
-            numbers = (n0, n1)
-            read = _ESP_KINDS.get(n1)
+            numbers, read = _ESP_HEADS[content[1:3]]
             if read is None:
                 add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -813,7 +848,8 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -825,9 +861,52 @@ _ESP_KINDS: dict[_typing.Any, _typing.Any] = {
     0x56: _read_version,
 }
 
+def _head_esp(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1]), _ESP_KINDS.get(head[1])
+
+
+
+_ESP_HEADS = _fast.Heads(_head_esp)
+
+def _decode_esp(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x55:
+        raise _fast.Unclear
+    if data.find(b"\x55", 1) > 0:
+        raise _fast.Unclear
+    if len(data) > 252:
+        raise _fast.Unclear
+    content = data[1:]
+    if 0x56 in content:
+        stuffed = content
+        content = content.replace(b"\x56\xaa", b"\x55")
+        content = content.replace(b"\x56\xa9", b"\x56")
+        again = content.replace(b"\x56", b"\x56\xa9")
+        again = again.replace(b"\x55", b"\x56\xaa")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[0]
+    if len(content) != length + 2:
+        raise _fast.Unclear
+    if not 2 <= length <= 124:
+        raise _fast.Unclear
+    payload = content[3:-1]
+    if _adler32(content, 0) & 0xFF:
+        raise _fast.Unclear
+    _, read = _ESP_HEADS[content[1:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_esp(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 252:
+        return False
+    if not data.startswith(b"\x55", at):
         return False
     if data.find(b"\x55", at + 1) > 0:
         return False
@@ -856,7 +935,7 @@ def _waits_esp(data: bytes, at: int) -> bool:
 
 
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -869,10 +948,10 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
 def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.mode
-    if type(v1) is not StopMode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not StopMode:
+        raise _fast.Unclear
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, counter_, 83, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -885,7 +964,7 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
 def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -898,10 +977,10 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
 def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.mode
-    if type(v1) is not RobotMode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not RobotMode:
+        raise _fast.Unclear
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -914,11 +993,9 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
 def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.speed
     v2 = item.steer
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(6, counter_, 71, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -931,11 +1008,9 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
 def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.max_speed
     v2 = item.max_steer
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(6, counter_, 76, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -948,11 +1023,9 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
 def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.period
     v2 = item.timeout
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_3(6, counter_, 84, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -965,10 +1038,10 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
 def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.mode
-    if type(v1) is not GpsModeMode and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not GpsModeMode:
+        raise _fast.Unclear
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -981,7 +1054,7 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
 def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 86)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -994,11 +1067,9 @@ def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int 
 def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "pc":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.index
     v2 = item.rgb
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_4(6, counter_, 68, v1, _NUMBER_0.encode(v2))
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1011,7 +1082,7 @@ def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
 def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1024,7 +1095,7 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
 def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
+    if type(counter_) is not int:
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1037,13 +1108,11 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
 def _encode_status(item: Status, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not StatusStatus and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not StatusStatus:
         raise _fast.Unclear
     v2 = item.mode
-    if type(v2) is not RobotMode and type(v2) is not int:
+    if type(v2) is not int and type(v2) is not RobotMode:
         raise _fast.Unclear
     v3 = item.voltage
     v4 = item.current
@@ -1056,9 +1125,9 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     v11 = item.roll
     v12 = item.pitch
     v13 = item.yaw
-    if not (type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is type(v8) is int):
+    if not (type(counter_) is type(v3) is type(v4) is type(v5) is type(v6) is type(v7) is int):
         raise _fast.Unclear
-    if not (type(v9) is type(v10) is type(v11) is type(v12) is type(v13) is int):
+    if not (type(v8) is type(v9) is type(v10) is type(v11) is type(v12) is type(v13) is int):
         raise _fast.Unclear
     content = _PACK_5(26, counter_, 73, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1078,17 +1147,22 @@ def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
     payload = v2
     if not 0 <= len(payload) <= 121:
         raise _fast.Unclear
-    return _frame_esp(payload, 80, counter_)
+    if type(counter_) is not int:
+        raise _fast.Unclear
+    content = _PACK_0(len(payload) + 2, counter_, 80) + payload
+    content += _BYTES[(-_adler32(content, 0) & 0xFF)]
+    if 0x55 in content or 0x56 in content:
+        content = content.replace(b"\x56", b"\x56\xa9")
+        content = content.replace(b"\x55", b"\x56\xaa")
+    return b"\x55" + content
 
 
 def _encode_version(item: Version, sender: str | None, counter_: int | None) -> bytes:
     if sender is not None and sender != "esp":
         raise _fast.Unclear
-    if type(counter_) is not int or not 0 <= counter_ <= 255:
-        raise _fast.Unclear
     v1 = item.serial_number
     v2 = item.version
-    if not (type(v1) is type(v2) is int):
+    if not (type(counter_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_6(4, counter_, 86, v1, v2)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1113,6 +1187,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Status: _encode_status,
     Gps: _encode_gps,
     Version: _encode_version,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], PcMessage | EspMessage],
+] = {
+    "pc": _decode_pc,
+    "esp": _decode_esp,
 }
 # fmt: on
 
@@ -1205,6 +1286,11 @@ def decode(
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

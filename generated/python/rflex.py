@@ -826,6 +826,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
 _UNPACK_1 = _struct.Struct(">IIB").unpack
@@ -858,10 +859,10 @@ _PACK_5 = _struct.Struct(">BBBBII").pack
 _PACK_6 = _struct.Struct(">BBBBIIBiiii").pack
 _PACK_7 = _struct.Struct(">BBBBIiiB").pack
 _PACK_8 = _struct.Struct(">BBBBIIBI").pack
-_PACK_9 = _struct.Struct(">II").pack
-_PACK_10 = _struct.Struct(">BBBBI").pack
-_PACK_11 = _struct.Struct(">BBBBIBH").pack
-_PACK_12 = _struct.Struct(">BBBBIII").pack
+_PACKERS_0 = _fast.Packers(">II", "BH")
+_PACK_9 = _struct.Struct(">BBBBI").pack
+_PACK_10 = _struct.Struct(">BBBBIBH").pack
+_PACK_11 = _struct.Struct(">BBBBIII").pack
 
 
 def _read_sonar_data_readings(data: bytes, at: int) -> SonarDataReadings:
@@ -995,20 +996,13 @@ def _read_sonar_data(data: bytes) -> SonarData:
         raise _fast.Unclear
     item = _new(SonarData)
     item.unknown, item.timestamp = _UNPACK_8(data, 0)
-    n1, left2 = divmod(len(data) - 8, 3)
-    if left2 or n1 > 82:
-        raise _fast.Unclear
-    data5 = data[8 : 8 + 3 * n1]
-    if len(data5) != 3 * n1:
-        raise _fast.Unclear
-    v3: list[_typing.Any] = []
-    for v6, v7 in _ITERATE_0(data5):
-        s4 = _new(SonarDataReadings)
-        s4.cluster = v6
-        s4.distance = v7
-        v3.append(s4)
-    v8 = v3
-    item.readings = v8
+    v1: list[_typing.Any] = []
+    for v3, v4 in _ITERATE_0(data[8:]):
+        s2 = _new(SonarDataReadings)
+        s2.cluster = v3
+        s2.distance = v4
+        v1.append(s2)
+    item.readings = v1
     return item
 
 
@@ -1051,11 +1045,12 @@ def _read_changed_byte(data: bytes) -> ChangedByte:
 
 
 def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 return at
             end = data.find(b"\x1b\x03", at + 2)
@@ -1074,18 +1069,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
                     return at
-            if len(content) < 4:
-                return at
-            if len(content) != content[3] + 5:
+            length = content[3]
+            if len(content) != length + 5:
                 return at
             payload = content[4:-1]
             if content[-1] != _checksum.xor_of(payload):
                 return at
-            n0 = content[0]
-            n1 = content[1]
-            n2 = content[2]
-            numbers = (n0, n1, n2)
-            read = _LINUX_KINDS.get((n0, n2))
+            numbers, read = _LINUX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -1100,7 +1090,8 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -1117,9 +1108,54 @@ _LINUX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x05, 0x02): _read_check_io_changed,
 }
 
+def _head_linux(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1], head[2]), _LINUX_KINDS.get((head[0], head[2]))
+
+
+
+_LINUX_HEADS = _fast.Heads(_head_linux)
+
+def _decode_linux(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if not data.startswith(b"\x1b\x02"):
+        raise _fast.Unclear
+    end = data.find(b"\x1b\x03", 2)
+    if end < 0:
+        raise _fast.Unclear
+    end += 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 782:
+        raise _fast.Unclear
+    content = data[2:-2]
+    if 0x1B in content or 0x7C in content:
+        stuffed = content
+        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[3]
+    if len(content) != length + 5:
+        raise _fast.Unclear
+    payload = content[4:-1]
+    if content[-1] != _checksum.xor_of(payload):
+        raise _fast.Unclear
+    _, read = _LINUX_HEADS[content[0:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_linux(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 782:
+        return False
+    if not data.startswith(b"\x1b\x02", at):
         return False
     if data.find(b"\x1b\x02", at + 1) > 0:
         return False
@@ -1153,10 +1189,10 @@ def _frame_linux(
 ) -> bytes:
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    content += _BYTES[_checksum.xor_of(payload)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1164,11 +1200,12 @@ def _frame_linux(
 
 
 def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 return at
             end = data.find(b"\x1b\x03", at + 2)
@@ -1187,18 +1224,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
                     return at
-            if len(content) < 4:
-                return at
-            if len(content) != content[3] + 5:
+            length = content[3]
+            if len(content) != length + 5:
                 return at
             payload = content[4:-1]
             if content[-1] != _checksum.xor_of(payload):
                 return at
-            n0 = content[0]
-            n1 = content[1]
-            n2 = content[2]
-            numbers = (n0, n1, n2)
-            read = _FLEX_KINDS.get((n0, n2))
+            numbers, read = _FLEX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -1213,7 +1245,8 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -1232,9 +1265,54 @@ _FLEX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x05, 0x03): _read_changed_byte,
 }
 
+def _head_flex(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1], head[2]), _FLEX_KINDS.get((head[0], head[2]))
+
+
+
+_FLEX_HEADS = _fast.Heads(_head_flex)
+
+def _decode_flex(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if not data.startswith(b"\x1b\x02"):
+        raise _fast.Unclear
+    end = data.find(b"\x1b\x03", 2)
+    if end < 0:
+        raise _fast.Unclear
+    end += 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 782:
+        raise _fast.Unclear
+    content = data[2:-2]
+    if 0x1B in content or 0x7C in content:
+        stuffed = content
+        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[3]
+    if len(content) != length + 5:
+        raise _fast.Unclear
+    payload = content[4:-1]
+    if content[-1] != _checksum.xor_of(payload):
+        raise _fast.Unclear
+    _, read = _FLEX_HEADS[content[0:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_flex(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 782:
+        return False
+    if not data.startswith(b"\x1b\x02", at):
         return False
     if data.find(b"\x1b\x02", at + 1) > 0:
         return False
@@ -1268,10 +1346,10 @@ def _frame_flex(
 ) -> bytes:
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    content += _BYTES[_checksum.xor_of(payload)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1285,7 +1363,7 @@ def _encode_request_system_status(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(1, number_, 1, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1300,14 +1378,12 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.battery_voltage
     v3 = item.brake
-    if type(v3) is not SystemStatusBrake and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not SystemStatusBrake:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1322,10 +1398,8 @@ def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> 
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_3(2, number_, 0, 1, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1340,18 +1414,16 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.axis
-    if type(v1) is not Axis and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not Axis:
         raise _fast.Unclear
     v2 = item.velocity
     v3 = item.acceleration
     v4 = item.torque
     v5 = item.direction
-    if type(v5) is not MotorCommandDirection and type(v5) is not int:
+    if type(v5) is not int and type(v5) is not MotorCommandDirection:
         raise _fast.Unclear
-    if not (type(v2) is type(v3) is type(v4) is int):
+    if not (type(number_) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
     content = _PACK_4(2, number_, 7, 14, v1, v2, v3, v4, v5)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1368,14 +1440,12 @@ def _encode_confirm_motor_command(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not Axis:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1390,7 +1460,7 @@ def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> 
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 10, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1405,7 +1475,7 @@ def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> 
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 12, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1420,11 +1490,9 @@ def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: in
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 12, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1439,18 +1507,18 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not Axis:
         raise _fast.Unclear
     v4 = item.position
     v5 = item.velocity
     v6 = item.acceleration
     v7 = item.torque
-    if not (type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is type(v7) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is int):
+        raise _fast.Unclear
+    if type(v7) is not int:
         raise _fast.Unclear
     content = _PACK_6(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1467,13 +1535,11 @@ def _encode_start_stop_motor_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.start_stop
-    if type(v2) is not StartStopMotorPacketsStartStop and type(v2) is not int:
+    if type(v2) is not int and type(v2) is not StartStopMotorPacketsStartStop:
         raise _fast.Unclear
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1490,11 +1556,9 @@ def _encode_confirm_start_stop_motor_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1511,7 +1575,7 @@ def _encode_request_joystick_data(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, number_, 0, 0)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1526,15 +1590,13 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.horizontal
     v3 = item.vertical
     v4 = item.buttons
-    if type(v4) is not JoystickDataButtons and type(v4) is not int:
+    if type(v4) is not int and type(v4) is not JoystickDataButtons:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_7(3, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1551,15 +1613,13 @@ def _encode_start_stop_sonar_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.frequency
     v2 = item.unknown_1
     v3 = item.unknown_2
     v4 = item.start_stop
-    if type(v4) is not StartStopSonarPacketsStartStop and type(v4) is not int:
+    if type(v4) is not int and type(v4) is not StartStopSonarPacketsStartStop:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_8(4, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1576,11 +1636,9 @@ def _encode_confirm_start_stop_sonar_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(4, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1600,13 +1658,23 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if len(v3) > 82:
         raise _fast.Unclear
+    column4 = [each.cluster for each in v3 if type(each) is SonarDataReadings]
+    column5 = [each.distance for each in v3]
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    v4 = b"".join([_write_sonar_data_readings(each) for each in v3])
-    payload = b"".join((_PACK_9(v1, v2), v4))
+    payload = _PACKERS_0[len(v3)](v1, v2, *_fast.in_turn(column4, column5))
     if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
         raise _fast.Unclear
-    return _frame_flex(payload, 4, 2, number_)
+    if number_ is None:
+        number_ = 255
+    if type(number_) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(4, number_, 2, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(payload)]
+    if 0x1B in content or 0x7C in content:
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _encode_initialize_digital_io(
@@ -1616,12 +1684,10 @@ def _encode_initialize_digital_io(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
-    content = _PACK_10(5, number_, 0, 4, v1)
+    content = _PACK_9(5, number_, 0, 4, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1636,11 +1702,9 @@ def _encode_confirm_initialize_digital_io(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(5, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content[4:])]
@@ -1655,16 +1719,14 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.position
     v3 = item.value
-    if type(v3) is not IoValue and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not IoValue:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_11(5, number_, 1, 7, v1, v2, v3)
+    content = _PACK_10(5, number_, 1, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1679,12 +1741,10 @@ def _encode_check_io_changed(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
-    content = _PACK_10(5, number_, 2, 4, v1)
+    content = _PACK_9(5, number_, 2, 4, v1)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1699,14 +1759,12 @@ def _encode_check_io_changed_answer(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.package_count
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_12(5, number_, 2, 12, v1, v2, v3)
+    content = _PACK_11(5, number_, 2, 12, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1719,16 +1777,14 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.position
     v3 = item.value
-    if type(v3) is not IoValue and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not IoValue:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_11(5, number_, 3, 7, v1, v2, v3)
+    content = _PACK_10(5, number_, 3, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content[4:])]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1759,6 +1815,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     CheckIoChanged: _encode_check_io_changed,
     CheckIoChangedAnswer: _encode_check_io_changed_answer,
     ChangedByte: _encode_changed_byte,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], LinuxMessage | FlexMessage],
+] = {
+    "linux": _decode_linux,
+    "flex": _decode_flex,
 }
 # fmt: on
 
@@ -1909,6 +1972,11 @@ def decode(
 ) -> LinuxMessage | FlexMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> LinuxMessage | FlexMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

@@ -971,6 +971,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
 _UNPACK_1 = _struct.Struct(">IIB").unpack
@@ -1006,11 +1007,11 @@ _PACK_6 = _struct.Struct(">BBBBII").pack
 _PACK_7 = _struct.Struct(">BBBBIIBiiii").pack
 _PACK_8 = _struct.Struct(">BBBBIiiB").pack
 _PACK_9 = _struct.Struct(">BBBBIIIB").pack
-_PACK_10 = _struct.Struct(">II").pack
-_PACK_11 = _struct.Struct(">BBBBI").pack
-_PACK_12 = _struct.Struct(">BBBBIBH").pack
-_PACK_13 = _struct.Struct(">BBBBIII").pack
-_PACK_14 = _struct.Struct(">BBBBIIIIIB").pack
+_PACKERS_0 = _fast.Packers(">II", "BH")
+_PACK_10 = _struct.Struct(">BBBBI").pack
+_PACK_11 = _struct.Struct(">BBBBIBH").pack
+_PACK_12 = _struct.Struct(">BBBBIII").pack
+_PACK_13 = _struct.Struct(">BBBBIIIIIB").pack
 
 
 def _read_sonar_data_readings(data: bytes, at: int) -> SonarDataReadings:
@@ -1170,20 +1171,13 @@ def _read_sonar_data(data: bytes) -> SonarData:
         raise _fast.Unclear
     item = _new(SonarData)
     item.retval, item.timestamp = _UNPACK_9(data, 0)
-    n1, left2 = divmod(len(data) - 8, 3)
-    if left2 or n1 > 82:
-        raise _fast.Unclear
-    data5 = data[8 : 8 + 3 * n1]
-    if len(data5) != 3 * n1:
-        raise _fast.Unclear
-    v3: list[_typing.Any] = []
-    for v6, v7 in _ITERATE_0(data5):
-        s4 = _new(SonarDataReadings)
-        s4.cluster = v6
-        s4.distance = v7
-        v3.append(s4)
-    v8 = v3
-    item.readings = v8
+    v1: list[_typing.Any] = []
+    for v3, v4 in _ITERATE_0(data[8:]):
+        s2 = _new(SonarDataReadings)
+        s2.cluster = v3
+        s2.distance = v4
+        v1.append(s2)
+    item.readings = v1
     return item
 
 
@@ -1249,11 +1243,12 @@ def _read_ir_report(data: bytes) -> IrReport:
 
 
 def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 return at
             end = data.find(b"\x1b\x03", at + 2)
@@ -1272,18 +1267,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
                     return at
-            if len(content) < 4:
-                return at
-            if len(content) != content[3] + 5:
+            length = content[3]
+            if len(content) != length + 5:
                 return at
             payload = content[4:-1]
             if content[-1] != _checksum.xor_of(content[:-1]):
                 return at
-            n0 = content[0]
-            n1 = content[1]
-            n2 = content[2]
-            numbers = (n0, n1, n2)
-            read = _LINUX_KINDS.get((n0, n2))
+            numbers, read = _LINUX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -1298,7 +1288,8 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -1317,9 +1308,54 @@ _LINUX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x06, 0x00): _read_ir_run,
 }
 
+def _head_linux(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1], head[2]), _LINUX_KINDS.get((head[0], head[2]))
+
+
+
+_LINUX_HEADS = _fast.Heads(_head_linux)
+
+def _decode_linux(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if not data.startswith(b"\x1b\x02"):
+        raise _fast.Unclear
+    end = data.find(b"\x1b\x03", 2)
+    if end < 0:
+        raise _fast.Unclear
+    end += 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 780:
+        raise _fast.Unclear
+    content = data[2:-2]
+    if 0x1B in content or 0x7C in content:
+        stuffed = content
+        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[3]
+    if len(content) != length + 5:
+        raise _fast.Unclear
+    payload = content[4:-1]
+    if content[-1] != _checksum.xor_of(content[:-1]):
+        raise _fast.Unclear
+    _, read = _LINUX_HEADS[content[0:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_linux(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 780:
+        return False
+    if not data.startswith(b"\x1b\x02", at):
         return False
     if data.find(b"\x1b\x02", at + 1) > 0:
         return False
@@ -1353,7 +1389,7 @@ def _frame_linux(
 ) -> bytes:
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content)]
@@ -1364,11 +1400,12 @@ def _frame_linux(
 
 
 def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 return at
             end = data.find(b"\x1b\x03", at + 2)
@@ -1387,18 +1424,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
                     return at
-            if len(content) < 4:
-                return at
-            if len(content) != content[3] + 5:
+            length = content[3]
+            if len(content) != length + 5:
                 return at
             payload = content[4:-1]
             if content[-1] != _checksum.xor_of(content[:-1]):
                 return at
-            n0 = content[0]
-            n1 = content[1]
-            n2 = content[2]
-            numbers = (n0, n1, n2)
-            read = _FLEX_KINDS.get((n0, n2))
+            numbers, read = _FLEX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -1413,7 +1445,8 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -1434,9 +1467,54 @@ _FLEX_KINDS: dict[_typing.Any, _typing.Any] = {
     (0x06, 0x01): _read_ir_report,
 }
 
+def _head_flex(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0], head[1], head[2]), _FLEX_KINDS.get((head[0], head[2]))
+
+
+
+_FLEX_HEADS = _fast.Heads(_head_flex)
+
+def _decode_flex(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if not data.startswith(b"\x1b\x02"):
+        raise _fast.Unclear
+    end = data.find(b"\x1b\x03", 2)
+    if end < 0:
+        raise _fast.Unclear
+    end += 2
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 780:
+        raise _fast.Unclear
+    content = data[2:-2]
+    if 0x1B in content or 0x7C in content:
+        stuffed = content
+        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
+        content = content.replace(b"\x1b\x00", b"\x1b")
+        again = content.replace(b"\x1b", b"\x1b\x00")
+        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
+        if again != stuffed:
+            raise _fast.Unclear
+    length = content[3]
+    if len(content) != length + 5:
+        raise _fast.Unclear
+    payload = content[4:-1]
+    if content[-1] != _checksum.xor_of(content[:-1]):
+        raise _fast.Unclear
+    _, read = _FLEX_HEADS[content[0:3]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_flex(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 780:
+        return False
+    if not data.startswith(b"\x1b\x02", at):
         return False
     if data.find(b"\x1b\x02", at + 1) > 0:
         return False
@@ -1470,7 +1548,7 @@ def _frame_flex(
 ) -> bytes:
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(content)]
@@ -1487,7 +1565,7 @@ def _encode_request_system_status(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(1, number_, 1, 0)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1502,14 +1580,12 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.battery_voltage
     v3 = item.brake
-    if type(v3) is not SystemStatusBrake and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not SystemStatusBrake:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1535,7 +1611,16 @@ def _encode_lcd_dump(item: LcdDump, sender: str | None, number_: int | None) -> 
     payload = b"".join((_PACK_3(v1, v2, v3), v4))
     if not 6 <= len(payload) <= 255:
         raise _fast.Unclear
-    return _frame_flex(payload, 1, 0, number_)
+    if number_ is None:
+        number_ = 0
+    if type(number_) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(1, number_, 0, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(content)]
+    if 0x1B in content or 0x7C in content:
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _encode_axis_get_system(item: AxisGetSystem, sender: str | None, number_: int | None) -> bytes:
@@ -1543,10 +1628,10 @@ def _encode_axis_get_system(item: AxisGetSystem, sender: str | None, number_: in
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.axis
-    if type(v1) is not Axis and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not Axis:
+        raise _fast.Unclear
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_4(2, number_, 0, 1, v1)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1561,18 +1646,16 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.axis
-    if type(v1) is not Axis and type(v1) is not int:
+    if type(v1) is not int and type(v1) is not Axis:
         raise _fast.Unclear
     v2 = item.velocity
     v3 = item.acceleration
     v4 = item.torque
     v5 = item.direction
-    if type(v5) is not MotorCommandDirection and type(v5) is not int:
+    if type(v5) is not int and type(v5) is not MotorCommandDirection:
         raise _fast.Unclear
-    if not (type(v2) is type(v3) is type(v4) is int):
+    if not (type(number_) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 7, 14, v1, v2, v3, v4, v5)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1589,14 +1672,12 @@ def _encode_confirm_motor_command(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not Axis:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1611,7 +1692,7 @@ def _encode_set_defaults(item: SetDefaults, sender: str | None, number_: int | N
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 10, 0)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1626,7 +1707,7 @@ def _encode_brake_set(item: BrakeSet, sender: str | None, number_: int | None) -
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 11, 0)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1641,7 +1722,7 @@ def _encode_brake_release(item: BrakeRelease, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 12, 0)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1658,11 +1739,9 @@ def _encode_brake_release_answer(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_6(2, number_, 12, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1677,18 +1756,18 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not Axis and type(v3) is not int:
+    if type(v3) is not int and type(v3) is not Axis:
         raise _fast.Unclear
     v4 = item.position
     v5 = item.velocity
     v6 = item.acceleration
     v7 = item.torque
-    if not (type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is type(v7) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is int):
+        raise _fast.Unclear
+    if type(v7) is not int:
         raise _fast.Unclear
     content = _PACK_7(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1705,13 +1784,11 @@ def _encode_start_stop_motor_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.period
     v2 = item.mask
-    if type(v2) is not StartStopMotorPacketsMask and type(v2) is not int:
+    if type(v2) is not int and type(v2) is not StartStopMotorPacketsMask:
         raise _fast.Unclear
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_6(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1728,11 +1805,9 @@ def _encode_confirm_start_stop_motor_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_6(2, number_, 34, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1749,7 +1824,7 @@ def _encode_request_joystick_data(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
+    if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, number_, 0, 0)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1764,15 +1839,13 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.horizontal
     v3 = item.vertical
     v4 = item.buttons
-    if type(v4) is not JoystickDataButtons and type(v4) is not int:
+    if type(v4) is not int and type(v4) is not JoystickDataButtons:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_8(3, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1789,15 +1862,13 @@ def _encode_start_stop_sonar_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.echo_delay
     v2 = item.ping_delay
     v3 = item.set_delay
     v4 = item.mode
-    if type(v4) is not StartStopSonarPacketsMode and type(v4) is not int:
+    if type(v4) is not int and type(v4) is not StartStopSonarPacketsMode:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_9(4, number_, 0, 13, v1, v2, v3, v4)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1814,11 +1885,9 @@ def _encode_confirm_start_stop_sonar_packets(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_6(4, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1838,13 +1907,23 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if len(v3) > 82:
         raise _fast.Unclear
+    column4 = [each.cluster for each in v3 if type(each) is SonarDataReadings]
+    column5 = [each.distance for each in v3]
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    v4 = b"".join([_write_sonar_data_readings(each) for each in v3])
-    payload = b"".join((_PACK_10(v1, v2), v4))
+    payload = _PACKERS_0[len(v3)](v1, v2, *_fast.in_turn(column4, column5))
     if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
         raise _fast.Unclear
-    return _frame_flex(payload, 4, 2, number_)
+    if number_ is None:
+        number_ = 0
+    if type(number_) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(4, number_, 2, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(content)]
+    if 0x1B in content or 0x7C in content:
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 def _encode_initialize_digital_io(
@@ -1854,12 +1933,10 @@ def _encode_initialize_digital_io(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.period
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
-    content = _PACK_11(5, number_, 0, 4, v1)
+    content = _PACK_10(5, number_, 0, 4, v1)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1874,11 +1951,9 @@ def _encode_confirm_initialize_digital_io(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
-    if not (type(v1) is type(v2) is int):
+    if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_6(5, number_, 0, 8, v1, v2)
     content += _BYTES[_checksum.xor_of(content)]
@@ -1893,14 +1968,12 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.address
     v3 = item.data
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_12(5, number_, 1, 7, v1, v2, v3)
+    content = _PACK_11(5, number_, 1, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1915,12 +1988,10 @@ def _encode_check_io_changed(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
-    if type(v1) is not int:
+    if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
-    content = _PACK_11(5, number_, 2, 4, v1)
+    content = _PACK_10(5, number_, 2, 4, v1)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1935,14 +2006,12 @@ def _encode_check_io_changed_answer(
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
     v3 = item.package_count
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_13(5, number_, 2, 12, v1, v2, v3)
+    content = _PACK_12(5, number_, 2, 12, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1955,14 +2024,12 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.address
     v3 = item.data
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_12(5, number_, 3, 7, v1, v2, v3)
+    content = _PACK_11(5, number_, 3, 7, v1, v2, v3)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -1975,19 +2042,17 @@ def _encode_ir_run(item: IrRun, sender: str | None, number_: int | None) -> byte
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
-    if type(number_) is not int or not 0 <= number_ <= 255:
-        raise _fast.Unclear
     v1 = item.unknown_1
     v2 = item.unknown_2
     v3 = item.unknown_3
     v4 = item.unknown_4
     v5 = item.unknown_5
     v6 = item.mode
-    if type(v6) is not IrRunMode and type(v6) is not int:
+    if type(v6) is not int and type(v6) is not IrRunMode:
         raise _fast.Unclear
-    if not (type(v1) is type(v2) is type(v3) is type(v4) is type(v5) is int):
+    if not (type(number_) is type(v1) is type(v2) is type(v3) is type(v4) is type(v5) is int):
         raise _fast.Unclear
-    content = _PACK_14(6, number_, 0, 21, v1, v2, v3, v4, v5, v6)
+    content = _PACK_13(6, number_, 0, 21, v1, v2, v3, v4, v5, v6)
     content += _BYTES[_checksum.xor_of(content)]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -2006,7 +2071,16 @@ def _encode_ir_report(item: IrReport, sender: str | None, number_: int | None) -
     payload = v1
     if not 1 <= len(payload) <= 255:
         raise _fast.Unclear
-    return _frame_flex(payload, 6, 1, number_)
+    if number_ is None:
+        number_ = 0
+    if type(number_) is not int:
+        raise _fast.Unclear
+    content = _PACK_1(6, number_, 1, len(payload)) + payload
+    content += _BYTES[_checksum.xor_of(content)]
+    if 0x1B in content or 0x7C in content:
+        content = content.replace(b"\x1b", b"\x1b\x00")
+        content = content.replace(b"\x7c", b"\x7c\x1b\x01")
+    return b"\x1b\x02" + content + b"\x1b\x03"
 
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
@@ -2036,6 +2110,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     ChangedByte: _encode_changed_byte,
     IrRun: _encode_ir_run,
     IrReport: _encode_ir_report,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], LinuxMessage | FlexMessage],
+] = {
+    "linux": _decode_linux,
+    "flex": _decode_flex,
 }
 # fmt: on
 
@@ -2198,6 +2279,11 @@ def decode(
 ) -> LinuxMessage | FlexMessage: ...
 def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> LinuxMessage | FlexMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

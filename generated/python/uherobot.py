@@ -254,6 +254,7 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
+_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
 _MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
@@ -302,11 +303,12 @@ def _read_status(data: bytes) -> Status:
 
 
 def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if data[at] != 0x62:
                 return at
             end = data.find(b"\x65", at + 1)
@@ -318,16 +320,13 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
                 return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length:
                 return at
-            if len(content) != content[0]:
-                return at
-            if not 2 <= content[0] <= 255:
+            if not 2 <= length <= 255:
                 return at
             payload = content[2:]
-            n0 = content[1]
-            numbers = (n0,)
-            read = _DAEMON_KINDS.get(n0)
+            numbers, read = _DAEMON_HEADS[content[1:2]]
             if read is None:
                 add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -342,7 +341,8 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -352,9 +352,47 @@ _DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
     0x03: _read_motor_test,
 }
 
+def _head_daemon(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0],), _DAEMON_KINDS.get(head[0])
+
+
+
+_DAEMON_HEADS = _fast.Heads(_head_daemon)
+
+def _decode_daemon(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x62:
+        raise _fast.Unclear
+    end = data.find(b"\x65", 1)
+    if end < 0:
+        raise _fast.Unclear
+    end += 1
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 512:
+        raise _fast.Unclear
+    content = data[1:-1]
+    content = _STUFFING_0.decode(content)
+    length = content[0]
+    if len(content) != length:
+        raise _fast.Unclear
+    if not 2 <= length <= 255:
+        raise _fast.Unclear
+    payload = content[2:]
+    _, read = _DAEMON_HEADS[content[1:2]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_daemon(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 512:
+        return False
+    if not data.startswith(b"\x62", at):
         return False
     if data.find(b"\x62", at + 1) > 0:
         return False
@@ -382,11 +420,12 @@ def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
 
 
 def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
+    size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
     try:
-        while True:
+        while at < size:
             if data[at] != 0x62:
                 return at
             end = data.find(b"\x65", at + 1)
@@ -398,16 +437,13 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
-            if len(content) < 1:
+            length = content[0]
+            if len(content) != length:
                 return at
-            if len(content) != content[0]:
-                return at
-            if not 2 <= content[0] <= 255:
+            if not 2 <= length <= 255:
                 return at
             payload = content[2:]
-            n0 = content[1]
-            numbers = (n0,)
-            read = _BOARD_KINDS.get(n0)
+            numbers, read = _BOARD_HEADS[content[1:2]]
             if read is None:
                 add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
                 at = end
@@ -422,7 +458,8 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
-        return at
+        pass
+    return at
 
 
 
@@ -430,9 +467,47 @@ _BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
     0x01: _read_status,
 }
 
+def _head_board(head: bytes) -> tuple[_typing.Any, ...]:
+    return (head[0],), _BOARD_KINDS.get(head[0])
+
+
+
+_BOARD_HEADS = _fast.Heads(_head_board)
+
+def _decode_board(data: bytes) -> _typing.Any:
+    if type(data) is not bytes:
+        raise _fast.Unclear
+    if not _TABLES.are_filled:
+        _TABLES.fill()
+    if data[0] != 0x62:
+        raise _fast.Unclear
+    end = data.find(b"\x65", 1)
+    if end < 0:
+        raise _fast.Unclear
+    end += 1
+    if end != len(data):
+        raise _fast.Unclear
+    if len(data) > 512:
+        raise _fast.Unclear
+    content = data[1:-1]
+    content = _STUFFING_0.decode(content)
+    length = content[0]
+    if len(content) != length:
+        raise _fast.Unclear
+    if not 2 <= length <= 255:
+        raise _fast.Unclear
+    payload = content[2:]
+    _, read = _BOARD_HEADS[content[1:2]]
+    if read is None:
+        raise _fast.Unclear
+    return read(payload)
+
+
 def _waits_board(data: bytes, at: int) -> bool:
     size = len(data) - at
     if size >= 512:
+        return False
+    if not data.startswith(b"\x62", at):
         return False
     if data.find(b"\x62", at + 1) > 0:
         return False
@@ -474,7 +549,7 @@ def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> by
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
     v4 = item.leds
-    if type(v4) is not MotorsServosLedsLeds and type(v4) is not int:
+    if type(v4) is not int and type(v4) is not MotorsServosLedsLeds:
         raise _fast.Unclear
     content = b"".join((_PACK_2(23, 0, v1, v2), _PACK_1(*v3), _PACK_3(v4)))
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
@@ -526,6 +601,13 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     MotorsTwoServos: _encode_motors_two_servos,
     MotorTest: _encode_motor_test,
     Status: _encode_status,
+}
+_DECODERS: dict[
+    str,
+    _typing.Callable[[bytes], DaemonMessage | BoardMessage],
+] = {
+    "daemon": _decode_daemon,
+    "board": _decode_board,
 }
 # fmt: on
 
@@ -615,6 +697,11 @@ def decode(
     frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
 ) -> DaemonMessage | BoardMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
+    if engine == "fast":
+        try:
+            return _DECODERS[sender](frame)
+        except _fast.ANYTHING:  # The reference says what is wrong.
+            engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 
 

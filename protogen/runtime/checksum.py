@@ -34,20 +34,24 @@ _LONG = 256
 """So many bytes have a sum of more than 16 bits, or nearly."""
 
 
-_HALVED = 32
-"""So many bytes are halved five times, without asking how many there are."""
+_SHORT, _HALVED = 32, 64
+"""So many bytes are halved five or six times, without asking how many there are."""
+
+_from_bytes = int.from_bytes
 
 
 def xor_of(data: bytes) -> int:
     """Return the exclusive or of all bytes."""
     # Halves of one great integer are laid over each other, until they are one byte.
-    great = int.from_bytes(data, "little")
+    great = _from_bytes(data, "little")
     size = len(data)
-    while size > _HALVED:
-        half = size + 1 >> 1
-        great ^= great >> 8 * half
-        great &= (1 << 8 * half) - 1
-        size = half
+    if size > _SHORT:
+        while size > _HALVED:
+            half = size + 1 >> 1
+            great ^= great >> 8 * half
+            great &= (1 << 8 * half) - 1
+            size = half
+        great ^= great >> 256
     great ^= great >> 128
     great ^= great >> 64
     great ^= great >> 32

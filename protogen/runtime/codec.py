@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic
 from protogen.runtime import late
 from protogen.runtime.decoder import Engine, check_engine
 from protogen.runtime.errors import DecodeError, EncodeError
-from protogen.runtime.events import Event, FrameEvent, MessageEvent, UnknownEvent
+from protogen.runtime.events import FrameEvent, UnknownEvent
 from protogen.runtime.message import Message
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
@@ -84,30 +84,13 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """The event of exactly one valid frame. Raises DecodeError."""
         return late.read_frame(self.sender(sender), frame)
 
-    def decode(self, frame: bytes, sender: str, engine: Engine = "fast") -> MessageT_co:
-        """The message of exactly one frame. Raises DecodeError."""
-        if engine == "fast":
-            message = self._cut_one(frame, sender)
-            if message is not None:
-                return message
+    def decode(self, frame: bytes, sender: str, engine: Engine = "construct") -> MessageT_co:
+        """The message of exactly one frame, as the reference reads it. Raises DecodeError."""
         check_engine(engine)
         event = self.read(frame, sender)
         if isinstance(event, UnknownEvent):
             raise DecodeError("unknown", f"no message has the identity of {event.parts}")
         return event.message
-
-    def _cut_one(self, frame: bytes, sender: str) -> MessageT_co | None:
-        """The message of a frame that is plainly in order."""
-        spec = self.senders.get(sender)
-        if spec is None or spec.cut is None or type(frame) is not bytes:
-            return None
-        if spec.layout.shares_delimiter and not frame.startswith(spec.layout.start):
-            return None  # Only in a stream may the end of the frame before be this one's start.
-        events: list[Event[MessageT_co, PartsT_co]] = []
-        if spec.cut(frame, 0, 0, events) != len(frame) or len(events) != 1:
-            return None
-        event = events[0]
-        return event.message if isinstance(event, MessageEvent) else None
 
     def _sender_of(self, message: Message, name: str | None) -> SenderSpec[MessageT_co, PartsT_co]:
         senders = [item for item in self.senders.values() if _sends(item, message)]

@@ -37,6 +37,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._cut = sender.cut if engine == "fast" else None
         self._waits = sender.waits if engine == "fast" else None
         self._starts = late.starts_of(sender.frame)
+        is_alone = not self._starts.context and not sender.layout.shares_delimiter
+        self._lane = self._cut if is_alone else None
+        """Cuts what comes in, where nothing of earlier frames tells how a frame starts."""
         self._least = sender.frame.least
         self._greatest = sender.frame.greatest
         self._is_anywhere = isinstance(sender.frame.start, late.Anywhere)
@@ -60,6 +63,28 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the next bytes of the input; the events that are certain now."""
+        lane = self._lane
+        if lane is None or (self._data and not self._is_waiting):
+            return self._feed(data)
+        # All in front is delivered, and a frame may start at the first of these bytes.
+        whole = self._data + data
+        events: list[Event[MessageT_co, PartsT_co]] = []
+        end = lane(whole, 0, self._offset, events)
+        if end == len(whole):
+            self._data = b""
+            self._is_waiting = False
+        else:
+            self._data = whole[end:] if end else whole
+            self._is_waiting = self._still_waits(0)
+        self._offset += end
+        if self._data and not self._is_waiting:
+            self._events = events
+            self._run(final=False)
+            return self._deliver()
+        return events
+
+    def _feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
+        """The same in any state."""
         self._data += data
         if self._is_waiting:
             if self._still_waits(self._scan):
@@ -75,6 +100,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Take the end of the input, or a silence on the line; all remaining events."""
         if self._is_waiting:
             self._is_waiting = False
+            self._pushed = self._scan
             self._candidate = late.Candidate(self._sender)
         self._run(final=True)
         events = self._deliver()
@@ -137,7 +163,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return not self._is_waiting
 
     def _still_waits(self, start: int) -> bool:
-        """Whether what stands there is plainly the beginning of a frame, as yet without verdict."""
+        """Whether a frame plainly begins there, on which there is no verdict as yet."""
         return self._waits is not None and self._waits(self._data, start)
 
     def _take_up(self) -> None:

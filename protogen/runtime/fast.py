@@ -6,6 +6,7 @@ reference (construct, and the machine of `machine.py`) decides and says what is 
 
 from __future__ import annotations
 
+import marshal
 import struct
 from collections.abc import Callable, Iterable
 from typing import Any, Literal, Protocol, TypeVar
@@ -15,7 +16,14 @@ from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.late import frame_formats
 from protogen.runtime.number import ByteOrder, Number
-from protogen.runtime.pairs import INTEGERS, PairCodes, PairLists, Pairs, Unclear, pair_values
+from protogen.runtime.pairs import (
+    INTEGERS,
+    PairLists,
+    Pairs,
+    Unclear,
+    pair_codes,
+    pair_values,
+)
 from protogen.runtime.sender import Cutter, SenderSpec
 
 AnyT = TypeVar("AnyT")
@@ -25,8 +33,9 @@ __all__ = [
     "ANYTHING",
     "BYTES",
     "INTEGERS",
+    "Heads",
     "Members",
-    "PairCodes",
+    "Packers",
     "PairLists",
     "Pairs",
     "SevenBitFloat",
@@ -35,6 +44,7 @@ __all__ = [
     "checked",
     "closed",
     "frame_formats",
+    "in_turn",
     "new",
     "seven_bit_float",
     "unknown",
@@ -74,38 +84,65 @@ def checked(wire: bytes, payload: bytes, cut: Cutter) -> bytes:
 
 
 class Tables:
-    """Lists that readers look values up in, filled when a decoder first needs them."""
+    """Tables that readers or writers look values up in, filled when the first of them is called."""
 
     def __init__(self) -> None:
         self.are_filled = False
-        self._fillings: list[tuple[list[Any], Callable[[], Iterable[Any]]]] = []
+        self._fillings: list[Callable[[], object]] = []
 
     def fill(self) -> None:
-        """Fill all lists, in place."""
+        """Fill all tables, in place."""
         while self._fillings:
-            table, values = self._fillings.pop()
-            table += values()
+            self._fillings.pop()()
         self.are_filled = True
 
-    def _table(self, values: Callable[[], Iterable[Any]]) -> list[Any]:
+    def _list(self, values: Callable[[], Iterable[Any]]) -> list[Any]:
         table: list[Any] = []
-        self._fillings.append((table, values))
+        self._fillings.append(lambda: table.extend(values()))
         return table
 
     def members(self, named: type[OpenEnum | Flags], bits: int) -> list[Any]:
         """The member of an enum or a set of flags for each value of so many bits."""
-        return self._table(lambda: map(named, range(1 << bits)))
+        return self._list(lambda: map(named, range(1 << bits)))
 
     def pairs(self, bits: int, signed: bool) -> list[Any]:
         """The integer of two bytes of 7 bits, by the 16 bits that `struct` reads.
 
         Only for bytes whose top bits are clear; padding bits that are set give None.
         """
-        return self._table(lambda: pair_values(bits, signed))
+        return self._list(lambda: pair_values(bits, signed))
+
+    def narrow(self, bits: int, signed: bool) -> dict[int, int]:
+        """The byte of each integer of fewer than 8 bits."""
+        table: dict[int, int] = {}
+        least = -(1 << bits - 1) if signed else 0
+        values = range(least, least + (1 << bits))
+        self._fillings.append(lambda: table.update((v, v & (1 << bits) - 1) for v in values))
+        return table
+
+    def codes(self, bits: int, signed: bool, order: ByteOrder) -> dict[int, int]:
+        """The other way: the 16 bits that `struct` writes, by the integer."""
+        table: dict[int, int] = {}
+        self._fillings.append(lambda: table.update(pair_codes(bits, signed, order)))
+        return table
 
 
-_KEPT_MEMBERS = 4096
-"""Members without a name that are kept; what comes off a wire must not fill the memory."""
+_KEPT = 4096
+"""Members without a name, and heads, that are kept; what a wire gives must not fill the memory."""
+
+
+class Heads(dict[bytes, tuple[Any, ...]]):
+    """What a cutter has to know of frames that begin alike, by bytes at their start."""
+
+    def __init__(self, read: Callable[[bytes], tuple[Any, ...]]) -> None:
+        super().__init__()
+        self._read = read
+
+    def __missing__(self, head: bytes) -> tuple[Any, ...]:
+        known = self._read(head)
+        if len(self) < _KEPT:
+            self[head] = known
+        return known
 
 
 class Members(dict[int, Any]):
@@ -117,7 +154,7 @@ class Members(dict[int, Any]):
 
     def __missing__(self, raw: int) -> Any:
         member = self._named(raw)
-        if len(self) < _KEPT_MEMBERS:
+        if len(self) < _KEPT:
             self[raw] = member
         return member
 
@@ -125,6 +162,39 @@ class Members(dict[int, Any]):
 def closed(named: type[OpenEnum]) -> dict[int, Any]:
     """The members of a closed enum by raw value."""
     return {int(member): member for member in named}
+
+
+# --- records in bulk ----------------------------------------------------------------------------
+
+
+class Packers(dict[int, Callable[..., bytes]]):
+    """What packs some values, and behind them so many records, by the number of records."""
+
+    def __init__(self, front: str, record: str) -> None:
+        """`front` begins with the order of bytes; both are codes of `struct`."""
+        super().__init__()
+        self._front, self._record = front, record
+
+    def __missing__(self, count: int) -> Callable[..., bytes]:
+        self[count] = pack = struct.Struct(self._front + self._record * count).pack
+        return pack
+
+
+def in_turn(*columns: list[int]) -> list[int]:
+    """The first integer of each column, then the second of each, and so on.
+
+    Raises Unclear, or ValueError, unless the columns are equally long and all they hold are
+    integers of 32 bits, not only something that looks like one.
+    """
+    width = len(columns)
+    values = [0] * (width * len(columns[0]))
+    for index, column in enumerate(columns):
+        values[index::width] = column
+    # Behind five bytes each such integer takes five, a type and four of value; nothing else has
+    # that type. So this tells all of them faster than a loop.
+    if marshal.dumps(values, 2)[5::5] != b"i" * len(values):
+        raise Unclear
+    return values
 
 
 # --- floats of 7 bits a byte --------------------------------------------------------------------

@@ -24,8 +24,8 @@ Cutter = Callable[[bytes, int, int, list[Any]], int]
 adds events. Gives the place of the first byte that it did not take."""
 
 Waiter = Callable[[bytes, int], bool]
-"""Called with data and a place in them where a frame may start. True: the rest of the data is the
-beginning of a frame, and there can be no verdict on it before more bytes arrive."""
+"""Called with data and a place in them; behind an end, if that is where frames start. True: the
+rest of the data is the beginning of a frame, on which there can be no verdict as yet."""
 
 
 @dataclass(frozen=True, slots=True)

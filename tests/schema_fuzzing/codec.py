@@ -96,7 +96,8 @@ def check_decoded(
     assert event.kind == "message", event
     assert (event.offset, event.raw, event.message) == (0, frame, made)
     assert {name: getattr(event.parts, name) for name in shown} == shown
-    assert module.PROTOCOL.decode(frame, sender.name) == made
+    assert module.decode(frame, sender.name) == made
+    assert module.decode(frame, sender.name, engine="construct") == made
     assert event.payload == made.to_payload()
 
 

@@ -8,6 +8,7 @@ from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.lines import Constants, Lines
 from protogen.targets.python.fast.numbers import FrameFunction
+from protogen.targets.python.fast.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
 
@@ -22,6 +23,19 @@ def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     that it did not take. `base` is the offset of the data in the input.
     """
     return _Cutter(frame, Lines(constants)).body()
+
+
+def decoder(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
+    """The body of `_decode_SENDER(data)`, which gives the message of exactly one frame."""
+    return _Decoder(frame, Lines(constants)).body()
+
+
+def header(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
+    """The body of `_head_SENDER(head)`: what a cutter remembers by the bytes with all numbers.
+
+    These are the numbers themselves, and the entry of their identity in the table of kinds.
+    """
+    return _Header(frame, Lines(constants)).body()
 
 
 def kinds(frame: FastFrame) -> str:
@@ -67,9 +81,19 @@ def identity_key(identity: tuple[int, ...]) -> str:
 class _Cutter(FrameFunction):
     """Writes the body of one function."""
 
+    at = "at"
+    """Where the frame starts in the data; empty: at 0."""
+    raw = "raw"
+    """The frame's bytes."""
+
+    def __init__(self, frame: FastFrame, lines: Lines) -> None:
+        super().__init__(frame, lines)
+        is_raw = not frame.stuffed and not frame.shares and not frame.end
+        self.content = self.raw if is_raw else "content"
+        """All parts before stuffing, but not the end, nor literals in front."""
+
     def body(self) -> tuple[str, ...]:
-        if self.frame.ended_by in ("length", "kind"):
-            self.lines.add("size = len(data)")
+        self.lines.add("size = len(data)")
         self.lines.add("if not _TABLES.are_filled:")
         self.lines.add("    _TABLES.fill()")
         self.lines.add("add = events.append")
@@ -79,27 +103,36 @@ class _Cutter(FrameFunction):
                 self._start()
             with self.lines.block("except IndexError:"):
                 self.lines.add("return at")
-        with self.lines.block("try:"), self.lines.block("while True:"):
-            self._locate()
-            self._content()
-            self._payload()
-            self._head()
-            self._checksums()
+        with self.lines.block("try:"), self.lines.block("while at < size:"):
+            if self.frame.ended_by != "start":
+                self._start()
+            self._frame()
             self._event()
         with self.lines.block("except _fast.ANYTHING:  # The reference looks at what is here."):
-            self.lines.add("return at")
+            self.lines.add("pass")
+        self.lines.add("return at")
         return self.lines.text
+
+    def _frame(self) -> None:
+        """Set `payload`, and what else of the frame is wanted."""
+        self._locate()
+        self._content()
+        self._payload()
+        self._head()
+        self._checksums()
 
     def _stop_if(self, condition: str) -> None:
         self.lines.add(f"if {condition}:")
         self.lines.add("    return at")
 
+    def _place(self, offset: int) -> str:
+        """So many bytes behind the start of the frame."""
+        return Place(self.at, offset).text
+
     # --- where the frame ends ---------------------------------------------------------------------
 
     def _locate(self) -> None:
         """Set `raw`, the frame's bytes, and `end`, the place behind them."""
-        if self.frame.ended_by != "start":
-            self._start()
         match self.frame.ended_by:
             case "start":
                 self._until_start()
@@ -114,17 +147,27 @@ class _Cutter(FrameFunction):
         start = self.frame.start
         if isinstance(start, AfterEnd) and self.frame.ended_by != "end":
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
-            self._stop_if(f"data.startswith({literal(self.frame.end)}, at)")
+            self._stop_if(f"data.startswith({literal(self.frame.end)}{self._from})")
         elif isinstance(start, StartSet) and self.frame.ended_by != "kind":
-            self._stop_if(f"not 0x{start.least:02X} <= data[at] <= 0x{start.greatest:02X}")
+            first = f"data[{self._place(0)}]"
+            self._stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
         elif isinstance(start, StartLiteral):
-            begin = literal(start.bytes)
+            begins = f"data.startswith({literal(start.bytes)}{self._from})"
             if self.frame.shares:
-                self.lines.add(f"begun = at + {len(start.bytes)} * data.startswith({begin}, at)")
+                self._shared_start(begins)
             elif len(start.bytes) == 1:
-                self._stop_if(f"data[at] != 0x{start.bytes[0]:02X}")
+                self._stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
             else:
-                self._stop_if(f"not data.startswith({begin}, at)")
+                self._stop_if(f"not {begins}")
+
+    @property
+    def _from(self) -> str:
+        """An argument that lets `startswith` look where the frame starts."""
+        return f", {self.at}" if self.at else ""
+
+    def _shared_start(self, begins: str) -> None:
+        """Set `begun`, the place behind the start, which may be the end of the frame before."""
+        self.lines.add(f"begun = at + {len(self.frame.start_bytes)} * {begins}")
 
     def _until_start(self) -> None:
         if isinstance(self.frame.start, StartLiteral):
@@ -137,8 +180,7 @@ class _Cutter(FrameFunction):
             if self.frame.length is None:
                 self.lines.add("return at")
             else:
-                self.lines.add("end = len(data)")
-                self._stop_if("at == end")
+                self.lines.add("end = size")
         if len(self.frame.start_bytes) > 1:
             # Two starts that overlap.
             self._stop_if(f"end < at + {len(self.frame.start_bytes)}")
@@ -146,8 +188,8 @@ class _Cutter(FrameFunction):
 
     def _until_end(self) -> None:
         frame = self.frame
-        at = "begun" if frame.shares else f"at + {len(frame.start_bytes)}"
-        self.lines.add(f"end = data.find({literal(frame.end)}, {at.removesuffix(' + 0')})")
+        begun = "begun" if frame.shares else self._place(len(frame.start_bytes))
+        self.lines.add(f"end = data.find({literal(frame.end)}, {begun})")
         self._stop_if("end < 0")
         self.lines.add(f"end += {len(frame.end)}")
         self._raw()
@@ -161,96 +203,109 @@ class _Cutter(FrameFunction):
         return frame.stuffed and frame.before == len(frame.start_bytes) > 0 and not frame.behind
 
     def _raw(self) -> None:
-        self.lines.add("raw = data[at:end]")
-        size = f"len(raw) + {len(self.frame.start_bytes)}" if self.frame.shares else "len(raw)"
+        self._take()
+        size = f"len({self.raw})"
+        if self.frame.shares:
+            size += f" + {len(self.frame.start_bytes)}"
         open_kinds = any(kin.fixed is None for kin in self.frame.kins)
         if self.frame.ended_by != "kind" or open_kinds:
             self._stop_if(f"{size} > {self.frame.framing.greatest}")
+
+    def _take(self) -> None:
+        """Take the frame's bytes, now that its end is known."""
+        if self.frame.ended_by in ("length", "kind"):
+            self._stop_if("end > size")
+        self.lines.add("raw = data[at:end]")
 
     def _no_start_inside(self) -> None:
         """A start that can't occur inside of a frame ends it where it stands."""
         start = self.frame.start
         if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
-            self._stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
+            self._stop_if(f"{self.raw}.find({literal(start.bytes)}, 1) > 0")
         elif isinstance(start, StartSet) and start.protected and not self.is_seen_by_bits:
-            self._stop_if(f"{self.starts()}(raw, 1)")
+            self._stop_if(f"{self.starts()}({self.raw}, 1)")
 
     def _by_length(self) -> None:
         frame, length = self.frame, self.frame.length
         assert length is not None
         around = frame.head_size + frame.tail_size + len(frame.end)
-        self.lines.add(f"count = {self.number('data', length, 'at + ')} - {self.counted(length)}")
+        self.lines.add(f"count = {self.number('data', length, self.at)} - {self.counted(length)}")
         if frame.optional:
             with self.lines.block(f"if count == {-self._counted_optional(length)}:"):
-                self.lines.add(f"end = at + {around - self.optional_size}")
+                self.lines.add(f"end = {self._place(around - self.optional_size)}")
             with self.lines.block("elif count > 0:"):
-                self.lines.add(f"end = at + {around} + count")
+                self.lines.add(f"end = {self._place(around)} + count")
             with self.lines.block("else:"):
                 self.lines.add("return at")
         else:
             self._stop_if("count < 0")
-            self.lines.add(f"end = at + {around} + count")
+            self.lines.add(f"end = {self._place(around)} + count")
         self._sized()
 
     def _by_kind(self) -> None:
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
-        key = self.identity("data", "at + ")
+        key = self.identity("data", self.at)
         varies = self.frame.has_open_kinds or self.frame.optional
         found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
-            found += ", numbers"
+            found += f", {self.numbers}"
         self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
         open_kinds = frame.has_open_kinds
         if open_kinds and frame.end:
             with self.lines.block("if payload_size < 0:"):
-                self.lines.add(f"end = data.find({literal(frame.end)}, at + {frame.head_size})")
+                behind = self._place(frame.head_size)
+                self.lines.add(f"end = data.find({literal(frame.end)}, {behind})")
                 self._stop_if("end < 0")
                 self.lines.add(f"end += {len(frame.end)}")
             head = "elif payload_size:" if frame.optional else "else:"
             with self.lines.block(head):
-                self.lines.add(f"end = at + {around} + payload_size")
+                self.lines.add(f"end = {self._place(around)} + payload_size")
             if frame.optional:
                 with self.lines.block("else:"):
-                    self.lines.add(f"end = at + {around - self.optional_size}")
+                    self.lines.add(f"end = {self._place(around - self.optional_size)}")
         else:
             if open_kinds:
                 self._stop_if("payload_size < 0")
             less = f" - {self.optional_size} * (not payload_size)" if frame.optional else ""
             if less or open_kinds:
-                self.lines.add(f"end = at + {around} + payload_size{less}")
+                self.lines.add(f"end = {self._place(around)} + payload_size{less}")
             else:
-                self.lines.add("end = at + frame_size")
+                self.lines.add("end = at + frame_size" if self.at else "end = frame_size")
         self._sized()
 
     def _sized(self) -> None:
         """Take a frame of a known size."""
-        self._stop_if("end > size")
         self._raw()
         if self.frame.end:
-            self._stop_if(f"not raw.endswith({literal(self.frame.end)})")
+            self._stop_if(f"not {self.raw}.endswith({literal(self.frame.end)})")
         self._no_start_inside()
 
     # --- what is in it ----------------------------------------------------------------------------
 
     def _content(self) -> None:
-        """Set `content`: all parts before stuffing, but not the end, nor literals in front."""
+        """Set `content`, where the frame's bytes are not the content themselves."""
         frame = self.frame
-        first = "begun - at" if frame.shares else str(frame.before or "")
-        last = str(-(len(frame.end) + frame.behind) or "")
-        if not frame.stuffed:
-            whole = first or last
-            self.lines.add(f"content = raw[{first}:{last}]" if whole else "content = raw")
+        if self.content == self.raw:
             return
-        self.lines.add(f"content = raw[{first}:{last}]")
+        first = self._begun if frame.shares else str(frame.before or "")
+        last = str(-(len(frame.end) + frame.behind) or "")
+        self.lines.add(f"content = {self.raw}[{first}:{last}]")
+        if not frame.stuffed:
+            return
         self._unstuffed()
         pieces = ["content"]
         if frame.before and not frame.skipped:
-            pieces.insert(0, f"raw[:{frame.before}]")
+            pieces.insert(0, f"{self.raw}[:{frame.before}]")
         if frame.behind:
-            pieces.append(f"raw[{last}:{-len(frame.end) or ''}]")
+            pieces.append(f"{self.raw}[{last}:{-len(frame.end) or ''}]")
         if len(pieces) > 1:
             self.lines.add(f"content = {' + '.join(pieces)}")
+
+    @property
+    def _begun(self) -> str:
+        """How many bytes of the frame are a shared start."""
+        return "begun - at"
 
     def _unstuffed(self) -> None:
         """Take the stuffing off, as an encoder would have put it on.
@@ -293,8 +348,8 @@ class _Cutter(FrameFunction):
             self._length(frame.length, around)
             self.lines.add(sliced)
         elif frame.optional:
-            with self.lines.block(f"if len(content) <= {around}:"):
-                self._stop_if(f"len(content) != {around - self.optional_size}")
+            with self.lines.block(f"if len({self.content}) <= {around}:"):
+                self._stop_if(f"len({self.content}) != {around - self.optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
@@ -303,7 +358,7 @@ class _Cutter(FrameFunction):
                 self._optional_length(frame.length)
         else:
             if frame.ended_by in ("end", "start"):
-                self._stop_if(f"len(content) < {max(around, 1)}")
+                self._stop_if(f"len({self.content}) < {max(around, 1)}")
             self.lines.add(sliced)
         if frame.framing.seven_bit:
             self._stop_if("not payload.isascii()")
@@ -311,28 +366,29 @@ class _Cutter(FrameFunction):
     @property
     def _payload_slice(self) -> str:
         frame = self.frame
-        return frame.slice_of("content", frame.head_size - frame.skipped, -frame.tail_size)
+        return frame.slice_of(self.content, frame.head_size - frame.skipped, -frame.tail_size)
 
     def _length(self, part: LengthPart, around: int) -> None:
         """A length in bounds that is right tells that all other parts are there."""
-        counted, number = self.counted(part), self.number("content", part)
+        counted, number = self.counted(part), self.number(self.content, part)
         behind = self.frame.offset(part) + part.type.size
-        if around < behind or self.frame.ended_by in ("end", "start"):
-            self._stop_if(f"len(content) < {behind}")
+        if part.type.size > 1 and (around < behind or self.frame.ended_by in ("end", "start")):
+            self._stop_if(f"len({self.content}) < {behind}")
+        self.lines.add(f"length = {number}")
         rest = around - counted
-        due = f"{number} + {rest}" if rest > 0 else f"{number} - {-rest}" if rest else number
-        self._stop_if(f"len(content) != {due}")
+        due = f"length + {rest}" if rest > 0 else f"length - {-rest}" if rest else "length"
+        self._stop_if(f"len({self.content}) != {due}")
         least = max(part.least, counted)
         greatest = min(part.greatest, counted + self.frame.framing.payload.greatest)
         if least > 0 or greatest < part.type.greatest:
-            self._stop_if(f"not {least} <= {number} <= {greatest}")
+            self._stop_if(f"not {least} <= length <= {greatest}")
 
     def _counted_optional(self, length: LengthPart) -> int:
         """What the length counts less where the payload is empty."""
         return self.frame.counted_optional(length)
 
     def _optional_length(self, part: LengthPart) -> None:
-        counted, number = self.counted(part), self.number("content", part)
+        counted, number = self.counted(part), self.number(self.content, part)
         self._stop_if(
             f"{number} != len(payload) + {counted} - {self._counted_optional(part)} * (not payload)"
         )
@@ -341,9 +397,9 @@ class _Cutter(FrameFunction):
     def _head(self) -> None:
         for part in self.frame.head:
             if isinstance(part, LiteralPart) and not self.is_start(part):
-                first, source = self.frame.offset(part), "content"
+                first, source = self.frame.offset(part), self.content
                 if first < 0:
-                    first, source = first + self.frame.skipped, "raw"
+                    first, source = first + self.frame.skipped, self.raw
                 self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
 
     # --- checksums --------------------------------------------------------------------------------
@@ -359,29 +415,30 @@ class _Cutter(FrameFunction):
 
     def _compare(self) -> None:
         for part in self.frame.checksums:
-            covered = self.frame.covered(part, "content")
+            covered = self.frame.covered(part, self.content)
+            if self._sums_to_nothing(part, covered):
+                self._stop_if(f"_adler32({self.content}, 0) & 0xFF")
+                continue
             if covered == self._payload_slice:
                 covered = "payload"
             due = checksum(part, covered, self.frame, self.lines.constants)
             first = self.frame.offset(part)
             if part.type.size == 1 and not self.has_padding(part.type):
-                self._stop_if(f"content[{first}] != {due}")
+                self._stop_if(f"{self.content}[{first}] != {due}")
                 continue
             last = first + part.type.size
-            found = self.frame.slice_of("content", first, last)
+            found = self.frame.slice_of(self.content, first, last)
             self._stop_if(f"{found} != {self.codec(part.type)}.encode({due})")
+
+    def _sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
+        """Whether the checksum brings the sum of the whole content to 0."""
+        all_but_last = covered == self.frame.slice_of(self.content, 0, -1)
+        return is_plain_sum(part, self.frame) and part.algorithm.negated and all_but_last
 
     # --- the event --------------------------------------------------------------------------------
 
     def _event(self) -> None:
-        frame = self.frame
-        if frame.ended_by != "kind" or not frame.shows_identity:
-            names = [f"n{index}" for index, _ in enumerate(frame.shown)]
-            for name, part in zip(names, frame.shown, strict=True):
-                self.lines.add(f"{name} = {self.number('content', part)}")
-            self.lines.add(f"numbers = {tuple_of(names)}")
-        if frame.ended_by != "kind":
-            self._look_up([f"n{frame.shown.index(part)}" for part in frame.identity])
+        self._numbers()
         self.lines.add("event = _new(_MessageEvent)")
         self.lines.add("event.message = read(payload)")
         self.lines.add("event.offset = base + at")
@@ -391,11 +448,40 @@ class _Cutter(FrameFunction):
         self.lines.add("add(event)")
         self.lines.add("at = end")
 
-    def _look_up(self, identity: list[str]) -> None:
+    def _numbers(self) -> None:
+        """Set `numbers`, and `read` unless the place of the end has told it."""
         frame = self.frame
+        if frame.ended_by == "kind":
+            if not frame.shows_identity:
+                numbers = (self.number(self.content, part) for part in frame.shown)
+                self.lines.add(f"numbers = {tuple_of(numbers)}")
+        elif frame.remembered is not None:
+            self._known_head(*frame.remembered)
+        else:
+            names = [f"n{index}" for index, _ in enumerate(frame.shown)]
+            for name, part in zip(names, frame.shown, strict=True):
+                self.lines.add(f"{name} = {self.number(self.content, part)}")
+            self.lines.add(f"numbers = {tuple_of(names)}")
+            self._look_up([names[frame.shown.index(part)] for part in frame.identity])
+
+    def _known_head(self, first: int, last: int) -> None:
+        """Look the bytes with all numbers up, which a stream repeats over and over."""
+        head = f"_{self.name.upper()}_HEADS[{self.content}[{first}:{last}]]"
+        if self.frame.length is not None:
+            self.lines.add(f"{self.numbers}, read = {head}")
+            with self.lines.block("if read is None:"):
+                self._unknown()
+        else:
+            self.lines.add(f"{self.numbers}, payload_size, read = {head}")
+            self._stop_if("0 <= payload_size != len(payload)")
+
+    numbers = "numbers"
+    """Where the values of the frame's parts are put."""
+
+    def _look_up(self, identity: list[str]) -> None:
         kinds = f"_{self.name.upper()}_KINDS"
         key = identity[0] if len(identity) == 1 else tuple_of(identity)
-        if frame.length is not None:
+        if self.frame.length is not None:
             self.lines.add(f"read = {kinds}.get({key})")
             with self.lines.block("if read is None:"):
                 self._unknown()
@@ -410,11 +496,90 @@ class _Cutter(FrameFunction):
         self.lines.add("continue")
 
 
+class _Decoder(_Cutter):
+    """Writes the body of one that takes a frame by itself."""
+
+    at = ""
+    raw = "data"
+    numbers = "_"
+
+    def body(self) -> tuple[str, ...]:
+        self.lines.refuse_if("type(data) is not bytes")
+        self.lines.add("if not _TABLES.are_filled:")
+        self.lines.add("    _TABLES.fill()")
+        self._start()
+        self._frame()
+        self._numbers()
+        self.lines.add("return read(payload)")
+        return self.lines.text
+
+    def _numbers(self) -> None:
+        frame = self.frame
+        if frame.ended_by != "kind" and frame.remembered is not None:
+            self._known_head(*frame.remembered)
+            return
+        for part in frame.shown:
+            if part not in frame.identity and self.has_padding(part.type):
+                self.lines.add(self.number(self.content, part))
+        if frame.ended_by != "kind":
+            self._look_up([self.number(self.content, part) for part in frame.identity])
+
+    def _stop_if(self, condition: str) -> None:
+        self.lines.refuse_if(condition)
+
+    def _shared_start(self, begins: str) -> None:
+        self._stop_if(f"not {begins}")
+
+    @property
+    def _begun(self) -> str:
+        return str(len(self.frame.start_bytes))
+
+    def _until_start(self) -> None:
+        start = self.frame.start
+        if isinstance(start, StartLiteral):
+            self._stop_if(f"data.find({literal(start.bytes)}, 1) > 0")
+        else:
+            self._stop_if(f"{self.starts()}(data, 1)")
+        self._raw()
+
+    def _take(self) -> None:
+        if self.frame.ended_by != "start":
+            self._stop_if("end != len(data)")
+
+    def _unknown(self) -> None:
+        self.lines.add("raise _fast.Unclear")
+
+
+class _Header(FrameFunction):
+    """Writes the body of the function that reads a head."""
+
+    def body(self) -> tuple[str, ...]:
+        frame = self.frame
+        assert frame.remembered is not None
+        first, _ = frame.remembered
+        found = {
+            part: self.number_at("head", part, Place("", frame.offset(part) - first))
+            for part in frame.shown
+        }
+        identity = [found[part] for part in frame.identity]
+        key = identity[0] if len(identity) == 1 else tuple_of(identity)
+        kinds = f"_{self.name.upper()}_KINDS"
+        entry = f"{kinds}.get({key})" if frame.length is not None else f"*{kinds}[{key}]"
+        self.lines.add(f"return {tuple_of(found.values())}, {entry}")
+        return self.lines.text
+
+
+def is_plain_sum(part: ChecksumPart, frame: FastFrame) -> bool:
+    """Whether Adler-32 gives the sum: it is that of few bytes, modulo 256."""
+    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
+    spec = part.algorithm
+    return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
+
+
 def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constants) -> str:
     """A checksum of `data` as an expression."""
     spec = part.algorithm
-    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
-    if spec.kind == "sum" and spec.init == 0 and greatest < _SHORT:
+    if is_plain_sum(part, frame):
         total = f"_adler32({data}, 0)"
         return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
     if spec.kind == "xor" and spec.init == 0:

@@ -213,6 +213,26 @@ class FastFrame:
         return self.ended_by == "kind" and not self.has_open_kinds and not self.optional
 
     @property
+    def remembered(self) -> tuple[int, int] | None:
+        """Where the bytes of all numbers that events show begin and end in the content.
+
+        None where a stream repeats these bytes too seldom for remembering what they mean.
+        """
+        others = [part for part in self.shown if part not in self.identity]
+        if not self.shown or sum(map(fixed_size, others)) > 1:
+            return None
+        first = min(map(self.offset, self.shown))
+        last = max(self.offset(part) + fixed_size(part) for part in self.shown)
+        between = [part for part in self.head if first <= self.offset(part) < last]
+        plain = not any(isinstance(part, ChecksumPart) for part in between)
+        return (first, last) if plain else None
+
+    @property
+    def can_decode(self) -> bool:
+        """Whether there is a function that takes a frame by itself."""
+        return self.can_cut and (self.ended_by != "start" or self.length is not None)
+
+    @property
     def shows_identity(self) -> bool:
         """Whether events show the identity and no other part."""
         return self.shown == self.identity

@@ -57,16 +57,14 @@ def encoder(
         if message.sizes.fixed is not None and _goes_together(frames[0]):
             return _Framer(frames[0], of_caller, lines, message).whole(message)
     payload_writer(message, lines)
+    if len(frames) == 1:
+        return _Framer(frames[0], of_caller, lines, message).body()
     values = [*map(str, message.identity), *encoder_arguments(of_caller)]
     for frame in frames:
         call = f"_frame_{frame.sender.name}({', '.join(['payload', *values])})"
-        if len(frames) == 1:
+        with lines.block(f"if sender == {text(frame.sender.name)}:"):
             lines.add(f"return {call}")
-        else:
-            with lines.block(f"if sender == {text(frame.sender.name)}:"):
-                lines.add(f"return {call}")
-    if len(frames) > 1:
-        lines.add("raise _fast.Unclear")
+    lines.add("raise _fast.Unclear")
     return lines.text
 
 
@@ -99,12 +97,16 @@ class _Framer:
         self.frame = frame
         self.lines = lines
         self.message = message
+        self._has_payload = False
+        """Whether a variable holds the payload alone."""
         names = _of_caller(frame, of_caller) if message is None else encoder_arguments(of_caller)
         self.values = dict(zip(of_caller, names, strict=True))
 
     def body(self) -> tuple[str, ...]:
-        self._values()
+        for name in self._values():
+            self.lines.refuse_if(f"type({name}) is not int")
         self._payload()
+        self._has_payload = True
         if self.frame.optional:
             with self.lines.block("if payload:"):
                 self._make(bare=False)
@@ -115,9 +117,9 @@ class _Framer:
 
     def whole(self, message: Message) -> tuple[str, ...]:
         """The body for a message of a fixed size, packed together with what is in front of it."""
-        self._values()
+        integers = self._values()
         head = [self._packed(part) for part in self.frame.head if not self._is_skipped(part)]
-        self.lines.add(f"content = {content_writer(message, head, self.lines)}")
+        self.lines.add(f"content = {content_writer(message, head, integers, self.lines)}")
         if self.frame.framing.cut_ambiguous:
             self.lines.add(f"payload = {self._own_payload()}")
         for part in self.frame.checksums:
@@ -134,7 +136,9 @@ class _Framer:
         assert isinstance(part, NumberPart)
         return Packed(_order(part.type), _CODES[part.type.size], self._value(part, bare=False))
 
-    def _values(self) -> None:
+    def _values(self) -> list[str]:
+        """Check what callers give; the variables that have yet to be seen to be integers."""
+        integers = []
         own = {part.name for part in self.frame.sender.frame.caller_parts}
         for name, argument in self.values.items():
             if name not in own:
@@ -144,8 +148,11 @@ class _Framer:
             if part.default is not None:
                 self.lines.add(f"if {part.name}_ is None:")
                 self.lines.add(f"    {part.name}_ = {part.default}")
-            allowed = f"{part.least} <= {part.name}_ <= {part.greatest}"
-            self.lines.refuse_if(f"type({part.name}_) is not int or not {allowed}")
+            least, greatest = part.least, part.greatest
+            if not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
+                self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
+            integers.append(f"{part.name}_")
+        return integers
 
     def _payload(self) -> None:
         frame = self.frame
@@ -226,8 +233,7 @@ class _Framer:
     def _value(self, part: NumberPart, bare: bool) -> str:
         if isinstance(part, LengthPart):
             counted = self._counted(part, bare)
-            if self.message is not None:
-                assert self.message.sizes.fixed is not None
+            if self.message is not None and self.message.sizes.fixed is not None:
                 return str(self.message.sizes.fixed + counted)
             return f"len(payload) + {counted}" if counted else "len(payload)"
         if self.message is not None and isinstance(part, IdentityPart):
@@ -247,7 +253,8 @@ class _Framer:
         """What a checksum covers, while the content ends where the part begins."""
         frame = self.frame
         missing = -frame.offset(part)
-        return frame.covered(part, "content", missing)
+        covered = frame.covered(part, "content", missing)
+        return "payload" if self._has_payload and covered == self._own_payload() else covered
 
     def _return(self) -> None:
         frame = self.frame

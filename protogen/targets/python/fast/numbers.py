@@ -7,6 +7,7 @@ from protogen.model.framing import StartSet
 from protogen.model.types import Integer
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Lines
+from protogen.targets.python.fast.place import Place
 
 
 class FrameFunction:
@@ -46,15 +47,21 @@ class FrameFunction:
         """What the length counts besides the payload."""
         return self.frame.counted(part)
 
-    def number(self, source: str, part: NumberPart, base: str = "") -> str:
-        """The value of a part of the head."""
+    def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
+        """The value of a part of the head, in the content or, with a base, in the data.
+
+        The base is where the frame starts in them: a variable, or empty where it is at 0.
+        """
         # In the data, counted from the frame's start, nothing is skipped.
-        first = self.frame.offset(part) + (self.frame.skipped if base else 0)
-        place = f"{base}{first}" if first or not base else base.removesuffix(" + ")
+        skipped = 0 if base is None else self.frame.skipped
+        return self.number_at(source, part, Place(base or "", self.frame.offset(part) + skipped))
+
+    def number_at(self, source: str, part: NumberPart, first: Place) -> str:
+        """The value of a part whose bytes begin at that place."""
         if part.type.size == 1 and not self.has_padding(part.type):
-            return f"{source}[{place}]"
-        behind = f"{base}{first + part.type.size}"
-        piece = f"{source}[{place} : {behind}]"
+            return f"{source}[{first.text}]"
+        behind = Place(first.variable, first.offset + part.type.size)
+        piece = f"{source}[{first.text} : {behind.text}]"
         if self.has_padding(part.type):
             return f"{self.codec(part.type)}.decode({piece})"
         return f'int.from_bytes({piece}, "{part.type.byte_order}")'
@@ -63,7 +70,7 @@ class FrameFunction:
         """The number that reads the part's bytes and checks their padding."""
         return self.lines.constants.number(type_)
 
-    def identity(self, source: str, base: str = "") -> str:
+    def identity(self, source: str, base: str | None = None) -> str:
         """The values of all identity parts, between commas."""
         return ", ".join(self.number(source, part, base) for part in self.frame.identity) or "()"
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from protogen.model.fields import Field
 from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Case,
@@ -44,7 +45,7 @@ def message_reader(message: Message, is_ascii: bool, constants: Constants) -> tu
 
     `is_ascii`: whoever calls it has seen that no byte has its most significant bit set.
     """
-    reader = _Reader(Lines(constants), Place(), is_message=True, is_ascii=is_ascii)
+    reader = _Reader(Lines(constants), Place(), sizes=message.sizes, is_ascii=is_ascii)
     reader.whole = message.sizes.fixed
     if message.sizes.fixed is None or not goes_together(message.fields):
         reader.whole = None
@@ -92,12 +93,13 @@ class _Reader:
     """Writes the body of one function."""
 
     def __init__(
-        self, lines: Lines, place: Place, *, is_message: bool = False, is_ascii: bool = False
+        self, lines: Lines, place: Place, *, sizes: SizeSet | None = None, is_ascii: bool = False
     ) -> None:
+        """With the `sizes` of a message, which are checked in front, to read that."""
         self.lines = lines
         self.place = place
         self.is_ascii = is_ascii
-        self.is_message = is_message
+        self.sizes = sizes
         self.is_at_end = False
         """Whether a field of the message itself has taken all that was left."""
         self.whole: int | None = None
@@ -280,7 +282,7 @@ class _Reader:
 
     def _move_to_end(self, expression: str) -> None:
         """The same for what takes all that is left; nothing stands behind it."""
-        if self.lines.is_nested or not self.is_message:
+        if self.lines.is_nested or self.sizes is None:
             self._move_to(expression)
         else:
             self.is_at_end = True
@@ -371,6 +373,11 @@ class _Reader:
         size = fixed_size(array.element)
         if not size:
             return self._array_of_varying(array)
+        element = array.element
+        together = isinstance(element, Struct) and goes_together(element.fields)
+        if together and self._fills_message(array.extent, size):
+            assert isinstance(element, Struct)
+            return self._elements_together(element, f"data[{self.place.offset}:]")
         count = self._array_count(array.extent, size)
         values = self._elements(array, size, count)
         if isinstance(array.extent, Fixed):
@@ -384,6 +391,19 @@ class _Reader:
         else:
             self._move_to(end)
         return name
+
+    def _fills_message(self, extent: Extent, size: int) -> bool:
+        """Whether records are all the rest of a message, whose size says that they are whole.
+
+        Then nothing can be wrong with their number.
+        """
+        sizes, first = self.sizes, self.place.offset
+        if sizes is None or self.lines.is_nested or self.place.variable:
+            return False
+        if not isinstance(extent, Fill):
+            return False
+        self.is_at_end = sizes == SizeSet(first, first + size * extent.greatest, size)
+        return self.is_at_end
 
     def _array_count(self, extent: Extent, size: int) -> str:
         if not isinstance(extent, Fill):
@@ -444,18 +464,18 @@ class _Reader:
         start = self.place.text
         stop = f"{start} + {size} * {count}"
         if goes_together(element.fields):
-            return self._elements_together(element, size, count)
+            data = self.lines.local("data")
+            self.lines.add(f"{data} = data[{start} : {start} + {size} * {count}]")
+            self.lines.refuse_if(f"len({data}) != {size} * {count}")
+            return self._elements_together(element, data)
         call = f"_read_{element.name}(data, place{outer})"
         places = self.lines.local("places")
         self.lines.add(f"{places} = range({start}, {stop}, {size})")
         return f"[{call} for place in {places}]"
 
-    def _elements_together(self, element: Struct, size: int, count: str) -> str:
+    def _elements_together(self, element: Struct, data: str) -> str:
+        """The elements whose bytes an expression gives, each read by one `struct`."""
         values, item = self.lines.local(), self.lines.local("s")
-        data = self.lines.local("data")
-        start = self.place.text
-        self.lines.add(f"{data} = data[{start} : {start} + {size} * {count}]")
-        self.lines.refuse_if(f"len({data}) != {size} * {count}")
         self.lines.add(f"{values}: list[_typing.Any] = []")
         outside, self._run, raw = self._run, _Run(), dict(self.raw)
         for field_ in element.fields:

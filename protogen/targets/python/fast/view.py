@@ -11,7 +11,7 @@ from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.layout import fixed_size, outer_names
 from protogen.targets.python.fast.lines import Constants
 from protogen.targets.python.fast.reading import message_reader, struct_reader
-from protogen.targets.python.fast.writing import struct_writer
+from protogen.targets.python.fast.writing import struct_writer, with_codes
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import method
@@ -36,6 +36,8 @@ class FastSender:
     name: str
     upper: str
     cut: Function | None
+    head: Function | None
+    decode: Function | None
     waits: Function | None
     kinds: str
     frame: Function | None
@@ -68,7 +70,10 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     lines = [*constants.text, *(line for function in functions for line in function.body)]
     for sender in senders:
         lines += [
-            line for item in (sender.cut, sender.waits, sender.frame) if item for line in item.body
+            line
+            for item in (sender.cut, sender.head, sender.decode, sender.waits, sender.frame)
+            if item
+            for line in item.body
         ]
     joined = "\n".join(lines)
     return Fast(
@@ -95,7 +100,7 @@ def _records(protocol: Protocol, constants: Constants) -> tuple[Function, ...]:
         functions.append(
             _function(f"_read_{struct.name}", f"data: bytes, at: int{outer}", given, body)
         )
-        body = struct_writer(struct, constants)
+        body = with_codes(struct_writer(struct, constants))
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
         name = class_name(message.name)
@@ -119,7 +124,7 @@ def _encoder(
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
     parameters = f"item: {class_name(message.name)}, sender: str | None{given}"
-    body = framing.encoder(message, own, of_caller, constants)
+    body = with_codes(framing.encoder(message, own, of_caller, constants))
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 
@@ -143,11 +148,17 @@ def _overload(frame: FastFrame, kin: Kin) -> Function:
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
     name = frame.sender.name
-    cut = waits = made = None
+    cut = head = alone = waits = made = None
     if frame.can_cut:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
+    if frame.can_cut and frame.ended_by != "kind" and frame.remembered is not None:
+        body = cutting.header(frame, constants)
+        head = _function(f"_head_{name}", "head: bytes", "tuple[_typing.Any, ...]", body)
+    if frame.can_decode:
+        body = cutting.decoder(frame, constants)
+        alone = _function(f"_decode_{name}", "data: bytes", "_typing.Any", body)
     if frame.can_wait:
         body = waiting.waiter(frame, constants)
         waits = _function(f"_waits_{name}", "data: bytes, at: int", "bool", body)
@@ -156,4 +167,5 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
-    return FastSender(name, name.upper(), cut, waits, cutting.kinds(frame) if cut else "", made)
+    kinds = cutting.kinds(frame) if cut else ""
+    return FastSender(name, name.upper(), cut, head, alone, waits, kinds, made)

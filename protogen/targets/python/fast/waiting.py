@@ -19,8 +19,8 @@ from protogen.targets.python.literals import tuple_of
 def waiter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     """The body of `_waits_SENDER(data, at)`.
 
-    It tells whether what stands from `at` on, where a frame may start, is the beginning of one on
-    which there can be no verdict before more bytes arrive.
+    It tells whether what stands from `at` on is the beginning of a frame on which there can be no
+    verdict before more bytes arrive. That it stands behind an end has been seen.
     """
     return _Waiting(frame, Lines(constants)).body()
 
@@ -35,6 +35,7 @@ class _Waiting(FrameFunction):
     def body(self) -> tuple[str, ...]:
         self.lines.add("size = len(data) - at")
         self._no_if(f"size >= {self.frame.framing.greatest}")
+        self._no_other_start()
         self._no_delimiters()
         with self.lines.block("try:"):
             self._content()
@@ -48,6 +49,14 @@ class _Waiting(FrameFunction):
     def _no_if(self, condition: str) -> None:
         self.lines.add(f"if {condition}:")
         self.lines.add("    return False")
+
+    def _no_other_start(self) -> None:
+        start = self.frame.start
+        if isinstance(start, StartLiteral):
+            self._no_if(f"not data.startswith({literal(start.bytes)}, at)")
+        elif isinstance(start, StartSet):
+            least, greatest = start.least, start.greatest
+            self._no_if(f"not size or not 0x{least:02X} <= data[at] <= 0x{greatest:02X}")
 
     # --- what ends a candidate wherever it stands -------------------------------------------------
 

@@ -46,11 +46,26 @@ def payload_writer(message: Message, lines: Lines) -> None:
         lines.refuse_if(outside(message.sizes, "payload"))
 
 
-def content_writer(message: Message, head: Sequence[Packed], lines: Lines) -> str:
-    """The same for numbers in front of a payload of a fixed size, and the payload."""
+def content_writer(
+    message: Message, head: Sequence[Packed], integers: Sequence[str], lines: Lines
+) -> str:
+    """The same for numbers in front of a payload of a fixed size, and the payload.
+
+    `integers` are variables that have to be integers as well.
+    """
     writer = _Writer(lines)
-    writer.begin(head)
+    writer.begin(head, integers)
     return writer.record("item", message.fields)
+
+
+def with_codes(body: tuple[str, ...]) -> tuple[str, ...]:
+    """The body of a function, behind what fills the tables in which it looks values up."""
+    if not any(_CODES in line for line in body):
+        return body
+    return ("if not _CODES.are_filled:", "    _CODES.fill()", *body)
+
+
+_CODES = "BYTE_CODES"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +84,19 @@ def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
     writer.lines.refuse_if(f"type(item) is not {class_name(struct.name)}")
     writer.lines.add(f"return {writer.record('item', struct.fields)}")
     return writer.lines.text
+
+
+def _are_plain(fields: tuple[Field, ...]) -> bool:
+    """Whether all fields are integers that `struct` writes as they are, and `in_turn` tells."""
+    orders = {order_of(item.type) for item in fields} - {""}
+    return bool(fields) and len(orders) < 2 and all(map(_is_plain, fields))
+
+
+def _is_plain(item: Field) -> bool:
+    type_ = item.type
+    if not isinstance(type_, Integer) or not is_native(type_) or is_named(type_):
+        return False
+    return not item.ranged and item.const is None and type_.bits + (not type_.signed) <= 32
 
 
 _TYPES_IN_LINE = 6
@@ -100,8 +128,9 @@ class _Writer:
         """Raw values of the fields in front, by name."""
         self._bytes = _Bytes()
 
-    def begin(self, head: Sequence[Packed]) -> None:
-        """Numbers that stand in front."""
+    def begin(self, head: Sequence[Packed], integers: Sequence[str]) -> None:
+        """Numbers that stand in front, and variables that have to be integers."""
+        self._bytes.integers += integers
         for item in head:
             self._pack(item)
 
@@ -204,7 +233,7 @@ class _Writer:
         named = type_.enum or type_.flags
         assert named is not None
         name = class_name(named.name)
-        self.lines.refuse_if(f"type({value}) is not {name} and type({value}) is not int")
+        self.lines.refuse_if(f"type({value}) is not int and type({value}) is not {name}")
         if type_.enum is not None and type_.enum.closed:
             members = self.lines.constants.named("VALUES", f"frozenset(map(int, {name}))")
             self.lines.refuse_if(f"{value} not in {members}")
@@ -223,14 +252,15 @@ class _Writer:
         if is_native(type_) or type_.role == "bool":
             return value
         if is_pair(type_):
-            arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
-            return (
-                f"{self.lines.constants.named('CODES', f'_fast.PairCodes({arguments})')}[{value}]"
-            )
+            codes = f'_CODES.codes({type_.bits}, {type_.signed}, "{type_.byte_order}")'
+            return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         code = code_of(type_)
         assert code is not None
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.encode({value})"
+        if type_.size == 1:
+            codes = f"_CODES.narrow({type_.bits}, {type_.signed})"
+            return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
         return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
 
@@ -308,7 +338,9 @@ class _Writer:
         self.lines.refuse_if(f"type({value}) is not list")
         self._counted(value, array.extent)
         element = array.element
-        if isinstance(element, Struct):
+        if isinstance(element, Struct) and _are_plain(element.fields):
+            self._plain_records(value, element)
+        elif isinstance(element, Struct):
             outer = "".join(f", {self.raw[name]}" for name in outer_names(element))
             self._flush()
             data = self.lines.local()
@@ -326,6 +358,25 @@ class _Writer:
             self._piece(self._packed(value, array))
         else:
             self._one_by_one(value, element, item)
+
+    def _plain_records(self, value: str, element: Struct) -> None:
+        """Records of integers, written together with what stands in front of them."""
+        each_typed = f"for each in {value} if type(each) is {class_name(element.name)}"
+        columns = [self.lines.local("column") for _ in element.fields]
+        for name, item in zip(columns, element.fields, strict=True):
+            # Where some record is of another type, the first column is too short.
+            each = each_typed if name == columns[0] else f"for each in {value}"
+            self.lines.add(f"{name} = [each.{item.name} {each}]")
+        codes = "".join(str(code_of(item.type)) for item in element.fields)
+        order = next((order_of(item.type) for item in element.fields if order_of(item.type)), "")
+        if self._bytes.order and order and self._bytes.order != order:
+            self._flush()
+        due = self._bytes
+        front = (due.order or order or "<") + due.codes
+        packers = self.lines.constants.named("PACKERS", f'_fast.Packers("{front}", "{codes}")')
+        values = [*due.values, f"*_fast.in_turn({', '.join(columns)})"]
+        due.codes = ""
+        self._piece(f"{packers}[len({value})]({', '.join(values)})")
 
     def _all_in_range(self, value: str, item: Field | None) -> None:
         if item is None or not item.ranged or item.least is None or item.greatest is None:
