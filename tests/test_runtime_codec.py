@@ -506,3 +506,30 @@ def test_checksums_may_cover_checksums() -> None:
     frame = protocol.encode(message)
     assert frame == bytes.fromhex("AA 02 06 01 02 00 03")
     assert protocol.decode(frame, "a") == message
+
+
+# --- what a sender is ---------------------------------------------------------------------------
+
+
+def test_senders_are_compared_by_what_they_send() -> None:
+    same = changed(matty.PC_SENDER)
+    assert same == matty.PC_SENDER
+    assert hash(same) == hash(matty.PC_SENDER)
+    assert same != changed(same, name="other")
+    assert same != changed(same, messages=(matty.Stop,))
+    assert same != "pc"
+    assert repr(same) == "<what pc sends: stop, mode, go>"
+
+
+def test_a_frame_is_described_when_it_is_needed() -> None:
+    calls: list[int] = []
+
+    def frame() -> rt.FrameSpec:
+        calls.append(1)
+        return matty.FRAME
+
+    sender = changed(matty.PC_SENDER, frame=frame)
+    assert not calls
+    assert sender.layout.spec is sender.frame is matty.FRAME
+    assert calls == [1]
+    assert sender == matty.PC_SENDER
