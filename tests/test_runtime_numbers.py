@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from protogen.runtime import api as rt
 from protogen.runtime.errors import ByteError
 from protogen.runtime.number import ByteOrder
+from protogen.runtime.pairs import pair_values
 
 Mode = matty.RobotMode
 Status = matty.StatusStatus
@@ -123,3 +124,17 @@ def test_flags_keep_bits_without_a_name() -> None:
     assert status & ~Status.RUNNING == 0x41
     assert Status(0).unknown == 0
     assert matty.StatusStatus(0x1FF).unknown == 0x140
+
+
+@pytest.mark.parametrize("signed", [False, True])
+@pytest.mark.parametrize("bits", range(8, 15))
+def test_the_table_of_two_bytes_is_that_of_the_numbers(bits: int, signed: bool) -> None:
+    number = rt.Number(bits, signed, "little", seven_bit=True)
+
+    def decoded(code: int) -> int | None:
+        try:
+            return number.decode(code.to_bytes(2, "little"))
+        except ByteError:
+            return None
+
+    assert pair_values(bits, signed) == tuple(map(decoded, range(1 << 15)))

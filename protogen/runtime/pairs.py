@@ -45,14 +45,15 @@ class PairCodes(dict[int, int]):
 def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
     """The integer for each 16 bits of two bytes with clear top bits; None where there is none."""
     great, sign = 1 << bits, 1 << bits - 1
-
-    def value(code: int) -> int | None:
-        raw = code >> 8 << 7 | code & 0x7F
-        if raw >= great or code & 0x80:
-            return None
-        return raw - great if signed and raw & sign else raw
-
-    return tuple(map(value, range(1 << 15)))
+    values: list[int | None] = [*range(great)]
+    if signed:
+        values[sign:] = range(-sign, 0)
+    values += [None] * ((1 << 14) - great)
+    found: list[int | None] = []
+    for first in range(0, 1 << 14, 128):
+        found += values[first : first + 128]
+        found += [None] * 128  # The top bit of the lower byte is set.
+    return tuple(found)
 
 
 @lru_cache(16)
