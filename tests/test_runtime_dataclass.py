@@ -6,6 +6,7 @@ import copy
 import dataclasses
 import inspect
 import pickle
+import pprint
 import sys
 from collections.abc import Callable, Hashable
 from typing import Any, ClassVar, Generic, TypeVar
@@ -118,6 +119,8 @@ ACTS: dict[str, Callable[[Any], Any]] = {
     "inherited method": lambda lib: children(lib)[1](5).shown(),
     "slots of a child": lambda lib: children(lib)[1].__slots__,
     "generic": lambda lib: children(lib)[0][str].__origin__ is children(lib)[0],
+    "pprint": lambda lib: pprint.pformat(point(lib)(10**9, 10**9, ["x"]), width=20),
+    "name of repr": lambda lib: point(lib).__repr__.__qualname__,
     "no repr": lambda lib: "object at" in repr(point(lib, repr=False)(1)),
 }
 

@@ -144,25 +144,34 @@ class _Methods:
 
     def added_to(self, cls: type[Any], repr: bool) -> type[Any]:
         """The class once more, with methods, and with slots: they can't be added later."""
+        kind: Any = type(cls)
+        inside = self._with_slots(cls) | self._made(cls, repr)
+        self.cls = kind(cls.__name__, cls.__bases__, inside)
+        self.cls.__qualname__ = cls.__qualname__
+        return self.cls
+
+    def _with_slots(self, cls: type[Any]) -> dict[str, Any]:
+        """What stands in the class, with slots instead of the fields' defaults."""
         inside = dict(cls.__dict__)
         for name in ("__dict__", "__weakref__", *(item.name for item in self.own)):
             inside.pop(name, None)
         base_slots = {name for base in cls.__mro__[1:] for name in _slots(base)}
         inside["__slots__"] = tuple(i.name for i in self.own if i.name not in base_slots)
         inside[_OWN] = tuple(self.own)
-        for name, make in _LATE.items():
-            if name not in cls.__dict__ and (repr or name != "__repr__"):
-                inside[name] = _Late(self, name, make)
-        positional = [item.name for item in self.fields if item.init and not self.kw_only]
-        inside.setdefault("__match_args__", tuple(positional))
-        if inside.get("__hash__") is None:
-            inside["__hash__"] = _Late(self, "__hash__", _hash) if self.frozen else None
-        if self.frozen:
-            inside |= _frozen_methods(self)
-        kind: Any = type(cls)
-        self.cls = kind(cls.__name__, cls.__bases__, inside)
-        self.cls.__qualname__ = cls.__qualname__
-        return self.cls
+        return inside
+
+    def _made(self, cls: type[Any], repr: bool) -> dict[str, Any]:
+        """What is added; methods that the class has of its own stay."""
+        left_out = set(cls.__dict__) if repr else {"__repr__", *cls.__dict__}
+        made: dict[str, Any] = {
+            name: _Late(self, name, make) for name, make in _LATE.items() if name not in left_out
+        }
+        if "__match_args__" not in left_out:
+            positional = (item.name for item in self.fields if item.init and not self.kw_only)
+            made["__match_args__"] = tuple(positional)
+        if cls.__dict__.get("__hash__") is None:
+            made["__hash__"] = _Late(self, "__hash__", _hash) if self.frozen else None
+        return made | _frozen_methods(self) if self.frozen else made
 
     def names(self) -> tuple[str, ...]:
         """The names of all fields."""
@@ -242,12 +251,16 @@ def _initial(item: _Field, has_factory: bool) -> str | None:
 def _repr(methods: _Methods) -> Any:
     names = [item.name for item in methods.fields if item.repr]
 
-    @recursive_repr()
     def __repr__(self: Any) -> str:  # noqa: N807 - it becomes one
         shown = ", ".join(f"{name}={getattr(self, name)!r}" for name in names)
         return f"{type(self).__qualname__}({shown})"
 
-    return __repr__
+    # By this `pprint` knows that it may lay out the fields itself.
+    __repr__.__qualname__ = "__create_fn__.<locals>.__repr__"
+    made: Any = recursive_repr()(__repr__)
+    made.__wrapped__ = __repr__
+    made.__qualname__ = f"{methods.cls.__qualname__}.__repr__"
+    return made
 
 
 def _values(owner: str, names: Iterable[str]) -> str:
@@ -280,7 +293,7 @@ def _replace(methods: _Methods) -> Any:
     return __replace__
 
 
-def _frozen_methods(methods: _Methods) -> Mapping[str, Any]:
+def _frozen_methods(methods: _Methods) -> dict[str, Any]:
     """Nothing can be set any more, so that `pickle` and `copy` need a way of their own."""
 
     def refuse(self: Any, verb: str, name: str) -> None:
