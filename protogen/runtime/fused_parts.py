@@ -72,11 +72,6 @@ class Item:
     lists: Lists | None = None
     """Arrays of it, where there is a shorter way than one element after another."""
 
-    @property
-    def size(self) -> int:
-        """Bytes on the wire."""
-        return struct.calcsize("<" + self.code)
-
     def ordered(self, order: str) -> Item:
         """The same among values of this order of bytes."""
         if self.order in ("", order):

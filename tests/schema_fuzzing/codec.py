@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from two_ways import check_building, check_parsing
 
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.messages import Message
@@ -30,11 +31,20 @@ def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) 
     payload = made.to_payload()
     assert payload == expected
     assert len(payload) in message.sizes
+    check_format(type(made).FORMAT, payload)
     read = type(made).from_payload(payload)
     assert read == made
     assert read.to_dict() == values
     assert not [violation for violation in made.violations() if violation.forbidden]
     return made
+
+
+def check_format(format: Any, payload: bytes) -> None:
+    """What `FORMAT` does directly is what construct does in its own way."""
+    for wire in (payload, payload[:-1], payload[1:], payload + b"\1"):
+        check_parsing(format, wire)
+    kind, built = check_building(format, format.parse(payload))
+    assert (kind, built) == (bytes, repr(payload))
 
 
 def encode(
