@@ -10,6 +10,7 @@ from typing import Any
 from protogen.runtime import constructs
 from protogen.runtime.constructs import Count, Extent
 from protogen.runtime.fused_lists import lists_of
+from protogen.runtime.fused_numbers import ascii_only, number_item, sequence
 from protogen.runtime.fused_parts import (
     Chunk,
     Constant,
@@ -25,7 +26,7 @@ from protogen.runtime.fused_parts import (
     looking_up,
 )
 from protogen.runtime.number import Number
-from protogen.runtime.pairs import PairLists, Unclear, pair_tables
+from protogen.runtime.pairs import Unclear
 
 
 def part_of(format: constructs.Construct) -> Part:
@@ -76,75 +77,21 @@ def _native(format: constructs._Native) -> Item:
     lists = Lists(
         size,
         lambda data: list(struct.unpack(layout % (len(data) // size), data)),
-        lambda values: struct.pack(layout % len(values), *_sequence(values)),
+        lambda values: struct.pack(layout % len(values), *sequence(values)),
     )
     if code == "B":
-        lists = Lists(1, list, lambda values: bytes(_sequence(values)))
+        lists = Lists(1, list, lambda values: bytes(sequence(values)))
     return Item(code, "" if size == 1 else order, counts=code not in "fd", lists=lists)
-
-
-def _sequence(values: Any) -> Any:
-    """The list or tuple. Raises Unclear where it is something else."""
-    if type(values) is not list and type(values) is not tuple:
-        raise Unclear
-    return values
 
 
 def _scalar(format: constructs._Scalar) -> Item:
     codec = format._codec
     if isinstance(codec, Number):
-        return _number(codec)
+        return number_item(codec)
     if isinstance(codec, constructs._Boolean):
         # Whatever equals 0 or 1 is one of them, also 1.0.
         return Item("B", read=looking_up((False, True)), write=looking_up({0: 0, 1: 1}))
     return Item(f"{codec.size}s", read=calling(codec.decode), write=calling(codec.encode))
-
-
-def _number(number: Number) -> Item:
-    wrong = f"not {number.least} <= {{v}} <= {number.greatest}"
-    if number.size == 1:
-        table = tuple(number.decode(bytes((byte,))) for byte in range(1 << number.bits))
-        code = f"{{v}} & {(1 << number.bits) - 1}" if number.signed else "{v}"
-        return Item(
-            "B",
-            read=looking_up(table),
-            write=(Step(code, wrong),),
-            counts=True,
-            lists=None if number.bits < 7 or number.signed else Lists(1, _ascii_list, _ascii_bytes),
-        )
-    if number.seven_bit and number.size == 2:
-        return _pair(number)
-    read, write = calling(number.decode), calling(number.encode)
-    return Item(f"{number.size}s", read=read, write=write, counts=True)
-
-
-def _pair(number: Number) -> Item:
-    """An integer of two bytes of 7 bits each, which is looked up."""
-    values, codes = pair_tables(number.bits, number.signed)
-    lists = PairLists(number.bits, number.signed, number.order)
-    return Item(
-        "H",
-        "<" if number.order == "little" else ">",
-        read=looking_up(values),
-        # 1.0 is found where 1 is.
-        write=(Step(wrong="type({v}) is not int"), *looking_up(codes)),
-        counts=True,
-        lists=Lists(2, lists.decode, lambda values: lists.encode(_sequence(values))),
-    )
-
-
-def _ascii_list(data: bytes) -> list[int]:
-    return list(_ascii(data))
-
-
-def _ascii_bytes(values: Any) -> bytes:
-    return _ascii(bytes(_sequence(values)))
-
-
-def _ascii(data: bytes) -> bytes:
-    if not data.isascii():
-        raise Unclear
-    return data
 
 
 # --- values that are checked ----------------------------------------------------------------------
@@ -201,7 +148,7 @@ def _octets_fill(format: constructs.OctetsFill) -> Chunk:
 
 def _of_bytes(seven_bit: bool) -> tuple[Steps, Steps]:
     """The conversions of bytes that nobody interprets."""
-    check = calling(_ascii) if seven_bit else ()
+    check = calling(ascii_only) if seven_bit else ()
     return check, (Step(wrong="type({v}) is not bytes"), *check)
 
 
@@ -229,7 +176,7 @@ def _padded_text(format: constructs._PaddedText) -> Item:
             raise Unclear
         return data
 
-    check = calling(_ascii) if seven_bit else ()
+    check = calling(ascii_only) if seven_bit else ()
     return Item(
         f"{size}s",
         read=(*check, Step("{v}.rstrip(b'\\0').decode('latin-1')")),
