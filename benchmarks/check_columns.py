@@ -1,9 +1,10 @@
-"""Compares native columns with the Python decoder's on a large seeded corpus.
+"""Compares native columns, and those read in bulk, with the Python decoder's on a seeded corpus.
 
 Run: python benchmarks/check_columns.py --megabytes 100
 
 Every sender of every schema, dialect and framing has its share: clean, noisy and adversarial
-streams, decoded by one core and in parts of many sizes. Ends with 1 at the first difference.
+streams, decoded by one core and in parts of many sizes, in Python at once and in pieces. Ends with
+1 at the first difference.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ def shares(size: int, seed: int) -> Iterator[tuple[Path, str, str]]:
 
 def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
     """Bytes and events of a stream whose tables are the same. AssertionError where they differ."""
+    from bulk_support import pieces_of, reading_at, tables_of
     from capture_support import assert_same_tables
     from compiled import protocol_of
 
@@ -64,7 +66,10 @@ def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
     protocol = protocol_of(path)
     dice = Random(f"{path.stem} {sender} {seed}")
     data = stream(path, sender, dice)
-    expected = columns(data, protocol, sender, engine="python")
+    expected = tables_of(reading_at(path, sender, 0), [data])
+    assert_same_tables(columns(data, protocol, sender, engine="python"), expected)
+    pieces = pieces_of(data, dice.choice([1000, 10_000, 100_000]))
+    assert_same_tables(tables_of(reading_at(path, sender, 1), pieces), expected)
     assert_same_tables(columns(data, protocol, sender, engine="native"), expected)
     engines = [NativeEngine(library_of(protocol, protocol.sender(sender))) for _ in range(4)]
     parts = Parts(memoryview(data), engines, dice.choice([100, 1000, 10_000, 100_000]))

@@ -1,4 +1,4 @@
-"""protogen's columns: one NumPy table for a message, by the Python decoder or by generated C."""
+"""protogen's columns: one NumPy table for a message, in Python or by generated C."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What fills tables: generated C where there is a compiler, else the Python decoder."""
+"""What fills tables: generated C where there is a compiler, else Python."""
 
 from __future__ import annotations
 
