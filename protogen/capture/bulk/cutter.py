@@ -30,6 +30,7 @@ class BulkCutter:
         self._bulk = bulk
         self._cut: Cutter = spec.cut
         self._least = least
+        self._smallest = spec.frame.least
         self._piece = max(_PIECE, 2 * spec.frame.greatest)
         self._slack = 1 + len(spec.layout.start) + len(spec.layout.end)
         self.forget()
@@ -52,7 +53,7 @@ class BulkCutter:
             if index < len(self._at) and self._at[index] == at:
                 at = self._take(index, events)
                 continue
-            end = self._take_other(data, at, index, base, events)
+            end = self._take_other(data, at, base, events)
             if end == at:
                 return at
             at = end
@@ -72,8 +73,9 @@ class BulkCutter:
         events.append(Run(self._stretch, index, stop))
         return int(self._stretch.frames.end[stop - 1])
 
-    def _take_other(self, data: bytes, at: int, index: int, base: int, events: list[Any]) -> int:
+    def _take_other(self, data: bytes, at: int, base: int, events: list[Any]) -> int:
         """Have the generated cutter take frames in front of the next one that was found."""
+        index = bisect_left(self._at, at + self._smallest)
         behind = self._at[index] if index < len(self._at) else len(data)
         end = min(behind, at + self._piece) + self._slack
         if end >= len(data):
