@@ -20,7 +20,7 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import late
+from protogen.runtime import fast, late
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate
 from protogen.runtime.number import Number
@@ -189,6 +189,88 @@ def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
                 assert outcome(module.encode, event.message, sender, **given) == due
 
 
+class Similar(int):
+    """An integer of another type."""
+
+
+class Indexed:
+    """What `struct` takes for an integer."""
+
+    def __index__(self) -> int:
+        return 5
+
+
+@pytest.mark.parametrize(
+    "value",
+    [*STRANGE, Similar(5), Indexed(), 255, 256, 2**31, 2**32],
+    ids=lambda value: repr(value)[:20],
+)
+def test_strange_values_in_records_have_the_same_outcome(value: Any) -> None:
+    module = rflex()
+    for name in ("cluster", "distance"):
+        for place in range(3):
+            readings = [module.SonarDataReadings(cluster=1, distance=2) for _ in range(3)]
+            setattr(readings[place], name, value)
+            item = module.SonarData(unknown=1, timestamp=2, readings=readings)
+            due = outcome(module.encode, item, "flex", engine="construct")
+            assert outcome(module.encode, item, "flex") == due
+
+
+def test_records_of_another_class_have_the_same_outcome() -> None:
+    module = rflex()
+    reading = module.SonarDataReadings(cluster=1, distance=2)
+
+    class More(module.SonarDataReadings):  # type: ignore[name-defined,misc]
+        pass
+
+    class Like:
+        cluster, distance = 1, 2
+
+    for other in (More(cluster=3, distance=4), Like(), None, 5):
+        for readings in ([other], [reading, other], [other, reading], [other, other], (reading,)):
+            item = module.SonarData(unknown=1, timestamp=2, readings=readings)
+            due = outcome(module.encode, item, "flex", engine="construct")
+            assert outcome(module.encode, item, "flex") == due
+
+
+def test_records_are_written_without_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = rflex()
+    made = module.SonarDataReadings
+    readings = [made(cluster=count, distance=count << 8) for count in range(82)]
+    item = module.SonarData(unknown=2**32 - 1, timestamp=0, readings=readings)
+    due = module.encode(item, engine="construct")
+    monkeypatch.setattr(module.PROTOCOL, "encode", None)
+    assert module.encode(item) == due
+
+
+def test_integers_in_turn() -> None:
+    assert fast.in_turn([1, 2], [3, -4]) == [1, 3, 2, -4]
+    assert fast.in_turn([], []) == []
+    assert fast.in_turn([2**31 - 1, -(2**31)]) == [2**31 - 1, -(2**31)]
+    # Some of these take as many bytes as integers do, together with their neighbours.
+    for column in ([2**31], [True], [1.0], [True, 2.0], [Similar(1)], [b"12345678", True, True]):
+        with pytest.raises((fast.Unclear, ValueError)):
+            fast.in_turn(column)
+    with pytest.raises(ValueError, match="assign sequence of size 1"):
+        fast.in_turn([1, 2], [3])
+
+
+def test_not_all_heads_are_kept() -> None:
+    asked = []
+
+    def read(head: bytes) -> tuple[Any, ...]:
+        asked.append(head)
+        return (head,)
+
+    heads = fast.Heads(read)
+    for _ in range(2):
+        for number in range(5000):
+            head = number.to_bytes(2, "big")
+            assert heads[head] == (head,)
+    assert len(heads) == 4096
+    assert len(asked) == 5000 + 5000 - 4096
+
+
 @EVERY_SENDER
 def test_a_single_frame_has_the_same_outcome(path: Path, sender: str) -> None:
     """Whole, cut, with a byte more, with a bit turned, twice: the same message or error."""
@@ -266,3 +348,7 @@ def test_lists_of_pairs_are_written_as_their_numbers_are(
         lists.encode([*values, outside])
     with pytest.raises(ValueError, match="is not in"):
         one[outside]
+
+
+def rflex() -> Any:
+    return module_at(next(path for path in DOCUMENTS if path.stem == "rflex"))

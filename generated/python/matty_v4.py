@@ -663,10 +663,10 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             if end < 0:
                 end = size
             raw = data[at:end]
-            if len(raw) > 252:
-                return at
             content = raw[1:]
             if 0x56 in content:
+                if len(raw) > 252:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x56\xaa", b"\x55")
                 content = content.replace(b"\x56\xa9", b"\x56")
@@ -730,10 +730,10 @@ def _decode_pc(data: bytes) -> _typing.Any:
         raise _fast.Unclear
     if data.find(b"\x55", 1) > 0:
         raise _fast.Unclear
-    if len(data) > 252:
-        raise _fast.Unclear
     content = data[1:]
     if 0x56 in content:
+        if len(data) > 252:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")
@@ -814,10 +814,10 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             if end < 0:
                 end = size
             raw = data[at:end]
-            if len(raw) > 252:
-                return at
             content = raw[1:]
             if 0x56 in content:
+                if len(raw) > 252:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x56\xaa", b"\x55")
                 content = content.replace(b"\x56\xa9", b"\x56")
@@ -877,10 +877,10 @@ def _decode_esp(data: bytes) -> _typing.Any:
         raise _fast.Unclear
     if data.find(b"\x55", 1) > 0:
         raise _fast.Unclear
-    if len(data) > 252:
-        raise _fast.Unclear
     content = data[1:]
     if 0x56 in content:
+        if len(data) > 252:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")

@@ -852,6 +852,7 @@ _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
 _PACK_1 = _struct.Struct("<BBBB").pack
+_FROM_BYTES_0 = int.from_bytes
 _PACK_2 = _struct.Struct(">BBBBIIB").pack
 _PACK_3 = _struct.Struct("<BBBBB").pack
 _PACK_4 = _struct.Struct(">BBBBBIIIB").pack
@@ -1058,10 +1059,10 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             end += 2
             raw = data[at:end]
-            if len(raw) > 782:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
+                if len(raw) > 782:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1128,10 +1129,10 @@ def _decode_linux(data: bytes) -> _typing.Any:
     end += 2
     if end != len(data):
         raise _fast.Unclear
-    if len(data) > 782:
-        raise _fast.Unclear
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
+        if len(data) > 782:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1213,10 +1214,10 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             end += 2
             raw = data[at:end]
-            if len(raw) > 782:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
+                if len(raw) > 782:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1285,10 +1286,10 @@ def _decode_flex(data: bytes) -> _typing.Any:
     end += 2
     if end != len(data):
         raise _fast.Unclear
-    if len(data) > 782:
-        raise _fast.Unclear
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
+        if len(data) > 782:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1366,7 +1367,8 @@ def _encode_request_system_status(
     if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(1, number_, 1, 0)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    content += _BYTES[folded]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1386,7 +1388,11 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1402,7 +1408,8 @@ def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> 
     if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_3(2, number_, 0, 1, v1)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    content += _BYTES[folded]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1426,7 +1433,11 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
     if not (type(number_) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
     content = _PACK_4(2, number_, 7, 14, v1, v2, v3, v4, v5)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1448,7 +1459,11 @@ def _encode_confirm_motor_command(
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1463,7 +1478,8 @@ def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> 
     if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 10, 0)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    content += _BYTES[folded]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1478,7 +1494,8 @@ def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> 
     if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(2, number_, 12, 0)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    content += _BYTES[folded]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1495,7 +1512,10 @@ def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: in
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 12, 8, v1, v2)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1521,7 +1541,12 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
     if type(v7) is not int:
         raise _fast.Unclear
     content = _PACK_6(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 128
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1542,7 +1567,10 @@ def _encode_start_stop_motor_packets(
     if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1561,7 +1589,10 @@ def _encode_confirm_start_stop_motor_packets(
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1578,7 +1609,8 @@ def _encode_request_joystick_data(
     if type(number_) is not int:
         raise _fast.Unclear
     content = _PACK_1(3, number_, 0, 0)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    content += _BYTES[folded]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1599,7 +1631,11 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
     if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_7(3, number_, 0, 13, v1, v2, v3, v4)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1622,7 +1658,11 @@ def _encode_start_stop_sonar_packets(
     if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_8(4, number_, 0, 13, v1, v2, v3, v4)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1641,7 +1681,10 @@ def _encode_confirm_start_stop_sonar_packets(
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(4, number_, 0, 8, v1, v2)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1688,7 +1731,9 @@ def _encode_initialize_digital_io(
     if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_9(5, number_, 0, 4, v1)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1707,7 +1752,10 @@ def _encode_confirm_initialize_digital_io(
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_5(5, number_, 0, 8, v1, v2)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1727,7 +1775,10 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_10(5, number_, 1, 7, v1, v2, v3)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1745,7 +1796,9 @@ def _encode_check_io_changed(
     if not (type(number_) is type(v1) is int):
         raise _fast.Unclear
     content = _PACK_9(5, number_, 2, 4, v1)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1765,7 +1818,11 @@ def _encode_check_io_changed_answer(
     if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
     content = _PACK_11(5, number_, 2, 12, v1, v2, v3)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")
@@ -1785,7 +1842,10 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
     if not (type(number_) is type(v1) is type(v2) is int):
         raise _fast.Unclear
     content = _PACK_10(5, number_, 3, 7, v1, v2, v3)
-    content += _BYTES[_checksum.xor_of(content[4:])]
+    folded = _FROM_BYTES_0(content[4:], "little")
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")

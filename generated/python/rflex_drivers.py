@@ -1256,10 +1256,10 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             end += 2
             raw = data[at:end]
-            if len(raw) > 780:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
+                if len(raw) > 780:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1328,10 +1328,10 @@ def _decode_linux(data: bytes) -> _typing.Any:
     end += 2
     if end != len(data):
         raise _fast.Unclear
-    if len(data) > 780:
-        raise _fast.Unclear
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
+        if len(data) > 780:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1413,10 +1413,10 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             end += 2
             raw = data[at:end]
-            if len(raw) > 780:
-                return at
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
+                if len(raw) > 780:
+                    return at
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1487,10 +1487,10 @@ def _decode_flex(data: bytes) -> _typing.Any:
     end += 2
     if end != len(data):
         raise _fast.Unclear
-    if len(data) > 780:
-        raise _fast.Unclear
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
+        if len(data) > 780:
+            raise _fast.Unclear
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")

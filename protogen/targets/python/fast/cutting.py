@@ -204,6 +204,19 @@ class _Cutter(FrameFunction):
 
     def _raw(self) -> None:
         self._take()
+        if not self._length_bounds:
+            self._not_too_long()
+
+    @property
+    def _length_bounds(self) -> bool:
+        """Whether the length bounds all frames in which nothing is stuffed."""
+        frame = self.frame
+        bare = frame.head_size + frame.framing.payload.greatest + frame.tail_size + len(frame.end)
+        is_seen = not frame.stuffed or frame.specials(sending=False) is not None
+        plain = frame.length is not None and not frame.shares and not frame.optional
+        return plain and is_seen and bare <= frame.framing.greatest
+
+    def _not_too_long(self) -> None:
         size = f"len({self.raw})"
         if self.frame.shares:
             size += f" + {len(self.frame.start_bytes)}"
@@ -322,6 +335,8 @@ class _Cutter(FrameFunction):
             return
         found = " or ".join(f"0x{byte:02X} in content" for byte in specials)
         with self.lines.block(f"if {found}:"):
+            if self._length_bounds:
+                self._not_too_long()
             if self.frame.replacements is None:
                 self.lines.add(f"content = {decode}(content)")
             else:

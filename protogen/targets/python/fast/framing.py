@@ -26,6 +26,7 @@ from protogen.targets.python.fast.writing import Packed, content_writer, payload
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import text
 
+_FOLDED = 32
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
@@ -243,11 +244,28 @@ class _Framer:
 
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""
-        due = checksum(part, self._covered(part), self.frame, self.lines.constants)
+        due = self._folded(part) or checksum(
+            part, self._covered(part), self.frame, self.lines.constants
+        )
         if _is_plain(part.type) and part.type.size == 1:
             self.lines.add(f"content += _BYTES[{due}]")
         else:
             self.lines.add(f"content += {self.lines.constants.number(part.type)}.encode({due})")
+
+    def _folded(self, part: ChecksumPart) -> str:
+        """The exclusive or of so few bytes that they are halved without a loop, else nothing."""
+        message, payload = self.message, self._covered(part) == self._own_payload()
+        if message is None or message.sizes.fixed is None or not payload:
+            return ""
+        size, spec = message.sizes.fixed, part.algorithm
+        if spec.kind != "xor" or spec.init != 0 or size > _FOLDED:
+            return ""
+        from_bytes = self.lines.constants.named("FROM_BYTES", "int.from_bytes")
+        self.lines.add(f'folded = {from_bytes}({self._own_payload()}, "little")')
+        for half in (16, 8, 4, 2):
+            if size > half:
+                self.lines.add(f"folded ^= folded >> {8 * half}")
+        return "(folded ^ folded >> 8) & 0xFF" if size > 1 else "folded"
 
     def _covered(self, part: ChecksumPart) -> str:
         """What a checksum covers, while the content ends where the part begins."""
