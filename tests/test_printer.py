@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import struct
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
-from compiled import ROOT, module_at, name_of, protocol_of
+from compiled import ROOT, module_at, name_of, protocol_of, senders
 from test_convert_columns import batches_of, lines_of
 from test_json_lines import capture_of
 from tooling import require_tool
 
 np = pytest.importorskip("numpy")
 
+from protogen.convert.arrays import Numbers  # noqa: E402
+from protogen.convert.batches import Rows  # noqa: E402
+from protogen.convert.csv_writer import CsvWriter  # noqa: E402
+from protogen.convert.outputs import Pending  # noqa: E402
+from protogen.convert.printed_csv import CsvPrinter  # noqa: E402
 from protogen.convert.programs import PLAIN, QUOTED, Programs, operand  # noqa: E402
-from protogen.native.printer import CODES, Kind, Printer, Table  # noqa: E402
+from protogen.convert.tables import TEXT, tables_of  # noqa: E402
+from protogen.convert.writers import write_all  # noqa: E402
+from protogen.native.printer import CODES, Kind, Printer, Table, _function  # noqa: E402
 from protogen.runtime.assembly import encode_frame  # noqa: E402
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -128,10 +138,53 @@ def test_a_nan_that_json_does_not_tell_has_its_bytes(bits: str) -> None:
     assert (b'"raw"' in line) == (bits not in ("7fc00000", "7f800000"))
 
 
+def csv_files(batches: list[Any], folder: Path) -> dict[str, bytes]:
+    writer = CsvWriter("run", pending := Pending(folder))
+    write_all(writer, batches)
+    pending.commit()
+    return {path.parent.name: path.read_bytes() for path in folder.glob("*/*.csv")}
+
+
+@pytest.mark.parametrize(("path", "sender"), [*senders(), *SENDERS], ids=name_of)
+def test_csv_is_that_of_events(path: Path, sender: str, tmp_path: Path) -> None:
+    data = capture_of(path, sender, 4, 150)
+    each = [
+        csv_files(batches_of(path, sender, data, engine, 7, timed), tmp_path / f"{engine} {timed}")
+        for engine in ("events", None)
+        for timed in (False, True)
+    ]
+    assert each[:2] == each[2:]
+
+
+def test_csv_puts_in_quotes_what_csv_does(tmp_path: Path) -> None:
+    texts = ['"', "a,b", "", "\r", "\n", " x ", "é", 'say ""', "'", "a;b"]
+    table = tables_of(protocol_of(SENDERS[0][0]), protocol_of(SENDERS[0][0]).sender("one")).unknown
+    column = replace(table.columns[0], type=TEXT)
+    offsets = Numbers(np.arange(len(texts), dtype="u8"))
+    rows = Rows(replace(table, frame_columns=table.frame_columns[:1], columns=(column,)), [])
+    expected = io.StringIO(newline="")
+    csv.writer(expected, lineterminator="\n").writerows(enumerate(texts))
+    printer = CsvPrinter(lambda column, values: values)
+    found = b"".join(printer.lines(replace(rows, columns=[offsets, texts])))
+    assert found.decode() == expected.getvalue()
+
+
+def test_without_a_compiler_csv_is_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, sender = SENDERS[0]
+    batches = batches_of(path, sender, capture_of(path, sender, 1, 100), None)
+    expected = csv_files(batches, tmp_path / "one")
+    monkeypatch.setenv("CC", "no-such-cc")
+    _function.cache_clear()
+    assert csv_files(batches, tmp_path / "other") == expected
+
+
 def test_without_a_compiler_lines_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     path, sender = SENDERS[0]
     data = capture_of(path, sender, 1, 100)
     expected = lines_of(batches_of(path, sender, data, None))
     monkeypatch.setenv("CC", "no-such-cc")
+    _function.cache_clear()
     with pytest.warns(UserWarning, match="captures are read in Python"):
         assert lines_of(batches_of(path, sender, data, None)) == expected
