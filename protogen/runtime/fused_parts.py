@@ -112,13 +112,21 @@ class Chunk:
 
 
 @dataclass(frozen=True, slots=True)
+class Several:
+    """A list of a few items, which go together with their neighbours."""
+
+    count: int
+    element: Item
+
+
+@dataclass(frozen=True, slots=True)
 class Record:
     """Fields one after another."""
 
     fields: tuple[tuple[str, Part], ...]
 
 
-Part = Item | Chunk | Record
+Part = Item | Several | Chunk | Record
 
 
 class Unfit(Exception):  # noqa: N818 - it is no error: construct does everything then
@@ -135,7 +143,9 @@ def _orders(part: Part) -> Iterator[str]:
     if isinstance(part, Record):
         for _, inner in part.fields:
             yield from _orders(inner)
-    elif isinstance(part, Item) and part.order:
+    elif isinstance(part, Several):
+        yield from [part.element.order] * part.count
+    elif isinstance(part, Item):
         yield part.order
 
 
@@ -143,7 +153,7 @@ def is_fixed(part: Part) -> bool:
     """Whether it has always as many bytes."""
     if isinstance(part, Record):
         return all(is_fixed(inner) for _, inner in part.fields)
-    return isinstance(part, Item)
+    return not isinstance(part, Chunk)
 
 
 Scope = tuple[Mapping[str, tuple[Part, str]], ...]

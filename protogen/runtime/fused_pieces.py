@@ -19,6 +19,7 @@ from protogen.runtime.fused_parts import (
     Lists,
     Part,
     Record,
+    Several,
     Step,
     Steps,
     Unfit,
@@ -40,7 +41,8 @@ def part_of(format: constructs.Construct) -> Part:
 
 
 def _item_of(format: constructs.Construct) -> Item:
-    part = part_of(format)
+    """The only item that a piece is. Raises Unfit."""
+    part = _counted(format, few=0) if type(format) is constructs.Counted else part_of(format)
     if not isinstance(part, Item) or part.constant is not None:
         raise Unfit
     return part
@@ -187,8 +189,15 @@ def _padded_text(format: constructs._PaddedText) -> Item:
 # --- arrays ---------------------------------------------------------------------------------------
 
 
-def _counted(format: constructs.Counted) -> Part:
-    lists = lists_of(part_of(format.subcon))
+FEW = 16
+"""Up to so many elements of an array are read one by one: all at once takes a call or two."""
+
+
+def _counted(format: constructs.Counted, few: int = FEW) -> Part:
+    count, element = format._count, part_of(format.subcon)
+    if isinstance(count, int) and count <= few and isinstance(element, Item):
+        return Several(count, element)
+    lists = lists_of(element)
     return _of_extent(format._count, lists.size, calling(lists.read), calling(lists.write))
 
 

@@ -1,10 +1,16 @@
 """The text of functions that read fused structs.
 
-def read(data):
-    if type(data) is not bytes: data = c0(data)
-    v0, v1, = c1(data)
-    v2 = data[4:]
-    return Container(kind=v0, size=c2[v1], values=c3(v2))
+For a byte, an integer of 14 bits in two bytes, and an array to the end it is about this:
+
+    def read(data):
+        if type(data) is not bytes: data = c0(data)
+        v0, v1, = c1(data)
+        v2 = data[3:]
+        found = Container()
+        found['kind'] = v0
+        found['size'] = c2[v1]
+        found['values'] = c3(v2)
+        return found
 """
 
 from __future__ import annotations
@@ -13,7 +19,16 @@ import io
 import struct
 
 from protogen.runtime.fused_function import Function
-from protogen.runtime.fused_parts import Chunk, Item, Part, Record, Scope, counted, order_of
+from protogen.runtime.fused_parts import (
+    Chunk,
+    Item,
+    Part,
+    Record,
+    Scope,
+    Several,
+    counted,
+    order_of,
+)
 
 
 def octets_of(data: object) -> bytes:
@@ -39,17 +54,21 @@ class Reading:
                 name, item = self.function.variable(), part.ordered(self.order)
                 self.run.append((name, item))
                 return self.function.through(item.read, name)
+            case Several():
+                elements = (self.part(part.element) for _ in range(part.count))
+                return f"[{', '.join(elements)}]"
             case Record():
-                return self._record(part, scope)
+                values = (f"{name}={text}" for name, text in self.fields(part, scope))
+                return f"Container({', '.join(values)})"
             case Chunk():
                 return self._chunk(part, scope)
 
-    def _record(self, record: Record, scope: Scope) -> str:
+    def fields(self, record: Record, scope: Scope = ()) -> list[tuple[str, str]]:
+        """The names of a record's fields, and the expressions for their values."""
         inner: dict[str, tuple[Part, str]] = {}
         for name, part in record.fields:
             inner[name] = part, self.part(part, (inner, *scope))
-        values = ", ".join(f"{name}={text}" for name, (_, text) in inner.items())
-        return f"Container({values})"
+        return [(name, text) for name, (_, text) in inner.items()]
 
     def flush(self) -> None:
         """Read what was put off."""
@@ -111,10 +130,12 @@ def read_record(record: Record, function: Function) -> int | None:
     What it gives is the number of bytes that are read, if that is always the same.
     """
     reading = Reading(function, order_of(record))
-    expression = reading.part(record)
+    fields = reading.fields(record)
     reading.flush()
     if reading.at in (None, 0):  # Nothing else sees to it that these are bytes.
         convert = function.name(octets_of)
         function.lines.insert(0, f"if type(data) is not bytes: data = {convert}(data)")
-    function.lines.append(f"return {expression}")
+    function.lines.append("found = Container()")  # With arguments it takes longer.
+    function.lines += [f"found[{name!r}] = {text}" for name, text in fields]
+    function.lines.append("return found")
     return reading.at

@@ -1,12 +1,14 @@
 """The text of functions that write fused structs.
 
-def write(values):
-    if type(values) is not dict and type(values) is not Container: raise Unclear
-    if len(values) != 3: c0(values, c1)
-    v0 = values['size']
-    if not 0 <= v0 <= 16383: raise Unclear
-    v1 = values['values']
-    return c2(values['kind'], v0 & 127 | (v0 & 16256) << 1) + c3(v1)
+For a byte, an integer of seven bits, and an array to the end it is about this:
+
+    def write(values):
+        if type(values) is not dict and type(values) is not Container: raise Unclear
+        if len(values) != 3: c0(values, c1)
+        v0 = values['size']
+        if not 0 <= v0 <= 127: raise Unclear
+        v1 = values['values']
+        return c2(values['kind'], v0) + c3(v1)
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from protogen.runtime.fused_parts import (
     Part,
     Record,
     Scope,
+    Several,
     Steps,
     counted,
     order_of,
@@ -55,11 +58,19 @@ class Writing:
         match part:
             case Item():
                 return self._item(part.ordered(self.order), value)
+            case Several():
+                self._several(part, self._variable(value))
             case Record():
                 self._record(part, self._variable(value), scope)
             case Chunk():
                 self._chunk(part, self._variable(value), scope)
         return value
+
+    def _several(self, several: Several, values: str) -> None:
+        self.function.refuse_if(f"type({values}) is not list and type({values}) is not tuple")
+        self.function.refuse_if(f"len({values}) != {several.count}")
+        for index in range(several.count):
+            self.part(several.element, f"{values}[{index}]")
 
     def _variable(self, text: str) -> str:
         name = self.function.variable()
