@@ -24,6 +24,9 @@ from protogen.runtime.fused_writing import write_record
 Entry = Callable[..., Any]
 """`parse`, `parse_stream` or `build` of a construct."""
 
+ANYTHING = Exception
+"""What a printed function may raise; whatever it is, construct decides."""
+
 STREAMS = (io.BytesIO, io.BufferedReader)
 """What goes back to where it was, once it was found that it can."""
 
@@ -57,7 +60,7 @@ def parse_stream(record: Record, otherwise: Entry) -> Entry:
         data = stream.read(size)
         try:
             return read(data)
-        except Exception:  # Whatever it is, construct decides.
+        except ANYTHING:
             stream.seek(start)
         return otherwise(stream)
 
