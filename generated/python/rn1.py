@@ -581,13 +581,13 @@ _UNPACK_6 = _struct.Struct("<BHH").unpack
 _PAIRS_1 = _TABLES.pairs(14, False)
 _BYTE_CODES_1 = _CODES.narrow(7, True)
 _PACK_2 = _struct.Struct("<BBB").pack
-_BYTE_CODES_2 = _CODES.codes(14, True, "little")
+_BYTE_CODES_2 = _CODES.codes(14, True)
 _PACK_3 = _struct.Struct("<BHH").pack
 _PACK_4 = _struct.Struct("<BBHHH").pack
 _PACK_5 = _struct.Struct("<BBHHB").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _PACK_6 = _struct.Struct("<BB").pack
-_BYTE_CODES_3 = _CODES.codes(14, False, "little")
+_BYTE_CODES_3 = _CODES.codes(14, False)
 _PACK_7 = _struct.Struct("<BBHH").pack
 
 

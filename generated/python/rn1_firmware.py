@@ -650,15 +650,14 @@ _UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
 _BYTE_CODES_1 = _CODES.narrow(7, True)
 _PACK_1 = _struct.Struct("<BBB").pack
-_BYTE_CODES_2 = _CODES.codes(14, True, "big")
+_BYTE_CODES_2 = _CODES.codes(14, True)
 _PACK_2 = _struct.Struct(">BHH").pack
 _PACK_3 = _struct.Struct("<BB").pack
-_BYTE_CODES_3 = _CODES.codes(14, True, "little")
 _PACK_4 = _struct.Struct("<BBHHH").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _PACK_5 = _struct.Struct("<BBHH").pack
 _PACK_6 = _struct.Struct(">BBHH").pack
-_BYTE_CODES_4 = _CODES.codes(14, False, "big")
+_BYTE_CODES_3 = _CODES.codes(14, False)
 _PACK_7 = _struct.Struct(">BH").pack
 _PACK_8 = _struct.Struct("<B5s5s5s5s").pack
 
@@ -1146,9 +1145,9 @@ def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
     content = _PACK_4(
         128,
         _BYTE_CODES_0[v1],
-        _BYTE_CODES_3[v2],
-        _BYTE_CODES_3[v3],
-        _BYTE_CODES_3[v4],
+        _BYTE_CODES_2[v2],
+        _BYTE_CODES_2[v3],
+        _BYTE_CODES_2[v4],
     )
     return content
 
@@ -1169,9 +1168,9 @@ def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
     content = _PACK_4(
         129,
         _BYTE_CODES_0[v1],
-        _BYTE_CODES_3[v2],
-        _BYTE_CODES_3[v3],
-        _BYTE_CODES_3[v4],
+        _BYTE_CODES_2[v2],
+        _BYTE_CODES_2[v3],
+        _BYTE_CODES_2[v4],
     )
     return content
 
@@ -1192,9 +1191,9 @@ def _encode_compass(item: Compass, sender: str | None) -> bytes:
     content = _PACK_4(
         130,
         _BYTE_CODES_0[v1],
-        _BYTE_CODES_3[v2],
-        _BYTE_CODES_3[v3],
-        _BYTE_CODES_3[v4],
+        _BYTE_CODES_2[v2],
+        _BYTE_CODES_2[v3],
+        _BYTE_CODES_2[v4],
     )
     return content
 
@@ -1243,7 +1242,7 @@ def _encode_facing(item: Facing, sender: str | None) -> bytes:
     v3 = item.speed
     if not (type(v1) is type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_5(160, _BYTE_CODES_0[v1], _BYTE_CODES_3[v2], _BYTE_CODES_3[v3])
+    content = _PACK_5(160, _BYTE_CODES_0[v1], _BYTE_CODES_2[v2], _BYTE_CODES_2[v3])
     return content
 
 
@@ -1269,7 +1268,7 @@ def _encode_motor_controller_message(item: MotorControllerMessage, sender: str |
     v1 = item.last_msg
     if type(v1) is not int:
         raise _fast.Unclear
-    content = _PACK_7(209, _BYTE_CODES_4[v1])
+    content = _PACK_7(209, _BYTE_CODES_3[v1])
     return content
 
 

@@ -21,7 +21,7 @@ from protogen.runtime.pairs import (
     PairLists,
     Pairs,
     Unclear,
-    pair_codes,
+    pair_tables,
     pair_values,
 )
 from protogen.runtime.sender import Cutter, SenderSpec
@@ -120,10 +120,10 @@ class Tables:
         self._fillings.append(lambda: table.update((v, v & (1 << bits) - 1) for v in values))
         return table
 
-    def codes(self, bits: int, signed: bool, order: ByteOrder) -> dict[int, int]:
+    def codes(self, bits: int, signed: bool) -> dict[int, int]:
         """The other way: the 16 bits that `struct` writes, by the integer."""
         table: dict[int, int] = {}
-        self._fillings.append(lambda: table.update(pair_codes(bits, signed, order)))
+        self._fillings.append(lambda: table.update(pair_tables(bits, signed)[1]))
         return table
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 
 from protogen.runtime.dataclass import dataclass
@@ -63,17 +63,6 @@ def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]
     codes = [raw + (raw & 0x3F80) for raw in range(great)]
     values = [*range(great // 2), *range(-great // 2, 0)] if signed else range(great)
     return dict(zip(codes, values, strict=True)), dict(zip(values, codes, strict=True))
-
-
-@lru_cache(16)
-def pair_codes(bits: int, signed: bool, order: ByteOrder) -> Mapping[int, int]:
-    """What `struct` writes as 16 bits for each integer of so many bits."""
-    number = Number(bits, signed, order, seven_bit=True)
-    least = -(1 << bits - 1) if signed else 0
-    return {
-        value: int.from_bytes(number.encode(value), order)
-        for value in range(least, least + (1 << bits))
-    }
 
 
 @lru_cache(256)

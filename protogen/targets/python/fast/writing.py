@@ -252,7 +252,7 @@ class _Writer:
         if is_native(type_) or type_.role == "bool":
             return value
         if is_pair(type_):
-            codes = f'_CODES.codes({type_.bits}, {type_.signed}, "{type_.byte_order}")'
+            codes = f"_CODES.codes({type_.bits}, {type_.signed})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         code = code_of(type_)
         assert code is not None
