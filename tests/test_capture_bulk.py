@@ -47,6 +47,29 @@ SENDERS = [
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
 EXAMPLES = settings().max_examples
 SEEDS = range(max(3, EXAMPLES // 20))
+ODD = """
+protocol: odd
+title: Frames with optional checksums, padded parts and literals in front
+endpoints: {{one: One side}}
+byte_order: big
+frame:
+  sync: {{literal: {{hex: 7E}}{unprotected}}}
+  mark: {{literal: {{hex: 01 02}}}}
+  level: {{type: uint4}}
+  id: {{type: uint8, id: true}}
+  length: {{type: uint8, counts: [payload, check]}}
+  payload: {{}}
+  check: {{type: uint8, algorithm: {algorithm}, covers: [mark, id, payload], when: payload}}
+{more}
+messages:
+  full: {{id: 1, from: one, fields: {{a: uint16, b: uint8}}}}
+  empty: {{id: 2, from: one, fields: {{}}}}
+"""
+STUFFING = """
+transparency:
+  covers: level..check
+  escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: invert}
+"""
 SYNC = """
   sync: {literal: {hex: 5A A5}, unprotected: sync_in_data}"""
 DECISION = """
@@ -144,6 +167,23 @@ def test_every_type_is_read_in_bulk(name: str, others: set[str], tmp_path: Path)
             noisy = stream_of(material_of(path, sender.name), dice, 150).data
             check_bulk(path, sender.name, noisy, pieces_of(noisy, 400))
     assert left == others
+
+
+@pytest.mark.parametrize("algorithm", ["xor-8", "sum-8/negated"])
+@pytest.mark.parametrize("stuffed", [False, True])
+def test_odd_frames_are_read_in_bulk(algorithm: str, stuffed: bool, tmp_path: Path) -> None:
+    path = tmp_path / "odd.yaml"
+    how = ("", STUFFING) if stuffed else (", unprotected: sync_in_data", DECISION)
+    text = ODD.format(algorithm=algorithm, unprotected=how[0], more=how[1])
+    path.write_text(text, encoding="utf-8")
+    frames = b"".join(known_frames(path, protocol_of(path).sender("one")))
+    assert len(left_to_events(reading_at(path, "one", 1), frames)) <= 1
+    for seed in SEEDS:
+        noisy = stream_of(material_of(path, "one"), Random(seed), 150).data
+        check_bulk(path, "one", noisy, pieces_of(noisy, 100))
+    for place in range(len(frames)):  # Padding, marks, lengths and checksums that are wrong.
+        wrong = frames[:place] + bytes((frames[place] ^ 0x30,)) + frames[place + 1 :]
+        check_bulk(path, "one", wrong)
 
 
 def test_a_signalling_nan_is_quiet_however_it_is_read() -> None:
