@@ -646,7 +646,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             if payload:
                 if content[-1] != _checksum.xor_of(content[:-1]):
                     return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -775,7 +775,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             if payload:
                 if content[-1] != _checksum.xor_of(content[:-1]):
                     return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

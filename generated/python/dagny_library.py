@@ -655,7 +655,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             numbers, payload_size, read = _HOST_HEADS[content[0:1]]
             if 0 <= payload_size != len(payload):
                 return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -784,7 +784,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             numbers, payload_size, read = _ROBOT_HEADS[content[0:1]]
             if 0 <= payload_size != len(payload):
                 return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

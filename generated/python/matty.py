@@ -542,7 +542,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -691,7 +691,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

@@ -1278,7 +1278,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -1435,7 +1435,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

@@ -864,7 +864,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             numbers, payload_size, read = _HOST_HEADS[content[0:1]]
             if 0 <= payload_size != len(payload):
                 return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -965,7 +965,7 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             payload = raw[1:]
             if not payload.isascii():
                 return at
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

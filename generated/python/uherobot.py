@@ -331,7 +331,7 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
                 add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
@@ -448,7 +448,7 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
                 at = end
                 continue
-            event = _new(_MessageEvent)
+            event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw

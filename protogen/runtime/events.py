@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from protogen.runtime.machine import Cut
 
 
-@dataclass(slots=True, repr=False)
+@dataclass(slots=True, repr=False, init=False)
 class MessageEvent(Generic[MessageT_co, PartsT_co]):
     """A valid frame of a known message."""
 
@@ -33,7 +33,8 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     payload: bytes
     codec: SenderSpec[Any, Any]
 
-    # Not frozen, and parts made when they are asked for: of some streams a second holds millions.
+    # Not frozen, without a constructor, and parts made when they are asked for: of some streams a
+    # second holds millions.
 
     @property
     def sender(self) -> str:
@@ -131,7 +132,10 @@ def frame_event(
     if message is None:
         parts = sender.parts(*numbers)
         return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
-    return MessageEvent(offset, raw, numbers, message, cut.payload, sender)
+    event: MessageEvent[MessageT_co, PartsT_co] = MessageEvent()
+    event.offset, event.raw, event.numbers = offset, raw, numbers
+    event.message, event.payload, event.codec = message, cut.payload, sender
+    return event
 
 
 def _line(event: Any, **named: str) -> dict[str, Any]:

@@ -454,7 +454,7 @@ class _Cutter(FrameFunction):
 
     def _event(self) -> None:
         self._numbers()
-        self.lines.add("event = _new(_MessageEvent)")
+        self.lines.add("event: _typing.Any = _MessageEvent()")
         self.lines.add("event.message = read(payload)")
         self.lines.add("event.offset = base + at")
         for name in ("raw", "numbers", "payload"):
