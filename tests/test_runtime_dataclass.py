@@ -84,6 +84,8 @@ ACTS: dict[str, Callable[[Any], Any]] = {
     "defaults": lambda lib: repr(point(lib)(x=1)),
     "missing": lambda lib: point(lib)(),
     "keywords only": lambda lib: point(lib, kw_only=True)(1),
+    "no constructor": lambda lib: point(lib, init=False)(1),
+    "no representation": lambda lib: point(lib, repr=False).__repr__ is object.__repr__,
     "surplus": lambda lib: point(lib)(x=1, z=2),
     "own lists": lambda lib: point(lib)(1).marks is point(lib)(1).marks,
     "signature": lambda lib: str(inspect.signature(point(lib))),

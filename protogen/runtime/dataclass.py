@@ -92,12 +92,16 @@ def _dataclass(
     frozen: bool = False,
     kw_only: bool = False,
     repr: bool = True,
+    init: bool = True,
 ) -> Any:
     """As `dataclasses.dataclass`, with slots always."""
     assert slots, "these classes have slots"
+    left_out = {
+        name for name, is_made in {"__repr__": repr, "__init__": init}.items() if not is_made
+    }
 
     def decorated(cls: type[Any]) -> type[Any]:
-        return _Methods(cls, frozen, kw_only).added_to(cls, repr)
+        return _Methods(cls, frozen, kw_only).added_to(cls, left_out)
 
     return decorated if cls is None else decorated(cls)
 
@@ -142,10 +146,10 @@ class _Methods:
         inherited = [item for base in reversed(cls.__mro__) for item in base.__dict__.get(_OWN, ())]
         self.fields = list({item.name: item for item in (*inherited, *self.own)}.values())
 
-    def added_to(self, cls: type[Any], repr: bool) -> type[Any]:
-        """The class once more, with methods, and with slots: they can't be added later."""
+    def added_to(self, cls: type[Any], left_out: set[str]) -> type[Any]:
+        """The class once more, with all methods but some, and with slots, which come first."""
         kind: Any = type(cls)
-        inside = self._with_slots(cls) | self._made(cls, repr)
+        inside = self._with_slots(cls) | self._made(cls, left_out | set(cls.__dict__))
         self.cls = kind(cls.__name__, cls.__bases__, inside)
         self.cls.__qualname__ = cls.__qualname__
         return self.cls
@@ -160,9 +164,8 @@ class _Methods:
         inside[_OWN] = tuple(self.own)
         return inside
 
-    def _made(self, cls: type[Any], repr: bool) -> dict[str, Any]:
-        """What is added; methods that the class has of its own stay."""
-        left_out = set(cls.__dict__) if repr else {"__repr__", *cls.__dict__}
+    def _made(self, cls: type[Any], left_out: set[str]) -> dict[str, Any]:
+        """What is added."""
         made: dict[str, Any] = {
             name: _Late(self, name, make) for name, make in _LATE.items() if name not in left_out
         }
