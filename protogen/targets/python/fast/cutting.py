@@ -85,6 +85,8 @@ class _Cutter(FrameFunction):
     """Where the frame starts in the data; empty: at 0."""
     raw = "raw"
     """The frame's bytes."""
+    numbers = "numbers"
+    """Where the values of the frame's parts are put."""
 
     def __init__(self, frame: FastFrame, lines: Lines) -> None:
         super().__init__(frame, lines)
@@ -489,9 +491,6 @@ class _Cutter(FrameFunction):
         else:
             self.lines.add(f"{self.numbers}, payload_size, read = {head}")
             self._stop_if("0 <= payload_size != len(payload)")
-
-    numbers = "numbers"
-    """Where the values of the frame's parts are put."""
 
     def _look_up(self, identity: list[str]) -> None:
         kinds = f"_{self.name.upper()}_KINDS"
