@@ -64,7 +64,8 @@ def programs() -> dict[str, str]:
 def run(program: str, environment: Mapping[str, str]) -> Taken:
     """Run a program in a new process."""
     start = time.perf_counter()
-    process = os.posix_spawn(sys.executable, [sys.executable, "-c", program], environment)
+    # -P: the modules are those of the environment, not what lies in the present folder.
+    process = os.posix_spawn(sys.executable, [sys.executable, "-P", "-c", program], environment)
     _, status, usage = os.wait4(process, 0)
     if status:
         raise SystemExit(f"this program failed: {program}")
