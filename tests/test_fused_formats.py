@@ -5,12 +5,14 @@ from __future__ import annotations
 import copy
 import io
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
 import construct
 import pytest
-from compiled import DOCUMENTS, SCHEMAS, module_at, name_of
+from compiled import DOCUMENTS, ROOT, SCHEMAS, module_at, name_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from two_ways import check_building, check_parsing, outcome, shown, spoilt
@@ -398,3 +400,8 @@ def test_other_streams_are_construct_s() -> None:
     assert outcome(POINT.parse_stream, stream) == due
     rest = c.Struct("all" / c.OctetsFill())
     assert rest.parse_stream(io.BytesIO(WIRE)).all == WIRE
+
+
+def test_a_module_is_imported_without_it() -> None:
+    code = "import sys, generated.python.rn1; sys.exit('protogen.runtime.fused' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
