@@ -1,0 +1,121 @@
+"""What `protogen convert` takes: bytes of the line for each second of one core, by format.
+
+    python benchmarks/bench_convert.py [--megabytes N] [--rounds N]
+
+Needs `cc`, NumPy and pyarrow. Writes benchmarks/convert.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+from bench_columns import CASES, Case, frames  # noqa: E402
+
+import protogen  # noqa: E402
+from protogen.convert.kinds import OutputFormat  # noqa: E402
+from protogen.convert.run import Job, convert, plan  # noqa: E402
+
+OUT = Path(__file__).with_name("convert.md")
+FORMATS = (OutputFormat.PARQUET, OutputFormat.ARROW, OutputFormat.JSONL, OutputFormat.CSV)
+LEAST = {OutputFormat.PARQUET: 100, OutputFormat.JSONL: 20}
+"""MB/s that the project wants."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """One conversion."""
+
+    processor: float
+    """Seconds of the processor, of the program and of the system for it."""
+    clock: float
+    written: int
+    """Bytes of the files."""
+
+
+def converted(case: Case, capture: Path, format: OutputFormat, folder: Path) -> Found:
+    """Convert a capture from the beginning, as the command does."""
+    protocol = protogen.load(ROOT / case.schema)
+    runtime = protogen.module_of(protocol).PROTOCOL
+    sender = protocol.sender(case.sender)
+    job = Job(protocol, runtime, sender, format, folder, force=True)
+    clock, processor = time.perf_counter(), time.process_time()
+    (result,) = convert(job, plan(job, [str(capture)]), print, lambda count: None)
+    found = time.process_time() - processor, time.perf_counter() - clock
+    assert list(result.tally.messages) == [case.message], result.tally
+    return Found(*found, sum((folder / file).stat().st_size for file in result.files))
+
+
+def measure(case: Case, size: int, rounds: int, folder: Path) -> str:
+    """A row of the table."""
+    protocol = protogen.load(ROOT / case.schema)
+    some = b"".join(frames(protocol, case, 300 if case.message == "lidar" else 2000))
+    capture = folder / "capture.bin"
+    capture.write_bytes(some * max(1, size // len(some)))
+    total = capture.stat().st_size
+    each: dict[OutputFormat, list[Found]] = {format: [] for format in FORMATS}
+    for _ in range(rounds):
+        for format, found in each.items():
+            found.append(converted(case, capture, format, folder / "out"))
+    cells = [case.name]
+    for found in each.values():
+        rate = total / median(item.processor for item in found) / 1e6
+        clock = total / min(item.clock for item in found) / 1e6
+        cells.append(f"{rate:,.0f} ({clock:,.0f}; {found[0].written / total:.1f} x)")
+    return "| " + " | ".join(cells) + " |"
+
+
+_HEAD = """# What conversions cost
+
+<!-- Written by benchmarks/bench_convert.py, do not edit. -->
+
+Made by `python benchmarks/bench_convert.py --megabytes {megabytes} --rounds {rounds}` with Python
+{python}, files in {folder}.
+
+`protogen convert` of clean captures of frames of random values, each {megabytes} MB: MB of the line
+for each second of the processor (the program's and the system's for it, medians of {rounds} rounds
+in which every format has its turn); in brackets MB/s on the clock, the best of the rounds, which
+other processes of the machine disturb, and how many times the capture's size the files have. Files
+are whole on the disk when a conversion ends. The targets are {targets}.
+
+| | {formats} |
+| --- | {rulers} |
+"""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--megabytes", type=int, default=64)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--folder", help="where captures and results are for the time being")
+    options = parser.parse_args()
+    with TemporaryDirectory(dir=options.folder) as folder:
+        text = _HEAD.format(
+            megabytes=options.megabytes,
+            rounds=options.rounds,
+            python=platform.python_version(),
+            folder="memory" if (options.folder or "").startswith("/dev/shm") else "a disk's folder",
+            targets=", ".join(f"{least} MB/s for {format}" for format, least in LEAST.items()),
+            formats=" | ".join(FORMATS),
+            rulers=" | ".join("---:" for _ in FORMATS),
+        )
+        for case in CASES:
+            line = measure(case, options.megabytes << 20, options.rounds, Path(folder))
+            print(line, flush=True)
+            text += line + "\n"
+    OUT.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
