@@ -90,6 +90,8 @@ def _cell(programs: Programs, lent: _Lent, values: Any, show: Callable[[Any], An
             return values.codes.dtype, values.texts
         case Lists():
             return _lists(programs, lent, values)
+        case ListsOf(elements=Structs() as structs, counts=counts) if _are_numbers(structs):
+            return _structs(programs, lent, structs, counts)
         case Octets(values=matrix, counts=counts):
             first = Operand(lent.take(matrix))
             if counts is None:
@@ -141,6 +143,38 @@ def _lists(programs: Programs, lent: _Lent, values: Lists) -> Any:
     programs.text("]")
     programs.step(Kind.UNQUOTE)
     return matrix.dtype, matrix.shape[1], values.counts is None, missing is None
+
+
+def _are_numbers(structs: Structs) -> bool:
+    members = structs.members.values()
+    return bool(members) and all(isinstance(it, Numbers) and it.missing is None for it in members)
+
+
+def _structs(programs: Programs, lent: _Lent, structs: Structs, counts: Array) -> Any:
+    """Lists of structs of numbers, which lie side by side for the time being."""
+    arrays = {name: member.values for name, member in structs.members.items()}
+    record = np.dtype([(name, array.dtype) for name, array in arrays.items()])
+    places = record.fields
+    assert places is not None
+    side_by_side = np.zeros((len(counts), max(1, int(counts.max(initial=0)))), record)
+    there = np.arange(side_by_side.shape[1]) < counts.reshape(-1, 1)
+    for name, array in arrays.items():
+        side_by_side[name][there] = array
+
+    def body() -> None:
+        for place, (name, array) in enumerate(arrays.items()):
+            programs.text(f"{', ' if place else '{'}{json.dumps(name)}: ")
+            code = _code(array)
+            programs.number(operand(code, places[name][1]), code, _IN_LISTS)
+        programs.text("}")
+
+    programs.step(Kind.QUOTE)
+    programs.text("[")
+    first, count = Operand(lent.take(side_by_side)), lent.number(np.ascontiguousarray(counts))
+    programs.listed(first, record.itemsize, count, body)
+    programs.text("]")
+    programs.step(Kind.UNQUOTE)
+    return "structs", tuple(arrays), record
 
 
 def _quoted(text: str) -> str:
