@@ -17,6 +17,9 @@ from protogen.model.protocol import Protocol
 
 ROOT = Path(__file__).resolve().parent.parent
 
+PATIENCE = 300.0
+"""Seconds after which a process is said to hang: on a busy machine, one second takes a minute."""
+
 SINK = """\
 protocol: sink
 title: One of everything
@@ -99,6 +102,6 @@ def start(
         capture_output=True,
         cwd=cwd,
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        timeout=120,
+        timeout=PATIENCE,
         check=False,
     )

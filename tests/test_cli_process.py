@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from cli_support import ROOT, run, start
+from cli_support import PATIENCE, ROOT, run, start
 
 from protogen.cli.exits import guarded
 from protogen.version import VERSION
@@ -181,7 +181,7 @@ def test_interrupt_of_a_process_that_waits_for_input() -> None:
     # The frame is shown before the input ends.
     assert process.stdout.readline().split() == [b"0", b"stop", b"@counter=1"]
     process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=30)
+    output, errors = process.communicate(timeout=PATIENCE)
     assert (process.returncode, output, errors) == (130, b"", b"")
 
 
@@ -195,7 +195,7 @@ def test_reader_that_goes_away() -> None:
         process.stdin.close()
     except BrokenPipeError:
         pass
-    assert process.wait(timeout=60) == 141
+    assert process.wait(timeout=PATIENCE) == 141
     assert process.stderr is not None
     assert process.stderr.read() == b""
     process.stderr.close()
@@ -242,7 +242,7 @@ def on_terminal(*arguments: str, **environment: str) -> str:
     while piece := read(ours):
         shown += piece
     os.close(ours)
-    assert process.wait(timeout=60) is not None
+    assert process.wait(timeout=PATIENCE) is not None
     return shown.decode()
 
 
@@ -295,7 +295,7 @@ def test_progress_of_a_file_if_the_events_go_elsewhere(tmp_path: Path) -> None:
     while piece := read(ours):
         shown += piece
     os.close(ours)
-    assert process.wait(timeout=60) == 0
+    assert process.wait(timeout=PATIENCE) == 0
     assert b"reading" in shown
     assert (tmp_path / "events").read_bytes().count(b"\n") == 20_000
 
@@ -315,7 +315,7 @@ def test_lines_of_json_are_not_awaited_from_a_terminal() -> None:
         capture_output=True,
         cwd=ROOT,
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
     os.close(ours)
     os.close(theirs)
@@ -333,7 +333,7 @@ def test_a_live_stream_is_shown_as_it_comes() -> None:
         assert b'"stop"' in process.stdout.readline()
         time.sleep(0.01)
     process.stdin.close()
-    assert process.wait(timeout=30) == 0
+    assert process.wait(timeout=PATIENCE) == 0
     process.stdout.close()
     assert process.stderr is not None
     process.stderr.close()

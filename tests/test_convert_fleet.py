@@ -15,7 +15,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from cli_support import ROOT, SINK, run
+from cli_support import PATIENCE, ROOT, SINK, run
 from compiled import module_at, name_of, protocol_of, senders
 from test_json_lines import capture_of
 
@@ -227,7 +227,7 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
         killer.start()
         fleet = ["--dask", cluster.scheduler_address, "--part-size", "1"]
         done = run(*arguments(captures, tmp_path, "large.bin"), *fleet)
-        killer.join(timeout=60)
+        killer.join(timeout=PATIENCE)
     assert done.exit_code == 0, done.output
     assert len(killed) == 2
     single = tmp_path / "single"
@@ -252,12 +252,12 @@ def test_a_fleet_goes_on_where_another_was_ended(
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + PATIENCE
     while len(list((tmp_path / MARKERS).glob("large.*.json"))) < 3:
         assert time.monotonic() < deadline
         time.sleep(0.005)
     os.killpg(process.pid, signal.SIGKILL)
-    process.wait(timeout=30)
+    process.wait(timeout=PATIENCE)
     finished = [path.stem for path in (tmp_path / MARKERS).glob("large.*.json")]
     files = [tmp_path / "lidar" / f"{name}.parquet" for name in finished]
     stamps = {path: path.stat().st_mtime_ns for path in files}

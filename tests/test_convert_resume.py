@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from cli_support import ROOT, SINK, run
+from cli_support import PATIENCE, ROOT, SINK, run
 from test_json_lines import capture_of
 
 from protogen.convert.batches import Tally
@@ -23,7 +25,7 @@ pytest.importorskip("pyarrow")
 
 @pytest.fixture(scope="module")
 def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A schema and three captures, the second of which takes some seconds."""
+    """A schema and three captures."""
     folder = tmp_path_factory.mktemp("resume")
     schema = folder / "sink.yaml"
     schema.write_text(SINK)
@@ -55,22 +57,31 @@ def test_a_killed_run_is_gone_on_with(
 ) -> None:
     whole, torn = tmp_path / "whole", tmp_path / "torn"
     assert run(*command(workspace, whole, to)).exit_code == 0
+    inputs = tmp_path / "inputs"
+    shutil.copytree(workspace, inputs)
+    second = (inputs / "two.bin").read_bytes()
+    (inputs / "two.bin").unlink()
+    os.mkfifo(inputs / "two.bin")
     process = subprocess.Popen(
-        [sys.executable, "-m", "protogen", *command(workspace, torn, to)],
+        [sys.executable, "-m", "protogen", *command(inputs, torn, to)],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )
-    _wait_for(lambda: (torn / RECORD).exists() and any(torn.rglob(".two.*")))
-    process.send_signal(end)
-    process.wait(timeout=30)
+    # The second capture never ends, so that the run is in the middle of it: rows enough for a file.
+    with (inputs / "two.bin").open("wb", buffering=0) as pipe:
+        pipe.write(second * 75)
+        _wait_for(lambda: (torn / RECORD).exists() and any(torn.rglob(".two.*")))
+        _end(process, end)
+    (inputs / "two.bin").unlink()
+    (inputs / "two.bin").write_bytes(second)
     assert process.returncode == (-signal.SIGKILL if end is signal.SIGKILL else 130)
     expected = visible(whole)
     before = visible(torn)
     assert before == {name: data for name, data in expected.items() if "one" in name}
     if end is signal.SIGINT:
         assert not list(torn.rglob("*.partial"))
-    again = run(*command(workspace, torn, to))
+    again = run(*command(inputs, torn, to))
     assert again.exit_code == 0
     assert again.output.splitlines()[0].endswith("one.bin: done before, nothing has changed since")
     assert again.output.count("done before") == 1
@@ -78,8 +89,18 @@ def test_a_killed_run_is_gone_on_with(
     assert not list(torn.rglob("*.partial"))
 
 
+def _end(process: subprocess.Popen[bytes], how: signal.Signals) -> None:
+    """Ask until it ends: a signal in the moment before a read begins does not end the read."""
+    deadline = time.monotonic() + PATIENCE
+    while process.poll() is None:
+        assert time.monotonic() < deadline
+        process.send_signal(how)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=5)
+
+
 def _wait_for(condition: object) -> None:
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + PATIENCE
     while not condition():  # type: ignore[operator]
         assert time.monotonic() < deadline
         time.sleep(0.01)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from cli_support import ROOT, SINK, run, start
+from cli_support import PATIENCE, ROOT, SINK, run, start
 
 from protogen.project.watch import changes, states, wait_for_change
 
@@ -77,7 +77,7 @@ class Watch:
 
     def interrupt(self) -> int:
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(60)
+        return self.process.wait(PATIENCE)
 
 
 @pytest.fixture
