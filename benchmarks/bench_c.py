@@ -906,7 +906,9 @@ def misses(results: Results) -> str:
     found = sorted(_ratios(results), key=lambda item: (not isnan(item[1]), -item[1]))
     missed = [f"* {name}: {value:.2f}" for name, value in found if not value <= TARGET]
     met = sum(value <= TARGET for _, value in found)
-    lines = [f"{met} of {len(found)} figures are within {TARGET}. The others:", "", *missed]
+    lines = [f"All {met} figures are within {TARGET}."]
+    if missed:
+        lines = [f"{met} of {len(found)} figures are within {TARGET}. The others:", "", *missed]
     if HAS_SSE2:
         halves = [_half_ratio(results, f"{p.label} {message}") for p, _, message in messages()]
         fast = sum(value <= 1 for value in halves)
