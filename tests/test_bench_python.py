@@ -1,12 +1,12 @@
 """What `benchmarks/bench_python.py` compares gives the same results, before any of it is timed."""
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from random import Random
 
 import pytest
 from corpus import Material, stream_of
+from tooling import unavailable
 
 ROOT = Path(__file__).parent.parent
 KAITAI = ROOT / ".cache" / "bench" / "node_modules" / "kaitai-struct-compiler"
@@ -27,11 +27,12 @@ CONSTRUCT = ("with_construct.interpreted", "with_construct.compiled")
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.message)
 def test_a_contender_reads_and_writes_what_the_reference_does(case, maker):
     if maker == "with_kaitai.contender" and not KAITAI.exists():
-        pytest.skip("kaitai-struct-compiler is not installed; bench_python.py does it")
+        unavailable("kaitai-struct-compiler is not installed; bench_python.py does it")
     try:
         contender = made(maker, case)
     except ImportError as error:
-        pytest.skip(f"needs the extra `bench`: {error}")
+        unavailable(f"the extra `bench` is not installed: {error}")
+        raise
     if contender is not None:
         check(contender, case)
 
@@ -47,7 +48,6 @@ def test_code_by_hand_finds_the_same_messages_in_noise(case, make, seed):
     assert theirs.rows(theirs.stream(data)) == mine.rows(mine.stream(data))
 
 
-@pytest.mark.skipif(not find_spec("numpy"), reason="needs the extra `bench`")
 def test_the_page_has_every_case_and_says_what_is_not_there(monkeypatch):
     monkeypatch.setattr(timing, "LEAST", 1)
     monkeypatch.setattr("gc.collect", lambda: 0)
