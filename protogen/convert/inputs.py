@@ -219,7 +219,9 @@ class _Counted(BufferedReader):
         return data
 
     def readinto(self, buffer: object, /) -> int:
-        size = super().readinto(buffer)  # type: ignore[arg-type]
+        # What has come, as a raw stream gives it. To wait for a full buffer would be deaf to a
+        # Ctrl-C that arrives together with some bytes.
+        size = super().readinto1(buffer)  # type: ignore[arg-type]
         self._advance(size)
         return size
 
