@@ -9,7 +9,9 @@ import pickle
 import pprint
 import sys
 from collections.abc import Callable, Hashable
-from typing import Any, ClassVar, Generic, TypeVar
+from importlib.util import module_from_spec, spec_from_file_location
+from types import ModuleType
+from typing import Any, ClassVar, Generic, TypeVar, get_type_hints
 
 import pytest
 
@@ -267,6 +269,39 @@ def test_changed_copies_by_the_protocol_of_later_pythons() -> None:
     assert replaced(gyro(), int_y=7) == dataclasses.replace(gyro(), int_y=7)
 
 
+def test_the_types_of_arguments_can_be_looked_up() -> None:
+    """As libraries do that validate arguments, or fill them in."""
+    hints = get_type_hints(rn1.Lidar.__init__)
+    assert hints == {
+        "status": rn1.LidarStatus | int, "distances": list[int], "return": type(None),
+    }  # fmt: skip
+    signature = inspect.signature(rn1.Lidar, eval_str=True)
+    assert signature.parameters["status"].annotation == rn1.LidarStatus | int
+
+
+def test_a_class_may_be_called_like_what_is_built_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    code = """
+from __future__ import annotations
+from protogen.runtime.dataclass import dataclass
+
+@dataclass(slots=True, frozen=True)
+class NotImplemented:
+    x: int
+
+hash = object = None
+"""
+    module = ModuleType("shadowing")
+    exec(code, vars(module))
+    for name in ("shadowing", "elsewhere"):  # The module may be one that nobody imported.
+        monkeypatch.setitem(sys.modules, name, module)
+        made = module.NotImplemented(1)
+        assert made == module.NotImplemented(1) != module.NotImplemented(2)
+        assert (made == 1) is False
+        assert hash(made) == hash(module.NotImplemented(1))
+        monkeypatch.delitem(sys.modules, name)
+        exec(code, vars(module))
+
+
 # --- FORMAT and RULES ---------------------------------------------------------------------------
 
 
@@ -286,3 +321,14 @@ def test_a_subclass_has_the_declarations_of_its_parent() -> None:
     mine = Mine(speed=1, steer=2)
     mine.steer_deg = 12.5
     assert mine.steer == 1250
+
+
+def test_a_module_that_is_loaded_again_makes_its_frames_again() -> None:
+    spec = spec_from_file_location("loaded_again", matty.__file__)
+    assert spec is not None
+    assert spec.loader is not None
+    module: Any = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    before = module.PC_FORMAT
+    spec.loader.exec_module(module)
+    assert module.PC_FORMAT is not before

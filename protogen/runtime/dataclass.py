@@ -19,6 +19,7 @@ library itself, when they ask:
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any
@@ -183,12 +184,19 @@ class _Methods:
     def compiled(
         self, name: str, parameters: Iterable[str], body: Iterable[str], **known: Any
     ) -> Any:
-        """A method of its text; `known` are names that are not the caller's."""
-        text = f"def {name}({', '.join(parameters)}):\n " + "\n ".join(body)
+        """A method of its text; `known` are names that are not the caller's.
+
+        Its other names are those of the class's module, where `typing` looks annotations up.
+        """
+        head = f"def __make({', '.join(known)}):\n def {name}({', '.join(parameters)}):\n  "
+        text = head + "\n  ".join(body) + f"\n return {name}"
+        module = self.cls.__module__
+        home = vars(sys.modules[module]) if module in sys.modules else {"__name__": module}
         made: dict[str, Any] = {}
-        exec(text, {"__name__": self.cls.__module__, **known}, made)  # noqa: S102 - our own text
-        made[name].__qualname__ = f"{self.cls.__qualname__}.{name}"
-        return made[name]
+        exec(text, home, made)  # noqa: S102 - our own text
+        method = made["__make"](**known)
+        method.__qualname__ = f"{self.cls.__qualname__}.{name}"
+        return method
 
 
 def _slots(base: type[Any]) -> Iterable[str]:
@@ -276,14 +284,18 @@ def _eq(methods: _Methods) -> Any:
     body = (
         "if other.__class__ is self.__class__:",
         f"  return {_values('self', names)} == {_values('other', names)}",
-        "return NotImplemented",
+        "return __not_implemented",
     )
-    return methods.compiled("__eq__", ("self", "other"), body)
+    # A message may be called like what is built in.
+    known = {"__not_implemented": NotImplemented}
+    return methods.compiled("__eq__", ("self", "other"), body, **known)
 
 
 def _hash(methods: _Methods) -> Any:
     hashed = [i.name for i in methods.fields if (i.compare if i.hash is None else i.hash)]
-    return methods.compiled("__hash__", ("self",), (f"return hash({_values('self', hashed)})",))
+    return methods.compiled(
+        "__hash__", ("self",), (f"return __hash({_values('self', hashed)})",), __hash=hash
+    )
 
 
 def _replace(methods: _Methods) -> Any:

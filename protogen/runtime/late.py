@@ -88,6 +88,8 @@ def frame_formats(
     namespace: dict[str, Any], **senders: SenderSpec[Any, Any]
 ) -> Callable[[str], Any]:
     """The `__getattr__` of a generated module: frames as construct declarations, by their names."""
+    for name in senders:
+        namespace.pop(name, None)  # What a module made before it was loaded again is outdated.
 
     def get(name: str) -> Any:
         sender = senders.get(name)
