@@ -12,6 +12,7 @@ from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
 from random import Random
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -253,6 +254,50 @@ def test_integers_in_turn() -> None:
             fast.in_turn(column)
     with pytest.raises(ValueError, match="assign sequence of size 1"):
         fast.in_turn([1, 2], [3])
+
+
+def test_tables_are_full_for_each_thread() -> None:
+    """Whoever is told that they are filled finds all values, whatever another thread is doing."""
+    tables = fast.Tables()
+    others: list[Thread] = []
+    found: list[tuple[int, int]] = []
+
+    def number(raw: int) -> int:
+        while others:
+            other = others.pop()
+            other.start()
+            other.join()
+        return raw
+
+    named: Any = number
+    first, second = tables.members(named, 3), tables.members(named, 4)
+
+    def fill() -> None:
+        if not tables.are_filled:
+            tables.fill()
+        found.append((len(first), len(second)))
+
+    others.append(Thread(target=fill))
+    fill()
+    assert found == [(8, 16)] * 2
+
+
+def test_tables_are_filled_again_after_an_interruption() -> None:
+    tables = fast.Tables()
+    interruptions = [KeyboardInterrupt()]
+
+    def number(raw: int) -> int:
+        if raw == 5 and interruptions:
+            raise interruptions.pop()
+        return raw
+
+    named: Any = number
+    table = tables.members(named, 3)
+    with pytest.raises(KeyboardInterrupt):
+        tables.fill()
+    assert not tables.are_filled
+    tables.fill()
+    assert table == [*range(8)]
 
 
 def test_not_all_heads_are_kept() -> None:

@@ -91,14 +91,23 @@ class Tables:
         self._fillings: list[Callable[[], object]] = []
 
     def fill(self) -> None:
-        """Fill all tables, in place."""
-        while self._fillings:
-            self._fillings.pop()()
+        """Fill all tables, in place.
+
+        Several threads may do so at once, and one may be interrupted: whoever comes through has
+        filled all of them.
+        """
+        for filling in self._fillings:
+            filling()
         self.are_filled = True
 
     def _list(self, values: Callable[[], Iterable[Any]]) -> list[Any]:
         table: list[Any] = []
-        self._fillings.append(lambda: table.extend(values()))
+
+        def filling() -> None:
+            made = [*values()]  # Before it is known how long the table is.
+            table[:] = made
+
+        self._fillings.append(filling)
         return table
 
     def members(self, named: type[OpenEnum | Flags], bits: int) -> list[Any]:
