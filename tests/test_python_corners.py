@@ -125,3 +125,33 @@ def test_a_number_counts_no_more_than_its_range(compiled: ModuleType) -> None:
     assert compiled.Ping.from_payload(bytes.fromhex("02 07 08")).data == [7, 8]
     with pytest.raises(ValueError, match="number counts 0 to 2, not 3"):
         compiled.Ping.from_payload(bytes.fromhex("03 07 08 09"))
+
+
+STUFFED = """\
+protocol: corner
+endpoints: {a: A, b: B}
+byte_order: little
+frame:
+  sync: {literal: 0x55}
+  length: {type: uint8, counts: [ident, payload]}
+  ident: {type: uint8, id: true}
+  payload: {}
+transparency: {covers: length..payload, escape: {byte: 0x56, of: [0x55, 0x56], transform: invert}}
+messages:
+  index_error: {id: 1, from: a, fields: {x: uint8}}
+  type_error: {id: 2, from: a, fields: {x: uint8}}
+  exception: {id: 3, from: a, fields: {x: uint8}}
+"""
+
+
+def test_a_message_may_be_called_like_an_exception(tmp_path: Path) -> None:
+    """What generated code catches is then still the exception."""
+    schema = tmp_path / "corner.yaml"
+    schema.write_text(STUFFED)
+    module = protogen.module_of(protogen.load(schema))
+    decoder = module.Decoder("a")
+    frame = module.encode(module.IndexError(x=7))
+    assert decoder.feed(b"") == []
+    (event,) = decoder.feed(frame + frame[:1])
+    assert event.message == module.IndexError(x=7)
+    assert [event.reason for event in (*decoder.feed(b""), *decoder.flush())] == ["truncated"]

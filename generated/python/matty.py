@@ -510,7 +510,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     try:
         if data[at] != 0x55:
             return at
-    except IndexError:
+    except _fast.ANYTHING:  # There is nothing.
         return at
     try:
         while at < size:
@@ -659,7 +659,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     try:
         if data[at] != 0x55:
             return at
-    except IndexError:
+    except _fast.ANYTHING:  # There is nothing.
         return at
     try:
         while at < size:

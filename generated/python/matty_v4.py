@@ -655,7 +655,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     try:
         if data[at] != 0x55:
             return at
-    except IndexError:
+    except _fast.ANYTHING:  # There is nothing.
         return at
     try:
         while at < size:
@@ -806,7 +806,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     try:
         if data[at] != 0x55:
             return at
-    except IndexError:
+    except _fast.ANYTHING:  # There is nothing.
         return at
     try:
         while at < size:

@@ -103,7 +103,7 @@ class _Cutter(FrameFunction):
             # Behind a frame that ends where the next start is, that needs not be checked again.
             with self.lines.block("try:"):
                 self._start()
-            with self.lines.block("except IndexError:"):
+            with self.lines.block("except _fast.ANYTHING:  # There is nothing."):
                 self.lines.add("return at")
         with self.lines.block("try:"), self.lines.block("while at < size:"):
             if self.frame.ended_by != "start":
