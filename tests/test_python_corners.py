@@ -155,3 +155,23 @@ def test_a_message_may_be_called_like_an_exception(tmp_path: Path) -> None:
     (event,) = decoder.feed(frame + frame[:1])
     assert event.message == module.IndexError(x=7)
     assert [event.reason for event in (*decoder.feed(b""), *decoder.flush())] == ["truncated"]
+
+
+OVERLOADED = """\
+overloads: {sized: {messages: [brief, full], by: size}}
+messages:
+  brief: {id: 1, from: a, fields: {x: uint8}}
+  full: {id: 1, from: a, fields: {x: uint16}}
+  a_1: {id: 2, from: a, fields: {y: uint8}}
+"""
+
+
+@pytest.mark.parametrize("compiled", [OVERLOADED], indirect=True)
+def test_a_message_may_be_called_like_an_identity(compiled: ModuleType) -> None:
+    """The messages of identity 1 of `a`, told by size, hide none that is called `a_1`."""
+    for message in (compiled.Brief(x=3), compiled.Full(x=3), compiled.A1(y=3)):
+        frame = compiled.encode(message)
+        assert compiled.decode(frame, "a") == message
+        assert compiled.decode(frame, "a", engine="construct") == message
+        (event,) = compiled.Decoder("a").feed(frame)
+        assert event.message == message

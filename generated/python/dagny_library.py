@@ -618,7 +618,7 @@ def _read_shutdown(data: bytes) -> Shutdown:
     return item
 
 
-def _read_host_77(data: bytes) -> Motor | Drive:
+def _choose_host_77(data: bytes) -> Motor | Drive:
     if len(data) in Motor.SIZES:
         return _read_motor(data)
     if len(data) in Drive.SIZES:
@@ -671,7 +671,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
 
 
 _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x4D: (-3, _read_host_77),
+    0x4D: (-3, _choose_host_77),
     0x53: (1, _read_steering),
     0x50: (1, _read_power),
     0x47: (8, _read_gps_position),

@@ -57,10 +57,7 @@ def entries_of(frame: FastFrame, entries: list[str | None]) -> list[tuple[Kin, s
 
 
 def _kind(frame: FastFrame, kin: Kin) -> str | None:
-    if len(kin.messages) > 1:
-        reader = f"_read_{frame.sender.name}_{'_'.join(map(str, kin.identity))}"
-    else:
-        reader = f"_read_{kin.messages[0].name}"
+    reader = reader_of(frame, kin)
     if frame.length is not None:
         return reader
     size = ~kin.greatest if kin.fixed is None else kin.fixed
@@ -69,6 +66,14 @@ def _kind(frame: FastFrame, kin: Kin) -> str | None:
     if frame.ended_by == "kind" and frame.shows_identity:
         return f"({size}, {reader}, {tuple_of(map(str, kin.identity))})"
     return f"({size}, {reader})"
+
+
+def reader_of(frame: FastFrame, kin: Kin) -> str:
+    """The name of the function that reads an identity's payloads."""
+    if len(kin.messages) == 1:
+        return f"_read_{kin.messages[0].name}"
+    # Begun in another way than those of messages: one of them may be called `host_77`.
+    return f"_choose_{frame.sender.name}_{'_'.join(map(str, kin.identity))}"
 
 
 def identity_key(identity: tuple[int, ...]) -> str:

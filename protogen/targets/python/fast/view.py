@@ -136,14 +136,13 @@ def _overloads(frame: FastFrame) -> list[Function]:
 
 
 def _overload(frame: FastFrame, kin: Kin) -> Function:
-    identity = "_".join(map(str, kin.identity))
     given = " | ".join(class_name(message.name) for message in kin.messages)
     body: list[str] = []
     for message in kin.messages:
         body.append(f"if len(data) in {class_name(message.name)}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
     body.append("raise _fast.Unclear")
-    return _function(f"_read_{frame.sender.name}_{identity}", "data: bytes", given, tuple(body))
+    return _function(cutting.reader_of(frame, kin), "data: bytes", given, tuple(body))
 
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
