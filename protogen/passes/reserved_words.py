@@ -34,7 +34,7 @@ OWN_ATTRIBUTES = frozenset(
 )
 """What generated messages and structs do, which a field of the name would hide."""
 
-OWN_ARGUMENTS = frozenset({"message", "sender", "strict"})
+OWN_ARGUMENTS = frozenset({"message", "sender", "strict", "engine"})
 """What a generated encoder takes beside the parts whose values the caller gives."""
 
 AS_CLASSES = frozenset({"none"})
