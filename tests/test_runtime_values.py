@@ -532,3 +532,20 @@ def test_texts_of_any_bytes_survive_lenient_encoding(message: Everything) -> Non
 def test_a_scope_is_made_for_each_struct() -> None:
     rule = rt.TextRule("size")
     assert rule.to_wire("ab", ChainMap({}, {"size": 2}), strict=True) == "ab"
+
+
+def test_not_all_sets_of_flags_are_kept() -> None:
+    """A stream of flags of 32 bits, most of them without a name, must not fill the memory."""
+
+    class State(rt.Flags):
+        ON = 1
+        HOT = 1 << 31
+
+    for number in range(10_000):
+        state = State(number << 1 | 1 << 31)
+        assert state == number << 1 | 1 << 31
+        assert State.HOT in state
+        assert state.unknown == number << 1
+    assert len(State._value2member_map_) == 4096
+    assert State(1) is State.ON
+    assert State(1 << 31) is State.HOT

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from enum import KEEP, IntEnum, IntFlag
-from typing import Self
+from typing import Any, Self
+
+KEPT = 4096
+"""Members without a name that are kept; what comes off a wire must not fill the memory."""
 
 
 class OpenEnum(IntEnum):
@@ -21,7 +24,7 @@ class OpenEnum(IntEnum):
     def _missing_(cls, value: object) -> Self | None:
         if not isinstance(value, int):
             return None
-        # Such members are not remembered: what comes off a wire would fill the memory.
+        # Such members are not remembered, as those of flags are until there are many.
         member = int.__new__(cls, value)
         member._name_ = f"UNKNOWN_{value}"
         member._value_ = int(value)
@@ -38,6 +41,15 @@ class OpenEnum(IntEnum):
 
 class Flags(IntFlag, boundary=KEEP):
     """Names of single bits; bits without a name are kept."""
+
+    @classmethod
+    def _missing_(cls, value: object) -> Any:
+        remembered = cls._value2member_map_
+        before = len(remembered)
+        member = super()._missing_(value)
+        while len(remembered) > max(before, KEPT):
+            remembered.popitem()  # What came last.
+        return member
 
     @property
     def unknown(self) -> int:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.dataclass import dataclass
-from protogen.runtime.enums import Flags, OpenEnum
+from protogen.runtime.enums import KEPT, Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.late import frame_formats
 from protogen.runtime.number import ByteOrder, Number
@@ -136,12 +136,11 @@ class Tables:
         return table
 
 
-_KEPT = 4096
-"""Members without a name, and heads, that are kept; what a wire gives must not fill the memory."""
-
-
 class Heads(dict[bytes, tuple[Any, ...]]):
-    """What a cutter has to know of frames that begin alike, by bytes at their start."""
+    """What a cutter has to know of frames that begin alike, by bytes at their start.
+
+    Not all are kept, as not all members are: what a wire gives must not fill the memory.
+    """
 
     def __init__(self, read: Callable[[bytes], tuple[Any, ...]]) -> None:
         super().__init__()
@@ -149,7 +148,7 @@ class Heads(dict[bytes, tuple[Any, ...]]):
 
     def __missing__(self, head: bytes) -> tuple[Any, ...]:
         known = self._read(head)
-        if len(self) < _KEPT:
+        if len(self) < KEPT:
             self[head] = known
         return known
 
@@ -163,7 +162,7 @@ class Members(dict[int, Any]):
 
     def __missing__(self, raw: int) -> Any:
         member = self._named(raw)
-        if len(self) < _KEPT:
+        if len(self) < KEPT:
             self[raw] = member
         return member
 
