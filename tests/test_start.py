@@ -67,6 +67,14 @@ repr(events)
     assert unwanted(imported(code, project_root)) == set()
 
 
+def test_frames_are_imported_by_name(project_root: Path) -> None:
+    """All public names at once would import construct with them."""
+    code = "from generated.python.matty import *\nassert Go\nassert 'PC_FORMAT' not in globals()"
+    assert unwanted(imported(code, project_root)) == set()
+    code = f"import sys\nsys.path += {sys.path!r}\nfrom generated.python.matty import PC_FORMAT"
+    assert "construct" in imported(code, project_root)
+
+
 def test_the_reference_comes_with_what_is_not_in_order(project_root: Path) -> None:
     code = """
 import sys
