@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -29,6 +30,29 @@ from protogen.convert.values import as_list  # noqa: E402
 
 ENGINES = ["python", None]
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+GREAT = """
+protocol: great
+title: Numbers of 64 bits that choose, and floats whose physical values are infinite
+endpoints: {one: One side}
+byte_order: little
+frame:
+  sync: {literal: {hex: 5A A5}, unprotected: sync_in_data}
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {}
+decisions:
+  sync_in_data: {question: Is it protected?, document: No., choice: Accept., because: It is rare.}
+types:
+  kind: {type: uint64, values: {low: 1, exact: 0x20000000000000, middle: 0x8000000000000000, high: 0xFFFFFFFFFFFFFFFF}}
+messages:
+  chosen:
+    id: 1
+    from: one
+    fields:
+      kind: kind
+      value: {switch: kind, cases: {low: uint8, exact: uint8, middle: uint8, high: uint8}, unknown: true}
+  scaled: {id: 2, from: one, fields: {f: {type: float64, scale: 16, unit: m}}}
+"""  # noqa: E501
 SAMPLED = [(path, it.name) for path in SAMPLERS for it in protocol_of(path).senders]
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders() + SAMPLED, ids=name_of)
 
@@ -123,6 +147,23 @@ def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | Non
         assert rows_of(found) == rows_of(expected)
         assert arrow_rows(found) == arrow_rows(expected)
         assert lines_of(found) == lines_of(expected)
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_numbers_that_floats_have_not(tmp_path: Path, engine: str | None) -> None:
+    path = tmp_path / "great.yaml"
+    path.write_text(GREAT)
+    powers = (0, 53, 63, 64)
+    kinds = sorted({(1 << power) + more for power in powers for more in (-1, 0, 1)})
+    payloads = [(1, struct.pack("<QB", kind, 7)) for kind in kinds if kind < 1 << 64]
+    payloads += [(2, struct.pack("<d", value)) for value in (1e308, -1e308, math.inf, math.nan)]
+    data = b"".join(b"\x5a\xa5" + bytes((id, len(it))) + it for id, it in payloads)
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    assert len(lines_of(found)) == len(payloads)
+    assert rows_of(found) == rows_of(expected)
+    assert arrow_rows(found) == arrow_rows(expected)
+    assert lines_of(found) == lines_of(expected)
 
 
 class TestPhysical:

@@ -34,8 +34,9 @@ def _special(meaning: Physical, values: Array) -> Array | None:
 
 def _computed(meaning: Physical, values: Array) -> Array:
     if meaning.is_float:
-        # As Python does it: a float and a fraction meet as floats.
-        return values.astype("f8") * float(meaning.scale) + float(meaning.offset)
+        # As Python does it: a float and a fraction meet as floats, and too great ones are infinite.
+        with np.errstate(all="ignore"):
+            return values.astype("f8") * float(meaning.scale) + float(meaning.offset)
     limits = np.iinfo(values.dtype)
     most = max(abs(int(limits.min)), int(limits.max))
     if most * abs(meaning.times) + abs(meaning.plus) < _EXACT and meaning.over < _EXACT:

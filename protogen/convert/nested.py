@@ -279,7 +279,8 @@ def _case(
     """Of the rows that have the case that the path begins with, what the rest of it leads to."""
     case = next((case for case in type.cases if case.name == path[0]), None)
     if case is None:
-        there = ~np.isin(chosen, [case.value for case in type.cases])
+        # NumPy would compare numbers of 64 bits with those of another type as floats.
+        there = ~np.isin(chosen, np.array([case.value for case in type.cases], chosen.dtype))
     else:
         there = chosen == case.value
     rows = np.flatnonzero(there)

@@ -145,7 +145,7 @@ class Printer:
             np.array([tuple(step) for step in script.steps], _STEP),
             np.frombuffer(script.pool or b"\0", "u1"),
             np.array(script.texts or [(0, 0)], "i8"),
-            np.array(script.choices or [(0, 0)], "i8"),
+            np.array([(_in_64_bits(it), step) for it, step in script.choices] or [(0, 0)], "i8"),
             np.frombuffer(b"".join(spellings) or b"\0", "u1"),
             np.frombuffer(script.special, "u1"),
         )
@@ -196,6 +196,11 @@ def _lent(table: Table) -> tuple[_Table, Any]:
 
 def _spelling(text: bytes) -> bytes:
     return bytes([len(text)]) + text.ljust(7, b"\0")
+
+
+def _in_64_bits(value: int) -> int:
+    """The number as C compares it, where the greatest of `u8` are negative."""
+    return (value ^ 1 << 63) % (1 << 64) - (1 << 63)
 
 
 def _bits(format: str) -> Any:
