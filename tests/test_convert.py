@@ -332,6 +332,46 @@ class TestErrors:
         assert done.exit_code == 2
         assert "nowhere.bin: No such file" in done.output
 
+    @pytest.mark.parametrize("to", FORMATS)
+    def test_a_folder_that_cannot_be_written_is_named(
+        self, sink: Path, tmp_path: Path, to: str
+    ) -> None:
+        capture, folder = tmp_path / "run.bin", tmp_path / "file" / "out"
+        capture.write_bytes(capture_of(sink, "board", 3))
+        (tmp_path / "file").touch()
+        done = run("convert", str(sink), "--sender", "board", str(capture), "--to", to,
+                   "-o", str(folder))  # fmt: skip
+        assert done.exit_code == 2
+        assert f"error: {folder}" in done.output.replace("\n", "")
+
+    @pytest.mark.parametrize("to", FORMATS)
+    def test_a_full_disk_is_that_of_the_folder(self, sink: Path, tmp_path: Path, to: str) -> None:
+        """No file may grow beyond some bytes, which is told as a full disk is."""
+        resource = pytest.importorskip("resource")
+        capture, folder = tmp_path / "run.bin", tmp_path / "out"
+        capture.write_bytes(capture_of(sink, "board", 3, 400))
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        convert(sink, "board", capture, to, tmp_path / "other")  # Whatever has to be compiled.
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+        try:
+            done = run("convert", str(sink), "--sender", "board", str(capture), "--to", to,
+                       "-o", str(folder))  # fmt: skip
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert done.exit_code == 2
+        assert f"error: {folder}: " in done.output.replace("\n", "")
+        assert list(folder.rglob("*")) == []
+
+    def test_without_a_compiler_the_command_says_what_is_slow(
+        self, sink: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        capture = tmp_path / "run.bin"
+        capture.write_bytes(capture_of(sink, "board", 3))
+        monkeypatch.setenv("CC", f"no-such-cc-{tmp_path.name}")
+        lines = convert(sink, "board", capture, "csv", tmp_path / "out")
+        assert lines[0].startswith("warning: captures are read in Python, which is slow: there is")
+        assert lines[1].startswith(f"{capture}: raw bytes")
+
     def test_a_file_of_somebody_else_stays(self, sink: Path, tmp_path: Path) -> None:
         (tmp_path / "run.bin").write_bytes(b"noise")
         theirs = tmp_path / "out" / "run.jsonl"

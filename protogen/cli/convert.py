@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -149,7 +151,8 @@ def _run(
 
     try:
         named = plan(job, captures)
-        with progress("converting", _total(job, captures), in_bytes=True) as advance:
+        total = _total(job, captures)
+        with _plain_warnings(), progress("converting", total, in_bytes=True) as advance:
             if fleet is None:
                 return list(convert(job, named, complaints.add, advance))
             from protogen.convert.fleet import convert_fleet
@@ -159,6 +162,25 @@ def _run(
         raise UsageError(str(error), error.hint) from None
     except CaptureError as error:
         raise UsageError(str(error)) from None
+
+
+@contextmanager
+def _plain_warnings() -> Iterator[None]:
+    """Let what is slow be said as commands say it, without the line of protogen that warns."""
+    from protogen.capture.errors import SlowCaptureWarning
+
+    def show(message: Any, category: Any, *where: Any, **more: Any) -> None:
+        if issubclass(category, SlowCaptureWarning):
+            typer.echo(f"warning: {message}", err=True)
+        else:
+            usual(message, category, *where, **more)
+
+    usual = warnings.showwarning
+    warnings.showwarning = show
+    try:
+        yield
+    finally:
+        warnings.showwarning = usual
 
 
 def _total(job: Job, captures: Sequence[str]) -> int | None:
@@ -177,8 +199,10 @@ def _print_result(result: Result, folder: Path) -> None:
         typer.echo(f"{result.place}: done before, nothing has changed since")
     else:
         typer.echo(f"{result.place}: {result.format}, {result.tally.bytes} bytes")
-    for name, amount in _amounts(result):
-        typer.echo(f"  {name:<24} {amount}")
+    amounts = _amounts(result)
+    width = max([24, *(len(name) for name, _ in amounts)])
+    for name, amount in amounts:
+        typer.echo(f"  {name:<{width}} {amount}")
     if not result.was_done:
         tables = [file for file in result.files if not file.endswith(".columns.json")]
         typer.echo(f"  wrote {len(tables)} files in {folder}")

@@ -18,7 +18,7 @@ import stat
 import sys
 import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from io import BufferedReader
@@ -163,14 +163,16 @@ def opened(
 
     `advance` is told of the bytes that were read from the file. Raises ConvertError.
     """
-    with _translated(source.place), open_stream(source.place) as stream:
-        counted = _Counted(stream, advance)
-        head = counted.peek(_HEAD)
-        packing = _packing(head)
-        unpacked = _Counted(_unpacking(counted, packing))
-        found = kind or _kind(unpacked.peek(_HEAD), source.place)
+    with ExitStack() as opening:
+        with _translated(source.place):
+            stream = opening.enter_context(open_stream(source.place))
+            counted = _Counted(stream, advance)
+            packing = _packing(counted.peek(_HEAD))
+            unpacked = _Counted(_unpacking(counted, packing))
+            found = kind or _kind(unpacked.peek(_HEAD), source.place)
         pieces = _pieces(unpacked)
         chunks = _chunks(pieces, found, sender, senders, complain, source.place)
+        # What goes wrong in between, as writing does, is not the capture's fault.
         yield Capture(Format(found, packing), _named(chunks, source.place))
 
 

@@ -135,8 +135,10 @@ def _convert_one(
                 writer.close()
             _make_room(job, f"{name}.{job.format}", pending.relatives, state)
             files = pending.commit()
-    except BaseException:
+    except BaseException as error:
         pending.discard()
+        if isinstance(error, OSError) and error.filename is None:
+            error.filename = str(job.folder)  # As when the disk is full.
         raise
     return Done(stamp, files, tally, str(capture.format), lost)
 
