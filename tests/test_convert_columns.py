@@ -16,7 +16,8 @@ from corpus import portions
 from test_json_lines import capture_of
 
 np = pytest.importorskip("numpy")
-pytest.importorskip("pyarrow")
+pa = pytest.importorskip("pyarrow")
+parquet = pytest.importorskip("pyarrow.parquet")
 
 from protogen.convert import cells  # noqa: E402
 from protogen.convert.arrays import Lists, Numbers, Octets  # noqa: E402
@@ -147,6 +148,30 @@ def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | Non
         assert rows_of(found) == rows_of(expected)
         assert arrow_rows(found) == arrow_rows(expected)
         assert lines_of(found) == lines_of(expected)
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_lists_that_are_always_empty(tmp_path: Path, engine: str | None) -> None:
+    path = tmp_path / "great.yaml"
+    fields = """{
+      n: uint8,
+      numbers: {type: uint16, count: 0},
+      scaled: {type: uint16, count: 0, scale: 2, unit: m},
+      structs: {count: 0, fields: {x: uint8, name: {type: ascii, size: 3}}},
+      inner: {count: 2, fields: {x: uint8, more: {type: uint8, count: 0}}},
+      bytes: {type: bytes, size: 0}}"""
+    scaled = GREAT.index("  scaled:")
+    path.write_text(GREAT[:scaled] + f"  empty: {{id: 3, from: one, fields: {fields}}}\n")
+    data = b"\x5a\xa5\x03\x03\x01\x02\x03" * 3
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    assert len(rows_of(expected)["empty"]) == 3
+    assert rows_of(found) == rows_of(expected)
+    assert arrow_rows(found) == arrow_rows(expected)
+    for rows in (rows for batch in found for rows in batch.rows()):
+        table = pa.Table.from_batches([batch_of(rows, schema_of(rows.table, {}))])
+        parquet.write_table(table, tmp_path / "rows.parquet")
+        assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == table.to_pylist()
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)

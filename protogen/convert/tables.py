@@ -68,7 +68,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """Several values of one kind; `count` where there are always as many."""
+    """Several values of one kind; `count` where there are always as many, and not none."""
 
     element: ColumnType
     count: int | None
@@ -350,7 +350,8 @@ def column_type(type: Type) -> ColumnType:
         case Octets():
             return BYTES
         case Array(element=element, extent=extent):
-            count = extent.count if isinstance(extent, Fixed) else None
+            # Arrow knows lists that are always empty only if their type does not say so.
+            count = (extent.count or None) if isinstance(extent, Fixed) else None
             return Listed(column_type(element), count)
         case Struct(fields=fields):
             return Record(tuple((item.name, column_type(item.type)) for item in fields))
