@@ -334,6 +334,34 @@ def test_a_single_frame_has_the_same_outcome(path: Path, sender: str) -> None:
             assert read(data, "fast") == read(data, "construct")
 
 
+def test_a_payload_that_is_not_stuffed_stays_as_it_is(tmp_path: Path) -> None:
+    """What is stuffed may end in front of the payload."""
+    path = tmp_path / "head.yaml"
+    path.write_text("""
+protocol: head
+title: A head that is stuffed
+endpoints: {one: One side}
+frame:
+  sync: {literal: {hex: 7E}, unprotected: sync_in_data}
+  length: {type: uint8, counts: [payload]}
+  id: {type: uint8, id: true}
+  payload: {}
+transparency: {preset: hdlc, covers: id..id}
+messages:
+  data: {id: 0x7D, from: one, fields: unspecified, min_size: 1}
+decisions:
+  sync_in_data: {question: Is it protected?, document: No., choice: Accept., because: It is rare.}
+""")
+    module = module_at(path)
+    message = module.Data(data=b"\x7d\x01\x7e")
+    for engine in ("fast", "construct"):
+        assert module.encode(message, "one", engine=engine) == b"\x7e\x03\x7d\x5d\x7d\x01\x7e"
+    wire = module.encode(message, "one") * 2
+    due = shown(events_of(path, "one", "construct", [wire]))
+    assert len(due) == 2
+    assert shown(events_of(path, "one", "fast", [wire])) == due
+
+
 def test_another_engine() -> None:
     module = module_at(DOCUMENTS[0])
     sender = next(iter(module.PROTOCOL.senders))

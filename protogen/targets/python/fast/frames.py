@@ -90,14 +90,22 @@ class FastFrame:
 
     def _regions(self) -> tuple[int, bool, int]:
         """Bytes in front of what is stuffed, whether anything is, and bytes behind it."""
+        covered = self._covered_by_stuffing
+        if not covered:
+            return 0, False, 0
+        before = sum(map(fixed_size, self.parts[: covered.start]))
+        return before, True, sum(map(fixed_size, self.parts[covered.stop :]))
+
+    @property
+    def _covered_by_stuffing(self) -> range:
+        """The places of the parts that are stuffed; none where nothing is."""
         transparency = self.sender.frame.transparency
         if transparency is None:
-            return 0, False, 0
+            return range(0)
         names = [part.name for part in self.parts]
         first = names.index(transparency.first)
         last = names.index(transparency.last) if transparency.last in names else len(names) - 1
-        before = sum(map(fixed_size, self.parts[:first]))
-        return before, True, sum(map(fixed_size, self.parts[last + 1 :]))
+        return range(first, last + 1)
 
     def sends(self, message: Message) -> bool:
         """Whether the sender sends the message."""
@@ -148,7 +156,7 @@ class FastFrame:
         if not self.stuffed:
             return True
         starts_in_front = isinstance(self.start, AfterEnd) or self.before > 0
-        return starts_in_front and self.before <= self.head_size and self.behind <= self.tail_size
+        return starts_in_front and len(self.head) in self._covered_by_stuffing
 
     @property
     def can_wait(self) -> bool:
