@@ -44,8 +44,8 @@ def _computed(meaning: Physical, values: Array) -> Array:
         whole = values.astype("f8")
         if meaning.times != 1:
             whole *= meaning.times
-        if meaning.plus:
-            whole += meaning.plus
+        if meaning.plus or meaning.times < 0:
+            whole += meaning.plus  # A fraction has no negative zero: adding 0 makes it one.
         return whole / meaning.over
     plain = Physical(meaning.scale, meaning.offset, frozenset(), is_float=False)
     flat = [plain.of(value) for value in values.reshape(-1).tolist()]
