@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import struct
 from fractions import Fraction
@@ -172,6 +173,42 @@ def test_hold_lists_that_are_always_empty(tmp_path: Path, engine: str | None) ->
         table = pa.Table.from_batches([batch_of(rows, schema_of(rows.table, {}))])
         parquet.write_table(table, tmp_path / "rows.parquet")
         assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == table.to_pylist()
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_are_chosen_by_what_is_in_front(tmp_path: Path, engine: str | None) -> None:
+    """A struct's field may have the name of one around it, which chooses until then.
+
+    Here that has another name in the table, too, because a part of the frame has its own.
+    """
+    path = tmp_path / "great.yaml"
+    fields = """
+      id: {type: uint8, values: {a: 1, b: 2}}
+      count: uint8
+      inner:
+        fields:
+          first: {switch: id, cases: {a: uint8, b: sint8}}
+          id: {type: uint8, values: {a: 1, b: 2}}
+          second: {switch: id, cases: {a: uint8, b: sint8}}
+          list: {type: uint8, count: count}
+          count: uint8
+          names: {count: count, fields: {x: uint8}}
+"""
+    scaled = GREAT.index("  scaled:")
+    path.write_text(f"{GREAT[:scaled]}  inside:\n    id: 3\n    from: one\n    fields:{fields}")
+    payloads = [
+        bytes((first, 2, 200, second, 201, 7, 8, 3, 4, 5, 6))
+        for first in (1, 2)
+        for second in (1, 2)
+    ]
+    data = b"".join(b"\x5a\xa5\x03" + bytes((len(it),)) + it for it in payloads)
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    chosen = [json.loads(line)["fields"]["inner"]["first"]["value"] for line in lines_of(expected)]
+    assert chosen == [200, 200, -56, -56]
+    assert rows_of(found) == rows_of(expected)
+    assert arrow_rows(found) == arrow_rows(expected)
+    assert lines_of(found) == lines_of(expected)
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)

@@ -142,17 +142,16 @@ def _counted_anew(column: Column, renamed: dict[str, str]) -> Column:
 def _chosen_anew(shape: Shape, renamed: dict[str, str]) -> Shape:
     match shape:
         case Record(columns=columns):
-            inside = {old: new for old, new in renamed.items() if old not in _names(columns)}
-            return replace(shape, columns=tuple(_counted_anew(item, inside) for item in columns))
+            inside, found = dict(renamed), []
+            for item in columns:
+                found.append(_counted_anew(item, inside))
+                inside.pop(item.name, None)  # What is behind it finds this one.
+            return replace(shape, columns=tuple(found))
         case Choice(selector=str(selector)):
             cases = tuple((value, _counted_anew(case, renamed)) for value, case in shape.cases)
             return replace(shape, selector=renamed.get(selector, selector), cases=cases)
         case _:
             return shape
-
-
-def _names(columns: Iterable[Column]) -> set[str]:
-    return {item.name for item in columns}
 
 
 def _free(name: str, taken: Sequence[str]) -> str:

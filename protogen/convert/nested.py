@@ -7,9 +7,9 @@ each case's rows. `plain_rows.py` says the same row by row.
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, takewhile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -207,7 +207,8 @@ def _reach(
     column = _held(item, columns)
     if column is None:
         return Same(reached(constant(item, item.type), path[1:]), len(rows))
-    scope = around.new_child(_numbers(columns, rows))
+    in_front = takewhile(lambda other: other is not column, columns)
+    scope = around.new_child(_numbers(in_front, rows))
     held = rows[column.name]
     return _inside(path[1:], item, item.type, column, held, scope)
 
@@ -230,7 +231,7 @@ def _held(item: Field, columns: Sequence[Column]) -> Column | None:
     return next((c for c in columns if c.role == "field" and c.source == item.name), None)
 
 
-def _numbers(columns: Sequence[Column], rows: Any) -> dict[str, Array]:
+def _numbers(columns: Iterable[Column], rows: Any) -> dict[str, Array]:
     """What counts or chooses, by the names of fields and columns."""
     found = {}
     for column in columns:
