@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import struct
 from dataclasses import replace
 from pathlib import Path
@@ -21,8 +22,9 @@ np = pytest.importorskip("numpy")
 from protogen.convert.arrays import Numbers  # noqa: E402
 from protogen.convert.batches import Rows  # noqa: E402
 from protogen.convert.csv_writer import CsvWriter  # noqa: E402
+from protogen.convert.nested import ListsOf, Structs  # noqa: E402
 from protogen.convert.outputs import Pending  # noqa: E402
-from protogen.convert.printed_csv import CsvPrinter  # noqa: E402
+from protogen.convert.printed_csv import CsvPrinter, json_texts  # noqa: E402
 from protogen.convert.programs import PLAIN, QUOTED, Programs, operand  # noqa: E402
 from protogen.convert.tables import TEXT, tables_of  # noqa: E402
 from protogen.convert.writers import write_all  # noqa: E402
@@ -163,6 +165,16 @@ def test_csv_puts_in_quotes_what_csv_does(tmp_path: Path) -> None:
     printer = CsvPrinter(lambda column, values: values)
     found = b"".join(printer.lines(replace(rows, columns=[offsets, texts])))
     assert found.decode() == expected.getvalue()
+
+
+@pytest.mark.parametrize("counts", [[0, 0], [2, 0], [1, 2]])
+def test_lists_in_lists_may_all_be_empty(counts: list[int]) -> None:
+    """Then there is no struct that has the inner ones."""
+    inside = np.arange(sum(counts)) % 2
+    innermost = Structs({"y": Numbers(np.arange(sum(inside)))}, sum(inside))
+    inner = Structs({"x": ListsOf(innermost, inside)}, sum(counts))
+    lists = ListsOf(inner, np.array(counts))
+    assert json_texts(lists, str) == [json.dumps(value) for value in lists.tolist()]
 
 
 def test_without_a_compiler_csv_is_the_same(

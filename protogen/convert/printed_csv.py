@@ -7,6 +7,7 @@ import io
 import json
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -196,8 +197,7 @@ def json_texts(values: Any, default: Callable[[Any], str]) -> list[str]:
     match values:
         case ListsOf(elements=elements, counts=counts):
             texts, ends = json_texts(elements, default), np.cumsum(counts).tolist()
-            starts = [0, *ends[:-1]]
-            pairs = zip(starts, ends, strict=True)
+            pairs = pairwise([0, *ends])
             return ["[" + ", ".join(texts[start:end]) + "]" for start, end in pairs]
         case Structs(members=members) if members:
             names = (json.dumps(name).replace("%", "%%") for name in members)
