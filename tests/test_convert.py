@@ -372,6 +372,29 @@ class TestErrors:
         assert lines[0].startswith("warning: captures are read in Python, which is slow: there is")
         assert lines[1].startswith(f"{capture}: raw bytes")
 
+    def test_what_parquet_has_no_place_for(self, tmp_path: Path) -> None:
+        schema, capture = tmp_path / "empty.yaml", tmp_path / "run.bin"
+        schema.write_text("""
+protocol: empty
+title: Structs without members
+endpoints: {one: One side}
+frame:
+  sync: {literal: {hex: 5A A5}, unprotected: sync_in_data}
+  length: {type: uint8, counts: payload}
+  id: {type: uint8, id: true}
+  payload: {}
+messages:
+  items: {id: 1, from: one, fields: {a: uint8, list: {count: 2, fields: {}}}}
+decisions:
+  sync_in_data: {question: Is it protected?, document: No., choice: Accept., because: It is rare.}
+""")
+        capture.write_bytes(b"\x5a\xa5\1\1\7")
+        done = run("convert", str(schema), str(capture), "--to", "parquet",
+                   "-o", str(tmp_path / "out"))  # fmt: skip
+        assert done.exit_code == 2
+        assert "Parquet has no place for what items holds" in done.output.replace("\n", " ")
+        assert not list((tmp_path / "out").rglob("*.partial"))
+
     def test_a_file_of_somebody_else_stays(self, sink: Path, tmp_path: Path) -> None:
         (tmp_path / "run.bin").write_bytes(b"noise")
         theirs = tmp_path / "out" / "run.jsonl"

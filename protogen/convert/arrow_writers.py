@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from protogen.convert.arrow_tables import batch_of, schema_of
 from protogen.convert.batches import Batch
-from protogen.convert.errors import needed
+from protogen.convert.errors import ConvertError, needed
 from protogen.convert.outputs import Pending
 from protogen.convert.tables import Names, Table
 
@@ -102,5 +102,12 @@ class ParquetWriter(ArrowWriter):
             # A reader looks for places and times; bounds of all else cost more than they help.
             "write_statistics": [table.frame_columns[0].name, table.frame_columns[2].name],
         }
-        writer = self._files.enter_context(parquet.ParquetWriter(str(path), schema, **options))
+        try:
+            writer = parquet.ParquetWriter(str(path), schema, **options)
+        except NotImplementedError as error:  # It has no structs without members.
+            raise ConvertError(
+                f"Parquet has no place for what {table.name} holds: {error}",
+                "convert to another format, such as arrow",
+            ) from None
+        self._files.enter_context(writer)
         return lambda rows: writer.write_table(rows, row_group_size=_MOST_ROWS)
