@@ -29,18 +29,6 @@ class Pairs(dict[int, int]):
         return value
 
 
-class PairCodes(dict[int, int]):
-    """The other way: what `struct` writes as 16 bits for an integer."""
-
-    def __init__(self, bits: int, signed: bool, order: ByteOrder) -> None:
-        super().__init__()
-        self._number = Number(bits, signed, order, seven_bit=True)
-
-    def __missing__(self, value: int) -> int:
-        self[value] = code = int.from_bytes(self._number.encode(value), self._number.order)
-        return code
-
-
 @lru_cache(16)
 def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
     """The integer for each 16 bits of two bytes with clear top bits; None where there is none."""
@@ -58,7 +46,7 @@ def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
 
 @lru_cache(16)
 def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]]:
-    """What `Pairs` and `PairCodes` find, of all integers: plain dictionaries are faster."""
+    """The integer of each code that `Pairs` reads, and the code of each integer."""
     great = 1 << bits
     codes = [raw + (raw & 0x3F80) for raw in range(great)]
     values = [*range(great // 2), *range(-great // 2, 0)] if signed else range(great)
