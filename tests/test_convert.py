@@ -14,6 +14,7 @@ from compiled import DOCUMENTS, module_at, name_of, protocol_of
 from test_json_lines import capture_of
 
 from protogen.convert.errors import ConvertError, needed
+from protogen.convert.mcap_writer import json_schema
 from protogen.convert.tables import tables_of
 
 pytest.importorskip("pyarrow")
@@ -233,7 +234,8 @@ def test_mcap_has_a_topic_with_a_json_schema_for_each_message(
         for schema, channel, message in reader.iter_messages(log_time_order=False):
             assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
             row = json.loads(message.data, parse_constant=pytest.fail)
-            jsonschema.validate(row, json.loads(schema.data))
+            jsonschema.validate(row, as_2020_12(json.loads(schema.data)))
+            assert None not in row.values()
             _, _, by, name = channel.topic.split("/")
             assert by == sender
             size = row["_size"] if name == "lists" else row["size"]
@@ -243,6 +245,103 @@ def test_mcap_has_a_topic_with_a_json_schema_for_each_message(
             offsets.append(row["offset"])
     assert found == frame_facts(events_of(sink, sender, data))
     assert offsets == sorted(offsets)
+
+
+def as_2020_12(schema: dict[str, Any]) -> dict[str, Any]:
+    """A schema with the `nullable` of OpenAPI 3.0 in the words that the validator knows."""
+    plain = {key: value for key, value in schema.items() if key != "nullable"}
+    if "properties" in plain:
+        members = plain["properties"].items()
+        plain["properties"] = {name: as_2020_12(member) for name, member in members}
+    if "items" in plain:
+        plain["items"] = as_2020_12(plain["items"])
+    return {"anyOf": [plain, {"type": "null"}]} if schema.get("nullable") else plain
+
+
+def assert_foxglove_reads(schema: dict[str, Any]) -> None:
+    """Foxglove Studio refuses a topic whose schema has another type, or more than one.
+
+    Its source has the rules: packages/mcap-support/src/parseJsonSchema.ts.
+    """
+    assert schema["type"] == "object"
+    for member in schema["properties"].values():
+        assert not {"oneOf", "contentEncoding"} & set(member)
+        inner = member
+        if member["type"] == "array":
+            inner = member["items"]
+            assert "contentEncoding" not in inner
+        if inner["type"] == "object":
+            assert_foxglove_reads(inner)
+        else:
+            assert inner["type"] in ("boolean", "string", "number", "integer")
+
+
+@pytest.mark.parametrize(("path", "sender"), DOCUMENT_SENDERS, ids=str)
+def test_foxglove_reads_the_schema_of_each_topic(path: Path, sender: str) -> None:
+    protocol = protocol_of(path)
+    for table in tables_of(protocol, protocol.sender(sender)).all_tables:
+        assert_foxglove_reads(json_schema(table))
+
+
+def test_what_has_no_value_is_left_out_of_mcap(tmp_path: Path) -> None:
+    schema = tmp_path / "gaps.yaml"
+    schema.write_text(
+        """protocol: gaps
+title: Gaps
+endpoints: {board: Board}
+byte_order: little
+frame:
+  start: {literal: 0xAA, unprotected: bare}
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: [id, payload]}
+decisions:
+  bare: {question: Is the start kept out of data?, document: silent, choice: no, because: A test}
+types:
+  turn:
+    fields:
+      kind: uint8
+      value: {switch: kind, cases: {1: uint8, 2: float32}}
+messages:
+  readings:
+    id: 1
+    from: board
+    fields:
+      heading: {type: uint8, scale: 2, unit: deg, special: {lost: 255}}
+      ranges: {type: uint8, count: 3, scale: 2, unit: mm, special: {nothing: 0}}
+      warmth: {type: float32}
+      turns: {type: turn, count: 2}
+"""
+    )
+    payload = bytes.fromhex(
+        "ff"  # heading: lost
+        "01 00 02"  # ranges: 2 mm, nothing, 4 mm
+        "00 00 c0 7f"  # warmth: not a number
+        "01 07"  # turns: kind 1 with an integer
+        "02 00 00 c0 7f"  # kind 2 with a float that is none
+    )
+    frame = bytes((0xAA, 1, *payload, (1 + sum(payload)) & 0xFF))
+    (tmp_path / "run.bin").write_bytes(frame)
+    convert(schema, "board", tmp_path / "run.bin", "mcap", tmp_path / "out")
+    with (tmp_path / "out" / "run.mcap").open("rb") as file:
+        ((found, _, message),) = mcap_reader.make_reader(file).iter_messages()
+    row = json.loads(message.data)
+    assert row == {
+        "offset": 0,
+        "size": 18,
+        "heading": 255,
+        "ranges": [1, 0, 2],
+        "ranges_mm": [2.0, None, 4.0],
+        "turns": [
+            {"kind": 1, "value": {"case_1": {"value": 7}}},
+            {"kind": 2, "value": {"case_2": {}}},
+        ],
+    }
+    described = json.loads(found.data)
+    pytest.importorskip("jsonschema").validate(row, as_2020_12(described))
+    assert_foxglove_reads(described)
+    assert "heading" in described["required"]
+    assert {"t_ns", "heading_deg", "warmth"}.isdisjoint(described["required"])
 
 
 def test_the_summary_counts_messages_and_invalid_bytes(sink: Path, tmp_path: Path) -> None:

@@ -4,6 +4,10 @@ Topics are `/PROTOCOL/SENDER/MESSAGE`. A message has all columns of its table: `
 `heading_deg`. The log's time is when the frame's last byte came. A capture without times gets the
 time that its bytes take on the line at the schema's baud rate, from 1970-01-01 on; without one, a
 microsecond a byte. What is no frame is in the topics `unknown_frames` and `invalid_spans`.
+
+Foxglove takes a JSON Schema only if each `type` is one word, so a type can't be "integer or null".
+A member without a value is therefore left out of its message. Elements of a list keep their places:
+one without a value is null, and the list's `items` are `nullable`, in the words of OpenAPI 3.0.
 """
 
 from __future__ import annotations
@@ -54,11 +58,11 @@ class McapWriter:
         channel = self._channels.get(table.name) or self._open(table)
         names = [column.name for column in table.all_columns]
         columns = [as_list(values) for values in rows.columns]
+        known = not any(_may_miss(column.type) for column in table.all_columns)
         messages = []
         for row in zip(*columns, strict=True):
             offset, size, when = row[:3]
-            data = json.dumps(dict(zip(names, row, strict=True)), default=_hex).encode()
-            data = data if b"NaN" not in data and b"Infinity" not in data else _finite(names, row)
+            data = _message(names, row, known=known)
             time = self._time_of(offset + size) if when is None else when
             messages.append((offset, time, channel, data))
         return messages
@@ -89,67 +93,87 @@ def _hex(value: Any) -> str:
     return bytes(value).hex()
 
 
-def _finite(names: list[str], row: tuple[Any, ...]) -> bytes:
-    """The message without not-a-number and infinities, for which JSON has no numbers."""
-    values = {name: _shown(value) for name, value in zip(names, row, strict=True)}
-    return json.dumps(values, default=_hex).encode()
+def _message(names: list[str], row: tuple[Any, ...], *, known: bool) -> bytes:
+    """A row without the columns that have no value. `known`: what lists hold is all there."""
+    values = {name: value for name, value in zip(names, row, strict=True) if value is not None}
+    data = json.dumps(values if known else _present(values), default=_hex).encode()
+    if b"NaN" in data or b"Infinity" in data:
+        return json.dumps(_present(values), default=_hex).encode()
+    return data
 
 
-def _shown(value: Any) -> Any:
+def _present(value: Any) -> Any:
+    """The value without members that are missing; JSON has no infinities and not-a-number."""
     match value:
         case float() if value - value != 0:
             return None
         case list():
-            return [_shown(item) for item in value]
+            return [_present(item) for item in value]
         case dict():
-            return {name: _shown(item) for name, item in value.items()}
+            members = {name: _present(item) for name, item in value.items()}
+            return {name: item for name, item in members.items() if item is not None}
         case _:
             return value
 
 
+def _may_miss(type: ColumnType) -> bool:
+    """Whether members of what a list holds may be missing."""
+    match type:
+        case Record(members=members, gaps=gaps):
+            return gaps or any(_may_miss(member) for _, member in members)
+        case Listed(element=element):
+            return _may_miss(element)
+        case _:
+            return False
+
+
 def json_schema(table: Table) -> dict[str, Any]:
     """The JSON Schema of a table's rows."""
-    properties = {column.name: _property(column) for column in table.all_columns}
+    always = [column.name for column in table.all_columns if _is_always_there(column)]
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": table.name,
         "description": table.facts.get("protogen.doc", ""),
         "type": "object",
-        "properties": properties,
-        "required": list(properties),
+        "properties": {column.name: _property(column) for column in table.all_columns},
+        "required": always,
     }
 
 
+def _is_always_there(column: Column) -> bool:
+    return not column.nullable and not _is_float(column.type)
+
+
+def _is_float(type: ColumnType) -> bool:
+    # One that is no number has no value in JSON.
+    return isinstance(type, Scalar) and type.kind in ("float32", "float64")
+
+
 def _property(column: Column) -> dict[str, Any]:
-    shape = _shape(column.type, nullable=column.nullable)
     facts = dict(column.facts)
     text = facts.pop("doc", "")
     unit = f"[{facts['unit']}]" if "unit" in facts else ""
     described = " ".join(word for word in (text, unit) if word)
     extras = {f"x-{key}": value for key, value in facts.items()}
-    return {**shape, **({"description": described} if described else {}), **extras}
+    return {**_shape(column.type), **({"description": described} if described else {}), **extras}
 
 
-def _shape(type: ColumnType, *, nullable: bool) -> dict[str, Any]:
+def _shape(type: ColumnType) -> dict[str, Any]:
     match type:
         case Names(texts=texts):
-            return {"type": _or_null("string", nullable), "enum": [*texts, *[None][:nullable]]}
-        case Listed(element=element):
-            # An element may be missing as well: a special value, or a case that was not chosen.
-            return {"type": _or_null("array", nullable), "items": _shape(element, nullable=True)}
+            return {"type": "string", "enum": [*texts]}
+        case Listed(element=element, gaps=gaps):
+            empty = {"nullable": True} if gaps or _is_float(element) else {}
+            return {"type": "array", "items": {**_shape(element), **empty}}
         case Record(members=members):
-            shapes = {name: _shape(member, nullable=True) for name, member in members}
-            return {"type": _or_null("object", nullable), "properties": shapes}
+            return {
+                "type": "object",
+                "properties": {name: _shape(member) for name, member in members},
+            }
         case Scalar(kind="bool"):
-            return {"type": _or_null("boolean", nullable)}
+            return {"type": "boolean"}
         case Scalar(kind="text" | "bytes"):
-            return {"type": _or_null("string", nullable)}
+            return {"type": "string"}
         case Scalar(kind="float32" | "float64"):
-            # A float that is no number is null.
-            return {"type": _or_null("number", nullable=True)}
+            return {"type": "number"}
         case Scalar():
-            return {"type": _or_null("integer", nullable)}
-
-
-def _or_null(type: str, nullable: bool) -> str | list[str]:
-    return [type, "null"] if nullable else type
+            return {"type": "integer"}
