@@ -5,7 +5,9 @@ from __future__ import annotations
 import gzip
 import io
 import json
+from collections.abc import Callable
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -227,11 +229,10 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("name", "content", "problem"),
         [
-            ("run.gz", packed(FRAME)[:-9], "Compressed file ended"),
             ("run.gz", packed(FRAME)[:10] + b"\x07" * 20, "its compression is damaged"),
             ("run.hex", b"1B\n0", "line 2, column 1: `0` has an odd number"),
         ],
-        ids=["cut", "damaged", "odd"],
+        ids=["damaged", "odd"],
     )
     def test_a_damaged_file_is_told_by_name(
         self, schema: Path, name: str, content: bytes, problem: str
@@ -242,6 +243,33 @@ class TestCommand:
         assert done.exit_code == 2
         assert f"{path}: {problem}" in done.output
         assert not list((schema.parent / "out").rglob("*.jsonl"))
+
+    @pytest.mark.parametrize("pack", [packed, zstd], ids=["gzip", "zstd"])
+    @pytest.mark.parametrize("missing", [1, 9])
+    def test_what_was_packed_before_the_power_failed_is_read(
+        self, schema: Path, pack: Callable[[bytes], bytes], missing: int
+    ) -> None:
+        noise = Random(1).randbytes(100_000)  # Which nothing packs, so that there are more blocks.
+        path = schema.parent / "run.packed"
+        path.write_bytes(pack(FRAME) + pack(FRAME + noise)[:-missing])
+        done = run("convert", str(schema), str(path), *self.options(schema))
+        assert done.exit_code == 1
+        assert f"{path}: its compressed bytes end too early" in done.output
+        first, second = self.lines(schema, "run")[:2]
+        assert [first["event"], second["event"]] == ["message", "message"]
+        assert second["offset"] == len(FRAME)
+
+    def test_empty_members_and_padding_are_nothing(self, tmp_path: Path) -> None:
+        (tmp_path / "run.gz").write_bytes(packed(b"") + packed(FRAME) + bytes(512))
+        assert read(tmp_path / "run.gz")[:2] == ("raw bytes, gzip", FRAME)
+        (tmp_path / "run.zst").write_bytes(zstd(b"") + zstd(FRAME) + zstd(b""))
+        assert read(tmp_path / "run.zst")[:2] == ("raw bytes, zstd", FRAME)
+
+    @pytest.mark.parametrize("pack", [packed, zstd], ids=["gzip", "zstd"])
+    def test_large_files_of_few_bytes(self, tmp_path: Path, pack: Callable[[bytes], bytes]) -> None:
+        data = bytes(3 << 20) + b"end"
+        (tmp_path / "run.packed").write_bytes(pack(data))
+        assert read(tmp_path / "run.packed")[1] == data
 
     def test_damaged_zstd_is_told_by_name(self, schema: Path) -> None:
         path = schema.parent / "run.zst"

@@ -12,7 +12,6 @@ bytes are hex digits. All else is the raw bytes of the line.
 from __future__ import annotations
 
 import codecs
-import gzip
 import os
 import stat
 import sys
@@ -20,7 +19,6 @@ import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from enum import StrEnum
 from io import BufferedReader
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO, cast
@@ -29,6 +27,7 @@ from protogen.capture.record import MAGIC
 from protogen.convert.chunks import PIECE, Chunk, joined
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.kinds import InputKind
+from protogen.convert.packing import SUFFIXES, Packing, packing_of, unpacking
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import LINE, Complain, log_pieces
 
@@ -40,22 +39,12 @@ _READ = PIECE
 _LONGEST_LINE = 1 << 24
 
 
-class Packing(StrEnum):
-    """How a file is compressed."""
-
-    NONE = ""
-    GZIP = "gzip"
-    ZSTD = "zstd"
-
-
 _WORDS = {
     InputKind.RAW: "raw bytes",
     InputKind.HEX: "hex digits",
     InputKind.LOG: "a text log with times",
     InputKind.RECORD: "a recorded capture",
 }
-_MAGIC = {Packing.GZIP: b"\x1f\x8b", Packing.ZSTD: b"\x28\xb5\x2f\xfd"}
-_SUFFIX = {".gz": Packing.GZIP, ".zst": Packing.ZSTD}
 _KINDS = {".hex": InputKind.HEX}
 
 
@@ -81,7 +70,7 @@ class Source:
         if self.is_standard_input:
             return "stdin"
         path = PurePosixPath(self.place.partition("://")[2] or self.place)
-        if path.suffix in _SUFFIX:
+        if path.suffix in SUFFIXES:
             path = path.with_suffix("")
         return path.stem or "capture"
 
@@ -167,8 +156,8 @@ def opened(
         with _translated(source.place):
             stream = opening.enter_context(open_stream(source.place))
             counted = _Counted(stream, advance)
-            packing = _packing(counted.peek(_HEAD))
-            unpacked = _Counted(_unpacking(counted, packing))
+            packing = packing_of(counted.peek(_HEAD))
+            unpacked = _Counted(unpacking(counted, packing, complain))
             found = kind or _kind(unpacked.peek(_HEAD), source.place)
         pieces = _pieces(unpacked)
         chunks = _chunks(pieces, found, sender, senders, complain, source.place)
@@ -231,29 +220,13 @@ class _Counted(BufferedReader):
         """Leave the stream open: who opened it closes it."""
 
 
-def _packing(head: bytes) -> Packing:
-    return next(
-        (packing for packing, magic in _MAGIC.items() if head.startswith(magic)), Packing.NONE
-    )
-
-
-def _unpacking(stream: BufferedReader, packing: Packing) -> BinaryIO:
-    if packing is Packing.GZIP:
-        return cast(BinaryIO, gzip.GzipFile(fileobj=stream))
-    if packing is Packing.ZSTD:
-        zstandard = needed("zstandard", "a capture that zstd has compressed")
-        decompressor = zstandard.ZstdDecompressor()
-        return cast(BinaryIO, decompressor.stream_reader(stream, read_across_frames=True))
-    return cast(BinaryIO, stream)
-
-
 def _kind(head: bytes, place: str) -> InputKind:
     if head.startswith(MAGIC):
         return InputKind.RECORD
     if LINE.match(head.lstrip(b"\xef\xbb\xbf \t\r\n")):
         return InputKind.LOG
     path = PurePosixPath(place)
-    suffix = path.with_suffix("").suffix if path.suffix in _SUFFIX else path.suffix
+    suffix = path.with_suffix("").suffix if path.suffix in SUFFIXES else path.suffix
     return _KINDS.get(suffix, InputKind.RAW)
 
 

@@ -1,0 +1,158 @@
+"""Captures that gzip or zstd has compressed: their bytes, and whether any are missing at the end.
+
+A robot that loses its power leaves a file whose compression does not end. What was compressed
+before that is read, and the end that is missing is complained of.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from enum import StrEnum
+from io import BufferedReader, RawIOBase
+from typing import BinaryIO, Protocol, cast
+
+from protogen.convert.errors import needed
+from protogen.convert.textlog import Complain
+
+
+class Packing(StrEnum):
+    """How a file is compressed."""
+
+    NONE = ""
+    GZIP = "gzip"
+    ZSTD = "zstd"
+
+
+_MAGIC = {Packing.GZIP: b"\x1f\x8b", Packing.ZSTD: b"\x28\xb5\x2f\xfd"}
+SUFFIXES = {".gz": Packing.GZIP, ".zst": Packing.ZSTD}
+
+_READ = 1 << 16
+_MOST = 1 << 20
+"""The most bytes that gzip unpacks at once."""
+_SLICE = 1 << 10
+"""So many bytes of zstd are unpacked at once. They may be blocks of 128 kB of one byte, each packed
+into four."""
+
+
+def packing_of(head: bytes) -> Packing:
+    """How a file is compressed that begins with these bytes."""
+    return next(
+        (packing for packing, magic in _MAGIC.items() if head.startswith(magic)), Packing.NONE
+    )
+
+
+def unpacking(stream: BufferedReader, packing: Packing, complain: Complain) -> BinaryIO:
+    """The bytes that a stream has compressed. Reading raises `zlib.error` or zstd's `ZstdError`."""
+    match packing:
+        case Packing.GZIP:
+            return cast(BinaryIO, _Unpacked(stream, _Gzip, complain))
+        case Packing.ZSTD:
+            zstandard = needed("zstandard", "a capture that zstd has compressed")
+            decompressor = zstandard.ZstdDecompressor()
+            return cast(
+                BinaryIO,
+                _Unpacked(stream, lambda: _Zstd(decompressor.decompressobj()), complain),
+            )
+        case Packing.NONE:
+            return cast(BinaryIO, stream)
+
+
+class _Member(Protocol):
+    """One of the wholes that stand behind one another in a compressed file."""
+
+    def feed(self, data: bytes) -> tuple[bytes, bytes]:
+        """What the next bytes unpack to, and those of them that were not taken as yet."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its end was seen."""
+
+
+class _Gzip:
+    def __init__(self) -> None:
+        self._machine = zlib.decompressobj(wbits=16 + zlib.MAX_WBITS)  # 16: with gzip's head.
+
+    def feed(self, data: bytes) -> tuple[bytes, bytes]:
+        unpacked = self._machine.decompress(data, _MOST)
+        if self.is_whole:
+            return unpacked, self._machine.unused_data.lstrip(b"\0")  # A tape's padding.
+        return unpacked, self._machine.unconsumed_tail
+
+    @property
+    def is_whole(self) -> bool:
+        return self._machine.eof
+
+
+class _Frame(Protocol):
+    """What zstandard's `decompressobj` makes."""
+
+    eof: bool
+    unused_data: bytes
+
+    def decompress(self, data: bytes) -> bytes: ...
+
+
+class _Zstd:
+    def __init__(self, machine: _Frame) -> None:
+        self._machine = machine
+
+    def feed(self, data: bytes) -> tuple[bytes, bytes]:
+        unpacked = self._machine.decompress(data[:_SLICE])
+        unused = self._machine.unused_data if self.is_whole else b""
+        return unpacked, unused + data[_SLICE:]
+
+    @property
+    def is_whole(self) -> bool:
+        return self._machine.eof
+
+
+class _Unpacked(RawIOBase):
+    """The bytes of all members, one behind the other."""
+
+    def __init__(
+        self, stream: BufferedReader, member: Callable[[], _Member], complain: Complain
+    ) -> None:
+        self._stream = stream
+        self._new = member
+        self._complain = complain
+        self._member: _Member | None = None
+        self._packed = b""
+        self._ready = memoryview(b"")
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: object, /) -> int:
+        target = memoryview(cast(bytearray, buffer)).cast("B")
+        while not self._ready and self._unpack():
+            pass
+        size = min(len(target), len(self._ready))
+        target[:size] = self._ready[:size]
+        self._ready = self._ready[size:]
+        return size
+
+    def _unpack(self) -> bool:
+        """Unpack something more; False at the end."""
+        if not self._packed:
+            self._packed = self._stream.read1(_READ)
+        if not self._packed:
+            return self._end()
+        if self._member is None:
+            self._member = self._new()
+        unpacked, self._packed = self._member.feed(self._packed)
+        self._ready = memoryview(unpacked)
+        if self._member.is_whole:
+            self._member = None
+        return True
+
+    def _end(self) -> bool:
+        """The file is over; what is still inside the member was complained of before."""
+        if self._member is not None:
+            unpacked, _ = self._member.feed(b"")
+            self._ready = memoryview(unpacked)
+            if unpacked:
+                return True
+            self._complain("its compressed bytes end too early; all before that was read")
+            self._member = None
+        return False
