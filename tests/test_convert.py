@@ -443,17 +443,21 @@ class TestErrors:
         assert done.exit_code == 2
         assert f"error: {folder}" in done.output.replace("\n", "")
 
+    @pytest.mark.parametrize("frames", [200, 150_000], ids=["at the end", "on the way"])
     @pytest.mark.parametrize("to", FORMATS)
-    def test_a_full_disk_is_that_of_the_folder(self, sink: Path, tmp_path: Path, to: str) -> None:
+    def test_a_full_disk_is_that_of_the_folder(
+        self, sink: Path, tmp_path: Path, to: str, frames: int
+    ) -> None:
         """No file may grow beyond some bytes, which is told as a full disk is."""
         resource = pytest.importorskip("resource")
         capture, folder = tmp_path / "run.bin", tmp_path / "out"
-        capture.write_bytes(capture_of(sink, "board", 3, 400))
+        capture.write_bytes(bytes.fromhex("1B 02 45 00 00 45 1B 03") * frames)  # `empty`
         before = resource.getrlimit(resource.RLIMIT_FSIZE)
-        convert(sink, "board", capture, to, tmp_path / "other")  # Whatever has to be compiled.
+        (tmp_path / "one.bin").write_bytes(capture.read_bytes()[:8])
+        convert(sink, "pc", tmp_path / "one.bin", to, tmp_path / "other")  # What is compiled.
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
         try:
-            done = run("convert", str(sink), "--sender", "board", str(capture), "--to", to,
+            done = run("convert", str(sink), "--sender", "pc", str(capture), "--to", to,
                        "-o", str(folder))  # fmt: skip
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, before)

@@ -20,7 +20,7 @@ from tooling import require_tool
 np = pytest.importorskip("numpy")
 
 from protogen.convert.arrays import Numbers  # noqa: E402
-from protogen.convert.batches import Rows  # noqa: E402
+from protogen.convert.batches import Rows, Tally  # noqa: E402
 from protogen.convert.csv_writer import CsvWriter  # noqa: E402
 from protogen.convert.nested import ListsOf, Structs  # noqa: E402
 from protogen.convert.outputs import Pending  # noqa: E402
@@ -138,7 +138,7 @@ def test_a_nan_that_json_does_not_tell_has_its_bytes(bits: str) -> None:
 
 def csv_files(batches: list[Any], folder: Path) -> dict[str, bytes]:
     writer = CsvWriter("run", pending := Pending(folder))
-    write_all(writer, batches)
+    write_all(writer, batches, Tally())
     pending.commit()
     return {path.parent.name: path.read_bytes() for path in folder.glob("*/*.csv")}
 

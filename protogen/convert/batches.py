@@ -89,6 +89,13 @@ class BatchDecoder(Protocol):
         """Take the end of the capture; what remains."""
 
 
+def batches_of(decoder: BatchDecoder, chunks: Iterable[Chunk]) -> Iterator[Batch]:
+    """All batches of a capture, its end included."""
+    for chunk in chunks:
+        yield from decoder.feed(chunk)
+    yield from decoder.flush()
+
+
 # --- by events ------------------------------------------------------------------------------------
 
 

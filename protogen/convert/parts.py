@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any, BinaryIO, cast
 from uuid import uuid4
 
-from protogen.convert.batches import Tally
+from protogen.convert.batches import Tally, batches_of
 from protogen.convert.inputs import Source, open_stream, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, write_whole
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import open_writer
+from protogen.convert.writers import open_writer, write_all
 from protogen.model.protocol import Protocol
 from protogen.runtime.sender import SenderSpec
 
@@ -145,17 +145,8 @@ def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
     kind = None if part.input is None else InputKind(part.input)
     senders = [sender.name for sender in work.protocol.senders]
     decoder = open_decoder(tables, spec, work.engine)
-    try:
-        with opened(Source(part.place), kind, work.sender, senders, complaints.append) as capture:
-            for chunk in capture.chunks:
-                for batch in decoder.feed(chunk):
-                    tally.add(batch.tally)
-                    writer.write(batch)
-            for batch in decoder.flush():
-                tally.add(batch.tally)
-                writer.write(batch)
-    finally:
-        writer.close()
+    with opened(Source(part.place), kind, work.sender, senders, complaints.append) as capture:
+        write_all(writer, batches_of(decoder, capture.chunks), tally)
     return PartDone(part.name, START, END, tally, pending.relatives, complaints)
 
 
@@ -174,12 +165,7 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
             entry = guess_entry(stream, part.size, part.span[0], lead_of(tables), make)
         decoder = RangeDecoder(stream, part.size, part.span, entry, make)
         writer = open_writer(OutputFormat.PARQUET, part.name, pending, tables)
-        try:
-            for batch in decoder.batches():
-                tally.add(batch.tally)
-                writer.write(batch)
-        finally:
-            writer.close()
+        write_all(writer, decoder.batches(), tally)
     return PartDone(part.name, entry, decoder.exit, tally, pending.relatives)
 
 

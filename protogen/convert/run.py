@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from protogen.convert.batches import Batch, BatchDecoder, Tally
+from protogen.convert.batches import BatchDecoder, Tally, batches_of
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, names_of, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, remove
 from protogen.convert.state import Done, State
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import open_writer, require
+from protogen.convert.writers import open_writer, require, write_all
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.codec import Protocol as RuntimeProtocol
 
@@ -127,12 +127,7 @@ def _convert_one(
     try:
         with opened(source, job.input, job.sender.name, senders, lose, advance) as capture:
             writer = open_writer(job.format, name, pending, job.tables)
-            try:
-                for batch in _batches(job.decoder(), capture.chunks):
-                    tally.add(batch.tally)
-                    writer.write(batch)
-            finally:
-                writer.close()
+            write_all(writer, batches_of(job.decoder(), capture.chunks), tally)
             _make_room(job, f"{name}.{job.format}", pending.relatives, state)
             files = pending.commit()
     except BaseException as error:
@@ -141,12 +136,6 @@ def _convert_one(
             error.filename = str(job.folder)  # As when the disk is full.
         raise
     return Done(stamp, files, tally, str(capture.format), lost)
-
-
-def _batches(decoder: BatchDecoder, chunks: Any) -> Iterator[Batch]:
-    for chunk in chunks:
-        yield from decoder.feed(chunk)
-    yield from decoder.flush()
 
 
 def check_room(job: Job, state: State, files: Iterable[str]) -> None:

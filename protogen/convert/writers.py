@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import Protocol
 
-from protogen.convert.batches import Batch
+from protogen.convert.batches import Batch, Tally
 from protogen.convert.errors import needed
 from protogen.convert.kinds import OutputFormat
 from protogen.convert.outputs import Pending
@@ -59,10 +60,15 @@ def open_writer(format: OutputFormat, name: str, pending: Pending, tables: Table
             return McapWriter(name, pending, tables)
 
 
-def write_all(writer: Writer, batches: Iterable[Batch]) -> None:
-    """Write every batch, and close the writer whatever happens."""
+def write_all(writer: Writer, batches: Iterable[Batch], tally: Tally) -> None:
+    """Write every batch, count what is in them, and close the writer whatever happens."""
     try:
         for batch in batches:
+            tally.add(batch.tally)
             writer.write(batch)
-    finally:
-        writer.close()
+    except BaseException:
+        # What went wrong first is what counts: on a full disk, closing goes wrong as well.
+        with suppress(Exception):
+            writer.close()
+        raise
+    writer.close()
