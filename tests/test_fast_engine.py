@@ -28,6 +28,7 @@ from protogen.runtime.number import Number
 from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_tables
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
+RFLEX = next(path for path in DOCUMENTS if path.stem == "rflex")
 SEEDS = range(max(6, settings().max_examples // 10))
 
 
@@ -103,6 +104,52 @@ def test_clean_frames_are_cut_without_the_reference(
     events += decoder.flush()
     if [event.raw for event in events] == frames:  # Some frames are cut elsewhere, by any engine.
         assert taken_one_by_one <= 1
+
+
+@EVERY_SENDER
+def test_the_payload_of_an_event_is_that_of_its_message(path: Path, sender: str) -> None:
+    data = stream_of(material(path, sender), Random(5), 20).data
+    for engine in ("fast", "construct"):
+        for event in events_of(path, sender, engine, [data]):
+            if event.kind == "message":
+                again = type(event.message).from_payload(event.payload)
+                assert repr(again) == repr(event.message)
+
+
+class TestChecksumsOfManyFrames:
+    """An exclusive or is compared for many frames at once, after their events were made."""
+
+    def stream(self, wrong: tuple[int, ...]) -> bytes:
+        """Frames of several sizes, some of them with a wrong byte."""
+        flex = module_at(RFLEX)
+        frames = []
+        for number in range(700):
+            few = flex.ConfirmMotorCommand(unknown=1, timestamp=number, axis=0)
+            many = flex.ReadMotor(
+                unknown=number,
+                timestamp=number * 7919,
+                axis=1,
+                position=-number,
+                velocity=5,
+                acceleration=0,
+                torque=-1,
+            )
+            message = many if number % 90 else few
+            frame = bytearray(flex.encode(message, number=number & 0xFF))
+            if number in wrong:
+                frame[-6] ^= 0x40
+            frames.append(bytes(frame))
+        return b"".join(frames)
+
+    @pytest.mark.parametrize(
+        "wrong", [(), (0,), (1,), (254,), (255,), (256,), (257,), (699,), (3, 4, 300, 698)]
+    )
+    def test_the_same_events(self, wrong: tuple[int, ...]) -> None:
+        path, data = RFLEX, self.stream(wrong)
+        due = shown(events_of(path, "flex", "construct", [data]))
+        assert shown(events_of(path, "flex", "fast", [data])) == due
+        assert shown(events_of(path, "flex", "fast", portions(data, Random(3)))) == due
+        assert sum(item[0] == "message" for item in due) == 700 - len(wrong)
 
 
 CUT_BY_THE_REFERENCE = {("checksum_only", "station")}

@@ -644,14 +644,13 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             else:
                 payload = content[1:-1]
             if payload:
-                if content[-1] != _checksum.xor_of(content[:-1]):
+                if _checksum.xor_of(content):
                     return at
             event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = HOST_SENDER
             add(event)
             at = end
@@ -701,7 +700,7 @@ def _decode_host(data: bytes) -> _typing.Any:
     else:
         payload = content[1:-1]
     if payload:
-        if content[-1] != _checksum.xor_of(content[:-1]):
+        if _checksum.xor_of(content):
             raise _fast.Unclear
     return read(payload)
 
@@ -733,10 +732,10 @@ def _frame_host(payload: bytes, id_: int | None) -> bytes:
         content = _PACK_0(id_) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(id_) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
@@ -773,14 +772,13 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             else:
                 payload = content[1:-1]
             if payload:
-                if content[-1] != _checksum.xor_of(content[:-1]):
+                if _checksum.xor_of(content):
                     return at
             event: _typing.Any = _MessageEvent()
             event.message = read(payload)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = ROBOT_SENDER
             add(event)
             at = end
@@ -834,7 +832,7 @@ def _decode_robot(data: bytes) -> _typing.Any:
     else:
         payload = content[1:-1]
     if payload:
-        if content[-1] != _checksum.xor_of(content[:-1]):
+        if _checksum.xor_of(content):
             raise _fast.Unclear
     return read(payload)
 
@@ -866,10 +864,10 @@ def _frame_robot(payload: bytes, id_: int | None) -> bytes:
         content = _PACK_0(id_) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(id_) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
@@ -887,10 +885,10 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
         content = _PACK_0(83) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(83) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_gps(item: Gps, sender: str | None) -> bytes:
@@ -908,10 +906,10 @@ def _encode_gps(item: Gps, sender: str | None) -> bytes:
         content = _PACK_0(71) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(71) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_bump(item: Bump, sender: str | None) -> bytes:
@@ -929,10 +927,10 @@ def _encode_bump(item: Bump, sender: str | None) -> bytes:
         content = _PACK_0(66) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(66) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
@@ -950,10 +948,10 @@ def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
         content = _PACK_0(79) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(79) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_speed(item: Speed, sender: str | None) -> bytes:
@@ -971,10 +969,10 @@ def _encode_speed(item: Speed, sender: str | None) -> bytes:
         content = _PACK_0(79) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(79) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
@@ -992,10 +990,10 @@ def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
         content = _PACK_0(87) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(87) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_battery(item: Battery, sender: str | None) -> bytes:
@@ -1013,10 +1011,10 @@ def _encode_battery(item: Battery, sender: str | None) -> bytes:
         content = _PACK_0(98) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(98) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
@@ -1034,10 +1032,10 @@ def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
         content = _PACK_0(82) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(82) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
@@ -1055,10 +1053,10 @@ def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
         content = _PACK_0(72) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_robot)
+        return _fast.checked(wire, _cut_robot)
     content = _PACK_0(72) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_robot)
+    return _fast.checked(wire, _cut_robot)
 
 
 def _encode_motor(item: Motor, sender: str | None) -> bytes:
@@ -1072,10 +1070,10 @@ def _encode_motor(item: Motor, sender: str | None) -> bytes:
         content = _PACK_0(77) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(77) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _encode_steering(item: Steering, sender: str | None) -> bytes:
@@ -1089,10 +1087,10 @@ def _encode_steering(item: Steering, sender: str | None) -> bytes:
         content = _PACK_0(83) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(83) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
@@ -1106,10 +1104,10 @@ def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
         content = _PACK_0(82) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(82) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
@@ -1125,10 +1123,10 @@ def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
         content = _PACK_0(80) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(80) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _encode_power(item: Power, sender: str | None) -> bytes:
@@ -1142,10 +1140,10 @@ def _encode_power(item: Power, sender: str | None) -> bytes:
         content = _PACK_0(80) + payload
         content += _BYTES[_checksum.xor_of(content)]
         wire = content + b"\x0a"
-        return _fast.checked(wire, payload, _cut_host)
+        return _fast.checked(wire, _cut_host)
     content = _PACK_0(80) + payload
     wire = content + b"\x0a"
-    return _fast.checked(wire, payload, _cut_host)
+    return _fast.checked(wire, _cut_host)
 
 
 def _encode_laser(item: Laser, sender: str | None) -> bytes:

@@ -660,7 +660,6 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = HOST_SENDER
             add(event)
             at = end
@@ -789,7 +788,6 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = ROBOT_SENDER
             add(event)
             at = end

@@ -397,12 +397,12 @@ _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
 _CODES = _fast.Tables()
-_UNPACK_0 = _struct.Struct("<B").unpack
+_UNPACK_0 = _struct.Struct("<3xBx").unpack
 _MEMBERS_0 = _TABLES.members(RobotMode, 8)
-_UNPACK_1 = _struct.Struct("<hh").unpack
-_UNPACK_2 = _struct.Struct("<HH").unpack
+_UNPACK_1 = _struct.Struct("<3xhhx").unpack
+_UNPACK_2 = _struct.Struct("<3xHHx").unpack
 _MEMBERS_1 = _TABLES.members(GpsModeMode, 8)
-_UNPACK_3 = _struct.Struct("<BBHHhhHHHH").unpack
+_UNPACK_3 = _struct.Struct("<3xBBHHhhHHHHx").unpack
 _MEMBERS_2 = _TABLES.members(StatusStatus, 8)
 _STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
 _PACK_0 = _struct.Struct("<BBB").pack
@@ -413,14 +413,14 @@ _PACK_4 = _struct.Struct("<BBBBBHHhhHHHH").pack
 
 
 def _read_stop(data: bytes) -> Stop:
-    if len(data) != 0:
+    if len(data) != 4:
         raise _fast.Unclear
     item = _new(Stop)
     return item
 
 
 def _read_reset(data: bytes) -> Reset:
-    if len(data) != 0:
+    if len(data) != 4:
         raise _fast.Unclear
     item = _new(Reset)
     return item
@@ -459,14 +459,14 @@ def _read_gps_mode(data: bytes) -> GpsMode:
 
 
 def _read_ack(data: bytes) -> Ack:
-    if len(data) != 0:
+    if len(data) != 4:
         raise _fast.Unclear
     item = _new(Ack)
     return item
 
 
 def _read_nack(data: bytes) -> Nack:
-    if len(data) != 0:
+    if len(data) != 4:
         raise _fast.Unclear
     item = _new(Nack)
     return item
@@ -492,6 +492,7 @@ def _read_status(data: bytes) -> Status:
 
 
 def _read_gps(data: bytes) -> Gps:
+    data = data[3:-1]
     if not 0 <= len(data) <= 121:
         raise _fast.Unclear
     item = _new(Gps)
@@ -530,24 +531,20 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 if again != stuffed:
                     return at
             length = content[0]
-            if len(content) != length + 2:
+            if not 4 <= len(content) == length + 2 <= 125:
                 return at
-            if not 2 <= length <= 123:
-                return at
-            payload = content[3:-1]
             if _adler32(content, 0) & 0xFF:
                 return at
             numbers, read = _PC_HEADS[content[1:3]]
             if read is None:
-                add(_fast.unknown(PC_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(PC_SENDER, base + at, raw, numbers, content[3:-1]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = PC_SENDER
             add(event)
             at = end
@@ -595,17 +592,14 @@ def _decode_pc(data: bytes) -> _typing.Any:
         if again != stuffed:
             raise _fast.Unclear
     length = content[0]
-    if len(content) != length + 2:
+    if not 4 <= len(content) == length + 2 <= 125:
         raise _fast.Unclear
-    if not 2 <= length <= 123:
-        raise _fast.Unclear
-    payload = content[3:-1]
     if _adler32(content, 0) & 0xFF:
         raise _fast.Unclear
     _, read = _PC_HEADS[content[1:3]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_pc(data: bytes, at: int) -> bool:
@@ -679,24 +673,20 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
                 if again != stuffed:
                     return at
             length = content[0]
-            if len(content) != length + 2:
+            if not 4 <= len(content) == length + 2 <= 125:
                 return at
-            if not 2 <= length <= 123:
-                return at
-            payload = content[3:-1]
             if _adler32(content, 0) & 0xFF:
                 return at
             numbers, read = _ESP_HEADS[content[1:3]]
             if read is None:
-                add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(ESP_SENDER, base + at, raw, numbers, content[3:-1]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = ESP_SENDER
             add(event)
             at = end
@@ -741,17 +731,14 @@ def _decode_esp(data: bytes) -> _typing.Any:
         if again != stuffed:
             raise _fast.Unclear
     length = content[0]
-    if len(content) != length + 2:
+    if not 4 <= len(content) == length + 2 <= 125:
         raise _fast.Unclear
-    if not 2 <= length <= 123:
-        raise _fast.Unclear
-    payload = content[3:-1]
     if _adler32(content, 0) & 0xFF:
         raise _fast.Unclear
     _, read = _ESP_HEADS[content[1:3]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_esp(data: bytes, at: int) -> bool:

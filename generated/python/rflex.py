@@ -829,30 +829,30 @@ _TABLES = _fast.Tables()
 _CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
-_UNPACK_1 = _struct.Struct(">IIB").unpack
+_UNPACK_1 = _struct.Struct(">4xIIBx").unpack
 _MEMBERS_0 = _TABLES.members(SystemStatusBrake, 8)
-_UNPACK_2 = _struct.Struct("<B").unpack
-_UNPACK_3 = _struct.Struct(">BIIIB").unpack
+_UNPACK_2 = _struct.Struct("<4xBx").unpack
+_UNPACK_3 = _struct.Struct(">4xBIIIBx").unpack
 _MEMBERS_1 = _TABLES.members(Axis, 8)
 _MEMBERS_2 = _TABLES.members(MotorCommandDirection, 8)
-_UNPACK_4 = _struct.Struct(">II").unpack
-_UNPACK_5 = _struct.Struct(">IIBiiii").unpack
+_UNPACK_4 = _struct.Struct(">4xIIx").unpack
+_UNPACK_5 = _struct.Struct(">4xIIBiiiix").unpack
 _MEMBERS_3 = _fast.Members(StartStopMotorPacketsStartStop)
-_UNPACK_6 = _struct.Struct(">IiiB").unpack
+_UNPACK_6 = _struct.Struct(">4xIiiBx").unpack
 _MEMBERS_4 = _TABLES.members(JoystickDataButtons, 8)
-_UNPACK_7 = _struct.Struct(">IIBI").unpack
+_UNPACK_7 = _struct.Struct(">4xIIBIx").unpack
 _MEMBERS_5 = _fast.Members(StartStopSonarPacketsStartStop)
 _UNPACK_8 = _struct.Struct(">II").unpack_from
 _ITERATE_0 = _struct.Struct(">BH").iter_unpack
-_UNPACK_9 = _struct.Struct(">I").unpack
-_UNPACK_10 = _struct.Struct(">IBH").unpack
+_UNPACK_9 = _struct.Struct(">4xIx").unpack
+_UNPACK_10 = _struct.Struct(">4xIBHx").unpack
 _MEMBERS_6 = _fast.Members(IoValue)
-_UNPACK_11 = _struct.Struct(">III").unpack
+_UNPACK_11 = _struct.Struct(">4xIIIx").unpack
 _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
-_PACK_1 = _struct.Struct("<BBBB").pack
 _FROM_BYTES_0 = int.from_bytes
+_PACK_1 = _struct.Struct("<BBBB").pack
 _PACK_2 = _struct.Struct(">BBBBIIB").pack
 _PACK_3 = _struct.Struct("<BBBBB").pack
 _PACK_4 = _struct.Struct(">BBBBBIIIB").pack
@@ -883,7 +883,7 @@ def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
 
 
 def _read_request_system_status(data: bytes) -> RequestSystemStatus:
-    if len(data) != 0:
+    if len(data) != 5:
         raise _fast.Unclear
     item = _new(RequestSystemStatus)
     return item
@@ -918,14 +918,14 @@ def _read_confirm_motor_command(data: bytes) -> ConfirmMotorCommand:
 
 
 def _read_motor_0a(data: bytes) -> Motor0a:
-    if len(data) != 0:
+    if len(data) != 5:
         raise _fast.Unclear
     item = _new(Motor0a)
     return item
 
 
 def _read_motor_0c(data: bytes) -> Motor0c:
-    if len(data) != 0:
+    if len(data) != 5:
         raise _fast.Unclear
     item = _new(Motor0c)
     return item
@@ -966,7 +966,7 @@ def _read_confirm_start_stop_motor_packets(data: bytes) -> ConfirmStartStopMotor
 
 
 def _read_request_joystick_data(data: bytes) -> RequestJoystickData:
-    if len(data) != 0:
+    if len(data) != 5:
         raise _fast.Unclear
     item = _new(RequestJoystickData)
     return item
@@ -993,6 +993,7 @@ def _read_confirm_start_stop_sonar_packets(data: bytes) -> ConfirmStartStopSonar
 
 
 def _read_sonar_data(data: bytes) -> SonarData:
+    data = data[4:-1]
     if not 8 <= len(data) <= 254 or (len(data) - 8) % 3:
         raise _fast.Unclear
     item = _new(SonarData)
@@ -1050,48 +1051,68 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
+    unchecked: list[bytes] = []
+    are_many = size - at > 1024
     try:
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
-                return at
+                break
             end = data.find(b"\x1b\x03", at + 2)
             if end < 0:
-                return at
+                break
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 if len(raw) > 782:
-                    return at
+                    break
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
                 again = content.replace(b"\x1b", b"\x1b\x00")
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
-                    return at
+                    break
             length = content[3]
             if len(content) != length + 5:
-                return at
-            payload = content[4:-1]
-            if content[-1] != _checksum.xor_of(payload):
-                return at
+                break
+            if not are_many:
+                folded = _FROM_BYTES_0(content[4:], "little")
+                if len(content) > 36:
+                    folded ^= folded >> 1024
+                    folded ^= folded >> 512
+                    folded ^= folded >> 256
+                folded ^= folded >> 128
+                folded ^= folded >> 64
+                folded ^= folded >> 32
+                folded ^= folded >> 16
+                if (folded ^ folded >> 8) & 0xFF:
+                    break
             numbers, read = _LINUX_HEADS[content[0:3]]
             if read is None:
-                add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, content[4:-1]))
                 at = end
+                if are_many:
+                    unchecked.append(content)
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = LINUX_SENDER
             add(event)
             at = end
+            if are_many:
+                unchecked.append(content)
+                if len(unchecked) >= 256:
+                    if not _checksum.are_sound(unchecked, 4):
+                        break
+                    unchecked.clear()
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
+    if unchecked:
+        at = _checksum.in_order(at, base, events, unchecked, 4)
     return at
 
 
@@ -1143,13 +1164,21 @@ def _decode_linux(data: bytes) -> _typing.Any:
     length = content[3]
     if len(content) != length + 5:
         raise _fast.Unclear
-    payload = content[4:-1]
-    if content[-1] != _checksum.xor_of(payload):
+    folded = _FROM_BYTES_0(content[4:], "little")
+    if len(content) > 36:
+        folded ^= folded >> 1024
+        folded ^= folded >> 512
+        folded ^= folded >> 256
+    folded ^= folded >> 128
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    if (folded ^ folded >> 8) & 0xFF:
         raise _fast.Unclear
     _, read = _LINUX_HEADS[content[0:3]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_linux(data: bytes, at: int) -> bool:
@@ -1205,48 +1234,68 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     if not _TABLES.are_filled:
         _TABLES.fill()
     add = events.append
+    unchecked: list[bytes] = []
+    are_many = size - at > 1024
     try:
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
-                return at
+                break
             end = data.find(b"\x1b\x03", at + 2)
             if end < 0:
-                return at
+                break
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
                 if len(raw) > 782:
-                    return at
+                    break
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
                 again = content.replace(b"\x1b", b"\x1b\x00")
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
-                    return at
+                    break
             length = content[3]
             if len(content) != length + 5:
-                return at
-            payload = content[4:-1]
-            if content[-1] != _checksum.xor_of(payload):
-                return at
+                break
+            if not are_many:
+                folded = _FROM_BYTES_0(content[4:], "little")
+                if len(content) > 36:
+                    folded ^= folded >> 1024
+                    folded ^= folded >> 512
+                    folded ^= folded >> 256
+                folded ^= folded >> 128
+                folded ^= folded >> 64
+                folded ^= folded >> 32
+                folded ^= folded >> 16
+                if (folded ^ folded >> 8) & 0xFF:
+                    break
             numbers, read = _FLEX_HEADS[content[0:3]]
             if read is None:
-                add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, content[4:-1]))
                 at = end
+                if are_many:
+                    unchecked.append(content)
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = FLEX_SENDER
             add(event)
             at = end
+            if are_many:
+                unchecked.append(content)
+                if len(unchecked) >= 256:
+                    if not _checksum.are_sound(unchecked, 4):
+                        break
+                    unchecked.clear()
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
+    if unchecked:
+        at = _checksum.in_order(at, base, events, unchecked, 4)
     return at
 
 
@@ -1300,13 +1349,21 @@ def _decode_flex(data: bytes) -> _typing.Any:
     length = content[3]
     if len(content) != length + 5:
         raise _fast.Unclear
-    payload = content[4:-1]
-    if content[-1] != _checksum.xor_of(payload):
+    folded = _FROM_BYTES_0(content[4:], "little")
+    if len(content) > 36:
+        folded ^= folded >> 1024
+        folded ^= folded >> 512
+        folded ^= folded >> 256
+    folded ^= folded >> 128
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    if (folded ^ folded >> 8) & 0xFF:
         raise _fast.Unclear
     _, read = _FLEX_HEADS[content[0:3]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_flex(data: bytes, at: int) -> bool:

@@ -798,7 +798,6 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = HOST_SENDER
             add(event)
             at = end
@@ -898,7 +897,6 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = BRAIN_SENDER
             add(event)
             at = end

@@ -869,7 +869,6 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = HOST_SENDER
             add(event)
             at = end
@@ -970,7 +969,6 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = BRAIN_SENDER
             add(event)
             at = end

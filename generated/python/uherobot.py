@@ -259,8 +259,8 @@ _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
 _MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
 _UNPACK_2 = _struct.Struct(">2H").unpack_from
-_UNPACK_3 = _struct.Struct(">hh").unpack
-_UNPACK_4 = _struct.Struct(">hhh").unpack
+_UNPACK_3 = _struct.Struct(">2xhh").unpack
+_UNPACK_4 = _struct.Struct(">2xhhh").unpack
 _STUFFING_0 = _transparency.Base16Upper()
 _PACK_0 = _struct.Struct("<BB").pack
 _PACK_1 = _struct.Struct(">8H").pack
@@ -271,6 +271,7 @@ _PACK_5 = _struct.Struct(">BBhhh").pack
 
 
 def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
+    data = data[2:]
     if len(data) != 21:
         raise _fast.Unclear
     item = _new(MotorsServosLeds)
@@ -282,6 +283,7 @@ def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
 
 
 def _read_motors_two_servos(data: bytes) -> MotorsTwoServos:
+    data = data[2:]
     if len(data) != 8:
         raise _fast.Unclear
     item = _new(MotorsTwoServos)
@@ -321,22 +323,18 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]
-            if len(content) != length:
+            if not 2 <= len(content) == length <= 255:
                 return at
-            if not 2 <= length <= 255:
-                return at
-            payload = content[2:]
             numbers, read = _DAEMON_HEADS[content[1:2]]
             if read is None:
-                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, content[2:]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = DAEMON_SENDER
             add(event)
             at = end
@@ -377,15 +375,12 @@ def _decode_daemon(data: bytes) -> _typing.Any:
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
-    if len(content) != length:
+    if not 2 <= len(content) == length <= 255:
         raise _fast.Unclear
-    if not 2 <= length <= 255:
-        raise _fast.Unclear
-    payload = content[2:]
     _, read = _DAEMON_HEADS[content[1:2]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_daemon(data: bytes, at: int) -> bool:
@@ -438,22 +433,18 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]
-            if len(content) != length:
+            if not 2 <= len(content) == length <= 255:
                 return at
-            if not 2 <= length <= 255:
-                return at
-            payload = content[2:]
             numbers, read = _BOARD_HEADS[content[1:2]]
             if read is None:
-                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, content[2:]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = BOARD_SENDER
             add(event)
             at = end
@@ -492,15 +483,12 @@ def _decode_board(data: bytes) -> _typing.Any:
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
-    if len(content) != length:
+    if not 2 <= len(content) == length <= 255:
         raise _fast.Unclear
-    if not 2 <= length <= 255:
-        raise _fast.Unclear
-    payload = content[2:]
     _, read = _BOARD_HEADS[content[1:2]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_board(data: bytes, at: int) -> bool:

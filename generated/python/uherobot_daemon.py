@@ -237,7 +237,7 @@ _CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">hh").unpack_from
 _UNPACK_1 = _struct.Struct(">8H").unpack_from
 _MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
-_UNPACK_2 = _struct.Struct(">hhHHHH").unpack
+_UNPACK_2 = _struct.Struct(">2xhhHHHH").unpack
 _STUFFING_0 = _transparency.Base16Upper()
 _PACK_0 = _struct.Struct("<BB").pack
 _PACK_1 = _struct.Struct(">8H").pack
@@ -247,6 +247,7 @@ _PACK_4 = _struct.Struct(">BBhhHHHH").pack
 
 
 def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
+    data = data[2:]
     if len(data) != 21:
         raise _fast.Unclear
     item = _new(MotorsServosLeds)
@@ -289,22 +290,18 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]
-            if len(content) != length:
+            if not 2 <= len(content) == length <= 255:
                 return at
-            if not 2 <= length <= 255:
-                return at
-            payload = content[2:]
             numbers, read = _DAEMON_HEADS[content[1:2]]
             if read is None:
-                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, content[2:]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = DAEMON_SENDER
             add(event)
             at = end
@@ -343,15 +340,12 @@ def _decode_daemon(data: bytes) -> _typing.Any:
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
-    if len(content) != length:
+    if not 2 <= len(content) == length <= 255:
         raise _fast.Unclear
-    if not 2 <= length <= 255:
-        raise _fast.Unclear
-    payload = content[2:]
     _, read = _DAEMON_HEADS[content[1:2]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_daemon(data: bytes, at: int) -> bool:
@@ -406,18 +400,16 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             length = content[1]
             if len(content) != length + 2:
                 return at
-            payload = content[2:]
             numbers, read = _BOARD_HEADS[content[0:1]]
             if read is None:
-                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, payload))
+                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, content[2:]))
                 at = end
                 continue
             event: _typing.Any = _MessageEvent()
-            event.message = read(payload)
+            event.message = read(content)
             event.offset = base + at
             event.raw = raw
             event.numbers = numbers
-            event.payload = payload
             event.codec = BOARD_SENDER
             add(event)
             at = end
@@ -458,11 +450,10 @@ def _decode_board(data: bytes) -> _typing.Any:
     length = content[1]
     if len(content) != length + 2:
         raise _fast.Unclear
-    payload = content[2:]
     _, read = _BOARD_HEADS[content[0:1]]
     if read is None:
         raise _fast.Unclear
-    return read(payload)
+    return read(content)
 
 
 def _waits_board(data: bytes, at: int) -> bool:

@@ -30,11 +30,10 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     numbers: tuple[int, ...]
     """The values of `parts`, in their order."""
     message: MessageT_co
-    payload: bytes
     codec: SenderSpec[Any, Any]
 
-    # Not frozen, without a constructor, and parts made when they are asked for: of some streams a
-    # second holds millions.
+    # Not frozen, without a constructor, and what the raw bytes tell worked out when it is asked
+    # for: of some streams a second holds millions.
 
     @property
     def sender(self) -> str:
@@ -46,6 +45,11 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
         """The frame's identity, counters and values."""
         parts: PartsT_co = self.codec.parts(*self.numbers)
         return parts
+
+    @property
+    def payload(self) -> bytes:
+        """The message's bytes in the frame."""
+        return late.payload_of(self.codec, self.raw)
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")
@@ -134,7 +138,7 @@ def frame_event(
         return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
     event: MessageEvent[MessageT_co, PartsT_co] = MessageEvent()
     event.offset, event.raw, event.numbers = offset, raw, numbers
-    event.message, event.payload, event.codec = message, cut.payload, sender
+    event.message, event.codec = message, sender
     return event
 
 

@@ -72,10 +72,13 @@ def unknown(
     return UnknownEvent(offset, raw, sender.name, sender.parts(*numbers), payload, sender)
 
 
-def checked(wire: bytes, payload: bytes, cut: Cutter) -> bytes:
-    """The frame, if a decoder takes exactly these bytes for it. Raises Unclear."""
+def checked(wire: bytes, cut: Cutter) -> bytes:
+    """The frame, if a decoder takes exactly these bytes for it. Raises Unclear.
+
+    Then it finds the same payload in them, for all other parts have their sizes.
+    """
     events: list[Any] = []
-    if cut(wire, 0, 0, events) != len(wire) or [event.payload for event in events] != [payload]:
+    if cut(wire, 0, 0, events) != len(wire) or len(events) != 1:
         raise Unclear
     return wire
 

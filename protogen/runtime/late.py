@@ -26,6 +26,7 @@ __all__ = [
     "importer",
     "lazily",
     "outermost",
+    "payload_of",
     "prefix_size",
     "read_frame",
     "record_from_json",
@@ -110,7 +111,7 @@ if TYPE_CHECKING:
     from protogen.runtime.layout import Layout
     from protogen.runtime.lines import encode_line, split_parts
     from protogen.runtime.machine import Candidate, Cut, Failure
-    from protogen.runtime.reading import read_frame
+    from protogen.runtime.reading import payload_of, read_frame
     from protogen.runtime.records import (
         ArrayRule,
         outermost,
@@ -132,7 +133,7 @@ else:
             ".layout": ("Layout",),
             ".lines": ("encode_line", "split_parts"),
             ".machine": ("Candidate", "Cut", "Failure"),
-            ".reading": ("read_frame",),
+            ".reading": ("payload_of", "read_frame"),
             ".records": (
                 "ArrayRule",
                 "outermost",

@@ -306,12 +306,15 @@ class Candidate:
         return start, self._wire_ends[item.end - 1]
 
 
-def verdict_on(sender: SenderSpec[Any, Any], data: bytes) -> tuple[Cut | Failure, int]:
+def verdict_on(
+    sender: SenderSpec[Any, Any], data: bytes, *, shares_start: bool = False
+) -> tuple[Cut | Failure, int]:
     """The verdict on a candidate that is the whole input, and the offset of the byte that gave it.
 
-    The end of the input gives it where no byte does.
+    The end of the input gives it where no byte does. With `shares_start` the end of the frame
+    before, which is not in `data`, is the candidate's start.
     """
-    candidate = Candidate(sender)
+    candidate = Candidate(sender, shares_start=shares_start)
     for offset, byte in enumerate(data):
         verdict = candidate.push(byte)
         if verdict is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from protogen.runtime.constructs import PayloadError
 from protogen.runtime.errors import DecodeError
 from protogen.runtime.events import FrameEvent, frame_event
@@ -24,6 +26,16 @@ def read_frame(
         offset = _wire_offset(sender, data, error.offset)
         raise DecodeError(error.reason, error.problem, offset=offset, path=error.path) from None
     return frame_event(sender, cut, message, data, 0)
+
+
+def payload_of(sender: SenderSpec[Any, Any], raw: bytes) -> bytes:
+    """The payload of what was seen to be a frame: the raw bytes of an event."""
+    layout = sender.layout
+    # Its start may have been the end of the frame before, which is not among its bytes.
+    begins_inside = layout.shares_delimiter and not raw.startswith(layout.start)
+    verdict, _ = verdict_on(sender, raw, shares_start=begins_inside)
+    assert isinstance(verdict, Cut)
+    return verdict.payload
 
 
 def may_start(layout: Layout, data: bytes) -> bool:

@@ -15,6 +15,16 @@ from protogen.targets.python.literals import tuple_of
 _SHORT = 256
 """So many bytes can be summed by Adler-32 without its modulus showing."""
 
+_MANY, _TOGETHER = 1024, 256
+"""Bytes from which on exclusive ors are compared together, and those of how many frames.
+
+They are checked after events were made, which are dropped from the first wrong one on: so this also
+bounds what one of them costs.
+"""
+
+FOLDED, GREATEST_FOLDED = 32, 256
+"""Bytes that are halved until one is left, and those of which that may be the half of the half."""
+
 
 def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     """The body of `_cut_SENDER(data, at, base, events)`.
@@ -92,6 +102,8 @@ class _Cutter(FrameFunction):
     """The frame's bytes."""
     numbers = "numbers"
     """Where the values of the frame's parts are put."""
+    stop = "return at"
+    """What is done where something is not plainly in order."""
 
     def __init__(self, frame: FastFrame, lines: Lines) -> None:
         super().__init__(frame, lines)
@@ -104,6 +116,9 @@ class _Cutter(FrameFunction):
         self.lines.add("if not _TABLES.are_filled:")
         self.lines.add("    _TABLES.fill()")
         self.lines.add("add = events.append")
+        if self._deferred is not None:
+            self.lines.add("unchecked: list[bytes] = []")
+            self.lines.add(f"are_many = size - at > {_MANY}")
         if self.frame.ended_by == "start":
             # Behind a frame that ends where the next start is, that needs not be checked again.
             with self.lines.block("try:"):
@@ -111,14 +126,28 @@ class _Cutter(FrameFunction):
             with self.lines.block("except _fast.ANYTHING:  # There is nothing."):
                 self.lines.add("return at")
         with self.lines.block("try:"), self.lines.block("while at < size:"):
+            if self._deferred is not None:
+                self.stop = "break"
             if self.frame.ended_by != "start":
                 self._start()
             self._frame()
             self._event()
         with self.lines.block("except _fast.ANYTHING:  # The reference looks at what is here."):
             self.lines.add("pass")
+        if self._deferred is not None:
+            with self.lines.block("if unchecked:"):
+                given = f"unchecked, {self._deferred}"
+                self.lines.add(f"at = _checksum.in_order(at, base, events, {given})")
         self.lines.add("return at")
         return self.lines.text
+
+    @property
+    def _deferred(self) -> int | None:
+        """Where an exclusive or that is compared for many frames at once begins in the content."""
+        if len(self.frame.checksums) != 1 or self.frame.optional:
+            return None
+        (part,) = self.frame.checksums
+        return self._xors_to_nothing(part, self.frame.covered(part, self.content))
 
     def _frame(self) -> None:
         """Set `payload`, and what else of the frame is wanted."""
@@ -130,7 +159,7 @@ class _Cutter(FrameFunction):
 
     def _stop_if(self, condition: str) -> None:
         self.lines.add(f"if {condition}:")
-        self.lines.add("    return at")
+        self.lines.add(f"    {self.stop}")
 
     def _place(self, offset: int) -> str:
         """So many bytes behind the start of the frame."""
@@ -185,7 +214,7 @@ class _Cutter(FrameFunction):
         with self.lines.block("if end < 0:"):
             # A length tells whether the last frame is all there; else the next start has to.
             if self.frame.length is None:
-                self.lines.add("return at")
+                self.lines.add(self.stop)
             else:
                 self.lines.add("end = size")
         if len(self.frame.start_bytes) > 1:
@@ -256,7 +285,7 @@ class _Cutter(FrameFunction):
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = {self._place(around)} + count")
             with self.lines.block("else:"):
-                self.lines.add("return at")
+                self.lines.add(self.stop)
         else:
             self._stop_if("count < 0")
             self.lines.add(f"end = {self._place(around)} + count")
@@ -368,7 +397,8 @@ class _Cutter(FrameFunction):
         sliced = f"payload = {self._payload_slice}"
         if frame.length is not None and not frame.optional:
             self._length(frame.length, around)
-            self.lines.add(sliced)
+            if not frame.gives_content:
+                self.lines.add(sliced)
         elif frame.optional:
             with self.lines.block(f"if len({self.content}) <= {around}:"):
                 self._stop_if(f"len({self.content}) != {around - self.optional_size}")
@@ -381,7 +411,8 @@ class _Cutter(FrameFunction):
         else:
             if frame.ended_by in ("end", "start"):
                 self._stop_if(f"len({self.content}) < {max(around, 1)}")
-            self.lines.add(sliced)
+            if not frame.gives_content:
+                self.lines.add(sliced)
         if frame.framing.seven_bit:
             self._stop_if("not payload.isascii()")
 
@@ -399,11 +430,13 @@ class _Cutter(FrameFunction):
         self.lines.add(f"length = {number}")
         rest = around - counted
         due = f"length + {rest}" if rest > 0 else f"length - {-rest}" if rest else "length"
-        self._stop_if(f"len({self.content}) != {due}")
+        size = f"len({self.content})"
         least = max(part.least, counted)
         greatest = min(part.greatest, counted + self.frame.framing.payload.greatest)
         if least > 0 or greatest < part.type.greatest:
-            self._stop_if(f"not {least} <= length <= {greatest}")
+            self._stop_if(f"not {least + rest} <= {size} == {due} <= {greatest + rest}")
+        else:
+            self._stop_if(f"{size} != {due}")
 
     def _counted_optional(self, length: LengthPart) -> int:
         """What the length counts less where the payload is empty."""
@@ -441,7 +474,11 @@ class _Cutter(FrameFunction):
             if self._sums_to_nothing(part, covered):
                 self._stop_if(f"_adler32({self.content}, 0) & 0xFF")
                 continue
-            if covered == self._payload_slice:
+            first_of_xor = self._xors_to_nothing(part, covered)
+            if first_of_xor is not None:
+                self._compare_xor(first_of_xor)
+                continue
+            if covered == self._payload_slice and not self.frame.gives_content:
                 covered = "payload"
             due = checksum(part, covered, self.frame, self.lines.constants)
             first = self.frame.offset(part)
@@ -457,18 +494,72 @@ class _Cutter(FrameFunction):
         all_but_last = covered == self.frame.slice_of(self.content, 0, -1)
         return is_plain_sum(part, self.frame) and part.algorithm.negated and all_but_last
 
+    def _xors_to_nothing(self, part: ChecksumPart, covered: str) -> int | None:
+        """Where the content begins whose exclusive or the checksum brings to 0; else None."""
+        spec, runs = part.algorithm, self.frame.covered_runs(part)
+        if spec.kind != "xor" or spec.init != 0 or len(runs) != 1 or isinstance(runs[0], bytes):
+            return None
+        if part.type.size != 1 or self.has_padding(part.type):
+            return None
+        first = runs[0][0]
+        is_last = covered == self.frame.slice_of(self.content, first, -1) and first >= 0
+        return first if is_last else None
+
+    def _compare_xor(self, first: int) -> None:
+        """Compare it here where there are few frames, else for many of them together."""
+        if self._deferred is None:
+            self._fold(first)
+            return
+        with self.lines.block("if not are_many:"):
+            self._fold(first)
+
+    def _fold(self, first: int) -> None:
+        frame = self.frame
+        front = frame.head_size - frame.skipped - first
+        greatest = front + frame.framing.payload.greatest + frame.tail_size
+        data = self.frame.slice_of(self.content, first, 0)
+        if greatest > GREATEST_FOLDED:
+            self._stop_if(f"_checksum.xor_of({data})")
+            return
+        from_bytes = self.lines.constants.named("FROM_BYTES", "int.from_bytes")
+        self.lines.add(f'folded = {from_bytes}({data}, "little")')
+        if greatest > FOLDED:
+            with self.lines.block(f"if len({self.content}) > {first + FOLDED}:"):
+                for half in (128, 64, 32):
+                    if greatest > half:
+                        self.lines.add(f"folded ^= folded >> {8 * half}")
+        self._stop_if(half_by_half(self.lines, min(greatest, FOLDED)))
+
     # --- the event --------------------------------------------------------------------------------
 
     def _event(self) -> None:
         self._numbers()
         self.lines.add("event: _typing.Any = _MessageEvent()")
-        self.lines.add("event.message = read(payload)")
+        self.lines.add(f"event.message = read({self._read_from})")
         self.lines.add("event.offset = base + at")
-        for name in ("raw", "numbers", "payload"):
+        for name in ("raw", "numbers"):
             self.lines.add(f"event.{name} = {name}")
         self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
         self.lines.add("add(event)")
+        self._taken(is_known=True)
+
+    def _taken(self, *, is_known: bool) -> None:
+        """Go on behind a frame."""
         self.lines.add("at = end")
+        if self._deferred is None:
+            return
+        with self.lines.block("if are_many:"):
+            self.lines.add(f"unchecked.append({self.content})")
+            if not is_known:
+                return
+            with self.lines.block(f"if len(unchecked) >= {_TOGETHER}:"):
+                self._stop_if(f"not _checksum.are_sound(unchecked, {self._deferred})")
+                self.lines.add("unchecked.clear()")
+
+    @property
+    def _read_from(self) -> str:
+        """What readers are given."""
+        return self.content if self.frame.gives_content else "payload"
 
     def _numbers(self) -> None:
         """Set `numbers`, and `read` unless the place of the end has told it."""
@@ -510,8 +601,9 @@ class _Cutter(FrameFunction):
 
     def _unknown(self) -> None:
         spec = f"{self.name.upper()}_SENDER"
-        self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, payload))")
-        self.lines.add("at = end")
+        payload = self._payload_slice if self.frame.gives_content else "payload"
+        self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, {payload}))")
+        self._taken(is_known=False)
         self.lines.add("continue")
 
 
@@ -521,6 +613,7 @@ class _Decoder(_Cutter):
     at = ""
     raw = "data"
     numbers = "_"
+    stop = "raise _fast.Unclear"
 
     def body(self) -> tuple[str, ...]:
         self.lines.refuse_if("type(data) is not bytes")
@@ -529,7 +622,7 @@ class _Decoder(_Cutter):
         self._start()
         self._frame()
         self._numbers()
-        self.lines.add("return read(payload)")
+        self.lines.add(f"return read({self._read_from})")
         return self.lines.text
 
     def _numbers(self) -> None:
@@ -543,8 +636,8 @@ class _Decoder(_Cutter):
         if frame.ended_by != "kind":
             self._look_up([self.number(self.content, part) for part in frame.identity])
 
-    def _stop_if(self, condition: str) -> None:
-        self.lines.refuse_if(condition)
+    def _compare_xor(self, first: int) -> None:
+        self._fold(first)
 
     def _shared_start(self, begins: str) -> None:
         self._stop_if(f"not {begins}")
@@ -593,6 +686,14 @@ def is_plain_sum(part: ChecksumPart, frame: FastFrame) -> bool:
     greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
     spec = part.algorithm
     return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
+
+
+def half_by_half(lines: Lines, size: int) -> str:
+    """The exclusive or of the bytes of `folded`, which are at most so many, as an expression."""
+    for half in (16, 8, 4, 2):
+        if size > half:
+            lines.add(f"folded ^= folded >> {8 * half}")
+    return "(folded ^ folded >> 8) & 0xFF" if size > 1 else "folded"
 
 
 def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constants) -> str:

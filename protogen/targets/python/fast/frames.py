@@ -77,6 +77,8 @@ class FastFrame:
         self.before, self.stuffed, self.behind = self._regions()
         self.skipped = self._literals_in_front if skips_start else 0
         """Bytes at the start of a frame that are not in the content."""
+        self.gives_content = False
+        """Whether readers are given the whole content of a frame, and not its payload alone."""
 
     @property
     def _literals_in_front(self) -> int:
@@ -234,6 +236,18 @@ class FastFrame:
         between = [part for part in self.head if first <= self.offset(part) < last]
         plain = not any(isinstance(part, ChecksumPart) for part in between)
         return (first, last) if plain else None
+
+    @property
+    def around(self) -> tuple[int, int] | None:
+        """Bytes of the content in front of the payload and behind it.
+
+        None where that varies, and where the payload is wanted by itself.
+        """
+        if self.optional or self.framing.seven_bit:
+            return None
+        if self.length is None and self.ended_by != "kind":
+            return None
+        return self.head_size - self.skipped, self.tail_size
 
     @property
     def can_decode(self) -> bool:

@@ -19,14 +19,13 @@ from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
-from protogen.targets.python.fast.cutting import checksum
+from protogen.targets.python.fast.cutting import FOLDED, checksum, half_by_half
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Constants, Lines
 from protogen.targets.python.fast.writing import Packed, content_writer, payload_writer
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import text
 
-_FOLDED = 32
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
@@ -121,8 +120,6 @@ class _Framer:
         integers = self._values()
         head = [self._packed(part) for part in self.frame.head if not self._is_skipped(part)]
         self.lines.add(f"content = {content_writer(message, head, integers, self.lines)}")
-        if self.frame.framing.cut_ambiguous:
-            self.lines.add(f"payload = {self._own_payload()}")
         for part in self.frame.checksums:
             self._insert(part)
         self._return()
@@ -258,14 +255,11 @@ class _Framer:
         if message is None or message.sizes.fixed is None or not payload:
             return ""
         size, spec = message.sizes.fixed, part.algorithm
-        if spec.kind != "xor" or spec.init != 0 or size > _FOLDED:
+        if spec.kind != "xor" or spec.init != 0 or size > FOLDED:
             return ""
         from_bytes = self.lines.constants.named("FROM_BYTES", "int.from_bytes")
         self.lines.add(f'folded = {from_bytes}({self._own_payload()}, "little")')
-        for half in (16, 8, 4, 2):
-            if size > half:
-                self.lines.add(f"folded ^= folded >> {8 * half}")
-        return "(folded ^ folded >> 8) & 0xFF" if size > 1 else "folded"
+        return half_by_half(self.lines, size)
 
     def _covered(self, part: ChecksumPart) -> str:
         """What a checksum covers, while the content ends where the part begins."""
@@ -291,7 +285,7 @@ class _Framer:
             return
         # A decoder might end the frame elsewhere.
         self.lines.add(f"wire = {wire}")
-        self.lines.add(f"return _fast.checked(wire, payload, _cut_{frame.sender.name})")
+        self.lines.add(f"return _fast.checked(wire, _cut_{frame.sender.name})")
 
     def _stuffed(self) -> str:
         """The content, stuffed unless it stands for itself."""

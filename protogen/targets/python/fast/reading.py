@@ -40,15 +40,23 @@ from protogen.targets.python.literals import tuple_of
 from protogen.targets.python.spelling import class_name
 
 
-def message_reader(message: Message, is_ascii: bool, constants: Constants) -> tuple[str, ...]:
+def message_reader(
+    message: Message, constants: Constants, around: tuple[int, int], *, is_ascii: bool
+) -> tuple[str, ...]:
     """The body of `_read_NAME(data)`, which gives the message.
 
-    `is_ascii`: whoever calls it has seen that no byte has its most significant bit set.
+    The data are its payload, with so many bytes `around` it: in front, and behind. `is_ascii`:
+    whoever calls it has seen that no byte has its most significant bit set.
     """
     reader = _Reader(Lines(constants), Place(), sizes=message.sizes, is_ascii=is_ascii)
-    reader.whole = message.sizes.fixed
-    if message.sizes.fixed is None or not goes_together(message.fields):
-        reader.whole = None
+    if message.sizes.fixed is not None and goes_together(message.fields):
+        reader.whole = around
+    elif not message.fields:
+        reader.lines.refuse_if(f"len(data) != {sum(around)}")
+    else:
+        front, behind = around
+        if front or behind:
+            reader.lines.add(f"data = data[{front or ''}:{-behind or ''}]")
         reader.lines.refuse_if(outside(message.sizes, "data"))
     reader.record("item", message.name, message.fields)
     if message.sizes.fixed is None and not reader.is_at_end:
@@ -77,6 +85,11 @@ def struct_reader(struct: Struct, constants: Constants) -> tuple[str, ...]:
     return reader.lines.text
 
 
+def _padding(count: int) -> str:
+    """Bytes that `struct` skips."""
+    return f"{count}x" if count > 1 else "x" * count
+
+
 @dataclass(slots=True)
 class _Run:
     """Values that one `struct` reads together."""
@@ -102,8 +115,8 @@ class _Reader:
         self.sizes = sizes
         self.is_at_end = False
         """Whether a field of the message itself has taken all that was left."""
-        self.whole: int | None = None
-        """The size of the message, where one `struct` reads it and checks that."""
+        self.whole: tuple[int, int] | None = None
+        """What is around the message, where one `struct` reads it and checks its size."""
         self.raw: dict[str, str] = {}
         """Raw values of the fields in front, by name."""
         self._run = _Run()
@@ -168,6 +181,8 @@ class _Reader:
             return
         layout = f'"{run.order or "<"}{run.codes}"'
         if self.whole is not None:
+            front, behind = map(_padding, self.whole)
+            layout = f'"{run.order or "<"}{front}{run.codes}{behind}"'
             unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack")
             names = ", ".join(run.variables)
             self._unpack(f"({names},)" if len(run.variables) == 1 else names, f"{unpack}(data)")

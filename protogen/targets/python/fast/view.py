@@ -61,7 +61,10 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
     constants = Constants()
     frames = [FastFrame(sender, skips_start=True) for sender in protocol.senders]
-    records = _records(protocol, constants)
+    around = _around(frames)
+    for frame in frames:
+        frame.gives_content = around is not None
+    records = _records(protocol, around or (0, 0), constants)
     overloads = [function for frame in frames for function in _overloads(frame)]
     senders = tuple(_sender(frame, of_caller, constants) for frame in frames)
     made = {m.name: _encoder(m, frames, of_caller, constants) for m in protocol.messages}
@@ -89,7 +92,15 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
 _USES = {"re": "_re.", "struct": "_struct.", "zlib": "_adler32("}
 
 
-def _records(protocol: Protocol, constants: Constants) -> tuple[Function, ...]:
+def _around(frames: list[FastFrame]) -> tuple[int, int] | None:
+    """What is around payloads, where that is the same in all frames that are cut; else None."""
+    found = {frame.around for frame in frames if frame.can_cut}
+    return found.pop() if len(found) == 1 else None
+
+
+def _records(
+    protocol: Protocol, around: tuple[int, int], constants: Constants
+) -> tuple[Function, ...]:
     functions: list[Function] = []
     ascii_messages = _seen_to_be_ascii(protocol)
     for struct in classes_of(protocol):
@@ -104,7 +115,8 @@ def _records(protocol: Protocol, constants: Constants) -> tuple[Function, ...]:
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
         name = class_name(message.name)
-        body = message_reader(message, message.name in ascii_messages, constants)
+        is_ascii = message.name in ascii_messages
+        body = message_reader(message, constants, around, is_ascii=is_ascii)
         functions.append(_function(f"_read_{message.name}", "data: bytes", name, body))
     return tuple(functions)
 
@@ -138,8 +150,10 @@ def _overloads(frame: FastFrame) -> list[Function]:
 def _overload(frame: FastFrame, kin: Kin) -> Function:
     given = " | ".join(class_name(message.name) for message in kin.messages)
     body: list[str] = []
+    around = sum(frame.around or ()) if frame.gives_content else 0
+    size = f"len(data) - {around}" if around else "len(data)"
     for message in kin.messages:
-        body.append(f"if len(data) in {class_name(message.name)}.SIZES:")
+        body.append(f"if {size} in {class_name(message.name)}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
     body.append("raise _fast.Unclear")
     return _function(cutting.reader_of(frame, kin), "data: bytes", given, tuple(body))
