@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import struct
 from dataclasses import fields, replace
+from decimal import Decimal
+from enum import IntEnum
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
@@ -15,6 +17,7 @@ from random import Random
 from threading import Thread
 from typing import Any
 
+import numpy
 import pytest
 from compiled import DOCUMENTS, module_at, name_of, protocol_of, senders
 from corpus import known_frames, material_of, portions, single_bytes, stream_of
@@ -198,10 +201,30 @@ def zip_values(spec: Any, numbers: tuple[int, ...], names: list[str]) -> list[tu
 
 # --- values that are not in order -----------------------------------------------------------------
 
+
+class Similar(int):
+    """An integer of another type."""
+
+
+class Indexed:
+    """What Python takes for an integer."""
+
+    def __index__(self) -> int:
+        return 5
+
+
+class Numbered(IntEnum):
+    FIVE = 5
+    MANY = 300
+
+
 STRANGE: list[Any] = [
     None, True, False, -1, 0, 1, 2**7, 2**15, 2**16, -(2**31), 2**64, 1.0, 0.5, float("nan"), 1e39,
     "", "text", "\xff", "\u20ac", "nul\0", b"", b"\xff", b"bytes", bytearray(b"b"), [], [1], (1,),
-    [True], [2**70], [None], Fraction(1, 2), object(),
+    [True], [2**70], [None], Fraction(1, 2), object(), Similar(5), Indexed(), Numbered.FIVE,
+    Numbered.MANY, 5.0, Fraction(5), Decimal(5), numpy.int8(-5), numpy.uint8(5),
+    numpy.uint16(65000), numpy.int64(5), numpy.float64(5), numpy.bool_(True), [5.0],
+    [Numbered.FIVE], [numpy.int8(5)], [numpy.bool_(True)], [Indexed()],
 ]  # fmt: skip
 
 
@@ -237,20 +260,9 @@ def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
                 assert outcome(module.encode, event.message, sender, **given) == due
 
 
-class Similar(int):
-    """An integer of another type."""
-
-
-class Indexed:
-    """What `struct` takes for an integer."""
-
-    def __index__(self) -> int:
-        return 5
-
-
 @pytest.mark.parametrize(
     "value",
-    [*STRANGE, Similar(5), Indexed(), 255, 256, 2**31, 2**32],
+    [*STRANGE, 255, 256, 2**31, 2**32],
     ids=lambda value: repr(value)[:20],
 )
 def test_strange_values_in_records_have_the_same_outcome(value: Any) -> None:
@@ -289,18 +301,6 @@ def test_records_are_written_without_the_reference(monkeypatch: pytest.MonkeyPat
     due = module.encode(item, engine="construct")
     monkeypatch.setattr(module.PROTOCOL, "encode", None)
     assert module.encode(item) == due
-
-
-def test_integers_in_turn() -> None:
-    assert fast.in_turn([1, 2], [3, -4]) == [1, 3, 2, -4]
-    assert fast.in_turn([], []) == []
-    assert fast.in_turn([2**31 - 1, -(2**31)]) == [2**31 - 1, -(2**31)]
-    # Some of these take as many bytes as integers do, together with their neighbours.
-    for column in ([2**31], [True], [1.0], [True, 2.0], [Similar(1)], [b"12345678", True, True]):
-        with pytest.raises((fast.Unclear, ValueError)):
-            fast.in_turn(column)
-    with pytest.raises(ValueError, match="assign sequence of size 1"):
-        fast.in_turn([1, 2], [3])
 
 
 def test_tables_are_full_for_each_thread() -> None:

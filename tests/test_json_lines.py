@@ -14,6 +14,8 @@ from corpus import material_of, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from protogen.runtime.errors import EncodeError
+
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 
 
@@ -114,6 +116,23 @@ def test_an_unknown_frame_comes_back_from_its_parts_and_payload() -> None:
         "parts": {"class_id": 6, "number": 5, "subclass": 1},
         "payload": "01021b",
     }
+
+
+@pytest.mark.parametrize(
+    ("line", "path"),
+    [
+        ({"message": "ack", "parts": {"counter": True}, "fields": {}}, "counter"),
+        ({"message": "gps", "parts": {"counter": 1}, "fields": {"nmea": True}}, "fields.nmea"),
+        ({"event": "unknown", "parts": {"command": True, "counter": 1}, "payload": ""}, "command"),
+        ({"event": "unknown", "parts": {"command": 90, "counter": True}, "payload": ""}, "counter"),
+        ({"event": "unknown", "parts": {"command": 9.5, "counter": 1}, "payload": ""}, "command"),
+    ],
+)
+def test_true_and_floats_are_no_integers_to_json(line: dict[str, Any], path: str) -> None:
+    matty = module_at(ROOT / "schemas" / "matty.yaml")
+    with pytest.raises(EncodeError) as caught:
+        matty.PROTOCOL.encode_line({"sender": "esp", **line})
+    assert caught.value.path == path
 
 
 def test_bytes_that_are_no_frame_come_back_from_their_digits() -> None:

@@ -95,7 +95,7 @@ def test_a_part_with_a_default_need_not_be_given() -> None:
         (matty.Go(speed=40000, steer=0), {"counter": 0}, "speed", "-32768..32767 (mm/s)"),
         (matty.Ack(), {"counter": 256}, "counter", "0..255"),
         (matty.Ack(), {"counter": "1"}, "counter", "integer"),
-        (matty.Ack(), {"counter": True}, "counter", "integer"),
+        (matty.Ack(), {"counter": 1.0}, "counter", "must be an integer, not 1.0"),
         (matty.Ack(), {"counter": 1, "sender": "pc"}, "message", "pc does not send Ack"),
         (matty.Gps(nmea="x" * 122), {"counter": 1}, "nmea", "at most 121"),
     ],

@@ -3,12 +3,13 @@
 import json
 import math
 from collections import ChainMap
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
 import handwritten_matty as matty
 import handwritten_rn1 as rn1
+import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -147,12 +148,42 @@ def test_a_payload_is_computed_by_hand() -> None:
     assert Everything.from_payload(wire) == message
 
 
+class Indexed:
+    """What Python takes for an integer."""
+
+    def __index__(self) -> int:
+        return 1
+
+
+@pytest.mark.parametrize("one", [True, Colour.RED, numpy.int8(1), numpy.uint64(1), Indexed()])
+def test_whatever_python_takes_for_an_integer_is_one(one: Any) -> None:
+    def of_ones(one: Any) -> Everything:
+        point = Point(x=one, y=one)
+        counted = good(count=one, points=[point], label="!", token=b"?")
+        return replace(counted, colour=one, bits=one, point=point, kind=one, choice=point)
+
+    message, plain = of_ones(one), of_ones(1)
+    assert message.violations() == plain.violations()
+    assert message.to_payload() == plain.to_payload()
+    frame = matty.encode(matty.Go(speed=one, steer=one), counter=one)
+    assert frame == matty.encode(matty.Go(speed=1, steer=1), counter=1)
+
+
+def test_numbers_of_numpy_are_in_range_or_refused() -> None:
+    refused = error(good(near=numpy.uint16(65000)))
+    assert (refused.path, refused.problem) == ("near", "65000 is not in 0..255")
+    assert error(good(near=numpy.int8(9))).problem.startswith("9 is not in 10..100")
+    assert error(good(near=numpy.float64(20))).problem.startswith("must be an integer")
+    assert error(good(near=numpy.bool_(True))).problem.startswith("must be an integer")
+
+
 @pytest.mark.parametrize(
     ("values", "path", "says"),
     [
         ({"colour": 256}, "colour", "not in 0..255"),
         ({"colour": "red"}, "colour", "must be an integer"),
-        ({"colour": True}, "colour", "must be an integer"),
+        ({"colour": 1.0}, "colour", "must be an integer, not 1.0"),
+        ({"colour": None}, "colour", "must be an integer, not None"),
         ({"shade": 3}, "shade", "RED = 1, GREEN = 2"),
         ({"on": 2}, "on", "false or true"),
         ({"fixed": 8}, "fixed", "must be 7"),

@@ -826,7 +826,6 @@ _new = _fast.new
 _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
-_CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct(">BH").unpack_from
 _PACK_0 = _struct.Struct(">BH").pack
 _UNPACK_1 = _struct.Struct(">4xIIBx").unpack
@@ -877,8 +876,6 @@ def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
         raise _fast.Unclear
     v1 = item.cluster
     v2 = item.distance
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
     return _PACK_0(v1, v2)
 
 
@@ -1140,8 +1137,6 @@ _LINUX_HEADS = _fast.Heads(_head_linux)
 def _decode_linux(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     if not data.startswith(b"\x1b\x02"):
         raise _fast.Unclear
     end = data.find(b"\x1b\x03", 2)
@@ -1219,8 +1214,6 @@ def _frame_linux(
 ) -> bytes:
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(payload)]
     if 0x1B in content or 0x7C in content:
@@ -1325,8 +1318,6 @@ _FLEX_HEADS = _fast.Heads(_head_flex)
 def _decode_flex(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     if not data.startswith(b"\x1b\x02"):
         raise _fast.Unclear
     end = data.find(b"\x1b\x03", 2)
@@ -1404,8 +1395,6 @@ def _frame_flex(
 ) -> bytes:
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(class_id_, number_, subclass_, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(payload)]
     if 0x1B in content or 0x7C in content:
@@ -1421,8 +1410,6 @@ def _encode_request_system_status(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(1, number_, 1, 0)
     folded = _FROM_BYTES_0(content[4:], "little")
     content += _BYTES[folded]
@@ -1440,10 +1427,6 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     v1 = item.timestamp
     v2 = item.battery_voltage
     v3 = item.brake
-    if type(v3) is not int and type(v3) is not SystemStatusBrake:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_2(1, number_, 1, 9, v1, v2, v3)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1462,8 +1445,6 @@ def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> 
     if number_ is None:
         number_ = 255
     v1 = item.unknown
-    if not (type(number_) is type(v1) is int):
-        raise _fast.Unclear
     content = _PACK_3(2, number_, 0, 1, v1)
     folded = _FROM_BYTES_0(content[4:], "little")
     content += _BYTES[folded]
@@ -1479,16 +1460,10 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
     if number_ is None:
         number_ = 255
     v1 = item.axis
-    if type(v1) is not int and type(v1) is not Axis:
-        raise _fast.Unclear
     v2 = item.velocity
     v3 = item.acceleration
     v4 = item.torque
     v5 = item.direction
-    if type(v5) is not int and type(v5) is not MotorCommandDirection:
-        raise _fast.Unclear
-    if not (type(number_) is type(v2) is type(v3) is type(v4) is int):
-        raise _fast.Unclear
     content = _PACK_4(2, number_, 7, 14, v1, v2, v3, v4, v5)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1511,10 +1486,6 @@ def _encode_confirm_motor_command(
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not int and type(v3) is not Axis:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_2(2, number_, 7, 9, v1, v2, v3)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1532,8 +1503,6 @@ def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> 
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(2, number_, 10, 0)
     folded = _FROM_BYTES_0(content[4:], "little")
     content += _BYTES[folded]
@@ -1548,8 +1517,6 @@ def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> 
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(2, number_, 12, 0)
     folded = _FROM_BYTES_0(content[4:], "little")
     content += _BYTES[folded]
@@ -1566,8 +1533,6 @@ def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: in
         number_ = 255
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_5(2, number_, 12, 8, v1, v2)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1587,16 +1552,10 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.axis
-    if type(v3) is not int and type(v3) is not Axis:
-        raise _fast.Unclear
     v4 = item.position
     v5 = item.velocity
     v6 = item.acceleration
     v7 = item.torque
-    if not (type(number_) is type(v1) is type(v2) is type(v4) is type(v5) is type(v6) is int):
-        raise _fast.Unclear
-    if type(v7) is not int:
-        raise _fast.Unclear
     content = _PACK_6(2, number_, 33, 25, v1, v2, v3, v4, v5, v6, v7)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 128
@@ -1619,10 +1578,6 @@ def _encode_start_stop_motor_packets(
         number_ = 255
     v1 = item.timestamp
     v2 = item.start_stop
-    if type(v2) is not int and type(v2) is not StartStopMotorPacketsStartStop:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is int):
-        raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1643,8 +1598,6 @@ def _encode_confirm_start_stop_motor_packets(
         number_ = 255
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_5(2, number_, 34, 8, v1, v2)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1663,8 +1616,6 @@ def _encode_request_joystick_data(
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(3, number_, 0, 0)
     folded = _FROM_BYTES_0(content[4:], "little")
     content += _BYTES[folded]
@@ -1683,10 +1634,6 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
     v2 = item.horizontal
     v3 = item.vertical
     v4 = item.buttons
-    if type(v4) is not int and type(v4) is not JoystickDataButtons:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
     content = _PACK_7(3, number_, 0, 13, v1, v2, v3, v4)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1710,10 +1657,6 @@ def _encode_start_stop_sonar_packets(
     v2 = item.unknown_1
     v3 = item.unknown_2
     v4 = item.start_stop
-    if type(v4) is not int and type(v4) is not StartStopSonarPacketsStartStop:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
     content = _PACK_8(4, number_, 0, 13, v1, v2, v3, v4)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1735,8 +1678,6 @@ def _encode_confirm_start_stop_sonar_packets(
         number_ = 255
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_5(4, number_, 0, 8, v1, v2)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1758,17 +1699,16 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
         raise _fast.Unclear
     if len(v3) > 82:
         raise _fast.Unclear
-    column4 = [each.cluster for each in v3 if type(each) is SonarDataReadings]
-    column5 = [each.distance for each in v3]
-    if not (type(v1) is type(v2) is int):
-        raise _fast.Unclear
-    payload = _PACKERS_0[len(v3)](v1, v2, *_fast.in_turn(column4, column5))
+    values4: list[_typing.Any] = [v1, v2]
+    for each in v3:
+        if type(each) is not SonarDataReadings:
+            raise _fast.Unclear
+        values4 += (each.cluster, each.distance)
+    payload = _PACKERS_0[len(v3)](*values4)
     if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
-    if type(number_) is not int:
-        raise _fast.Unclear
     content = _PACK_1(4, number_, 2, len(payload)) + payload
     content += _BYTES[_checksum.xor_of(payload)]
     if 0x1B in content or 0x7C in content:
@@ -1785,8 +1725,6 @@ def _encode_initialize_digital_io(
     if number_ is None:
         number_ = 255
     v1 = item.unknown
-    if not (type(number_) is type(v1) is int):
-        raise _fast.Unclear
     content = _PACK_9(5, number_, 0, 4, v1)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 16
@@ -1806,8 +1744,6 @@ def _encode_confirm_initialize_digital_io(
         number_ = 255
     v1 = item.unknown
     v2 = item.timestamp
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_5(5, number_, 0, 8, v1, v2)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1827,10 +1763,6 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
     v1 = item.timestamp
     v2 = item.position
     v3 = item.value
-    if type(v3) is not int and type(v3) is not IoValue:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_10(5, number_, 1, 7, v1, v2, v3)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -1850,8 +1782,6 @@ def _encode_check_io_changed(
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
-    if not (type(number_) is type(v1) is int):
-        raise _fast.Unclear
     content = _PACK_9(5, number_, 2, 4, v1)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 16
@@ -1872,8 +1802,6 @@ def _encode_check_io_changed_answer(
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.package_count
-    if not (type(number_) is type(v1) is type(v2) is type(v3) is int):
-        raise _fast.Unclear
     content = _PACK_11(5, number_, 2, 12, v1, v2, v3)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 64
@@ -1894,10 +1822,6 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
     v1 = item.timestamp
     v2 = item.position
     v3 = item.value
-    if type(v3) is not int and type(v3) is not IoValue:
-        raise _fast.Unclear
-    if not (type(number_) is type(v1) is type(v2) is int):
-        raise _fast.Unclear
     content = _PACK_10(5, number_, 3, 7, v1, v2, v3)
     folded = _FROM_BYTES_0(content[4:], "little")
     folded ^= folded >> 32
@@ -2058,9 +1982,9 @@ def encode(
     message: LinuxMessage | FlexMessage,
     sender: Sender | None = None,
     strict: bool = True,
+    engine: _rt.Engine = "fast",
     *,
     number: int | None = None,
-    engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
 
@@ -2093,6 +2017,9 @@ def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> LinuxMe
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if not _TABLES.are_filled:  # Nothing is: its tables were empty.
+                _TABLES.fill()
+                return decode(frame, sender)
             engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 

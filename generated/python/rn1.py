@@ -562,7 +562,6 @@ _CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<3s").unpack_from
 _NUMBER_0 = _rt.Number(16, False, "little", True)
 _PACK_0 = _struct.Struct("<3s").pack
-_BYTE_CODES_0 = _CODES.narrow(7, False)
 _PACK_1 = _struct.Struct("<B").pack
 _UNPACK_1 = _struct.Struct("<BB").unpack
 _UNPACK_2 = _struct.Struct("<HH").unpack
@@ -579,15 +578,15 @@ _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
 _MEMBERS_5 = _TABLES.members(SonarStatus, 7)
 _UNPACK_6 = _struct.Struct("<BHH").unpack
 _PAIRS_1 = _TABLES.pairs(14, False)
-_BYTE_CODES_1 = _CODES.narrow(7, True)
+_BYTE_CODES_0 = _CODES.narrow(7, True)
 _PACK_2 = _struct.Struct("<BBB").pack
-_BYTE_CODES_2 = _CODES.codes(14, True)
+_BYTE_CODES_1 = _CODES.codes(14, True)
 _PACK_3 = _struct.Struct("<BHH").pack
 _PACK_4 = _struct.Struct("<BBHHH").pack
 _PACK_5 = _struct.Struct("<BBHHB").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _PACK_6 = _struct.Struct("<BB").pack
-_BYTE_CODES_3 = _CODES.codes(14, False)
+_BYTE_CODES_2 = _CODES.codes(14, False)
 _PACK_7 = _struct.Struct("<BBHH").pack
 
 
@@ -623,16 +622,14 @@ def _read_maintenance_argument_run_motor_controller_flasher(
 def _write_maintenance_argument_run_motor_controller_flasher(
     item: MaintenanceArgumentRunMotorControllerFlasher
 ) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if type(item) is not MaintenanceArgumentRunMotorControllerFlasher:
         raise _fast.Unclear
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
         raise _fast.Unclear
-    if type(v1) is not int:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
-    return _PACK_1(_BYTE_CODES_0[v1])
+    return _PACK_1(v1)
 
 
 def _read_move_manual(data: bytes) -> MoveManual:
@@ -824,8 +821,6 @@ _HOST_HEADS = _fast.Heads(_head_host)
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     if not 0x80 <= data[0] <= 0xFE:
         raise _fast.Unclear
     end = data.find(b"\xff", 0)
@@ -919,8 +914,6 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
 def _decode_brain(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     frame_size, read, _ = _BRAIN_KINDS[data[0]]
     end = frame_size
     if end != len(data):
@@ -955,47 +948,39 @@ def _frame_brain(payload: bytes, start_: int | None) -> bytes:
 
 
 def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.speed
     v2 = item.arc
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_2(128, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
+    content = _PACK_2(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
 
 def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.angle
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_3(129, _BYTE_CODES_2[v1], _BYTE_CODES_2[v2])
+    content = _PACK_3(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
 def _encode_move_relative_arc(item: MoveRelativeArc, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.angle
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_3(130, _BYTE_CODES_2[v1], _BYTE_CODES_2[v2])
+    content = _PACK_3(130, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
 def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.magic
@@ -1005,13 +990,13 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         raise _fast.Unclear
     v2: list[bytes] = []
     for each3 in v1:
-        if type(each3) is not int:
+        if not 0 <= each3 <= 127:
             raise _fast.Unclear
-        v2.append(_PACK_1(_BYTE_CODES_0[each3]))
+        v2.append(_PACK_1(each3))
     if v1 != [66, 17, 122]:
         raise _fast.Unclear
     v4 = item.operation
-    if type(v4) is not int and type(v4) is not MaintenanceOperation:
+    if not 0 <= v4 <= 127:
         raise _fast.Unclear
     v5 = item.argument
     if v4 in (81, 82):
@@ -1031,9 +1016,9 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         v8 = v5.motor_controller
         if not 1 <= v8 <= 4:
             raise _fast.Unclear
-        if type(v8) is not int:
+        if not 0 <= v8 <= 127:
             raise _fast.Unclear
-        case6 = _PACK_1(_BYTE_CODES_0[v8])
+        case6 = _PACK_1(v8)
     else:
         if type(v5) is not bytes:
             raise _fast.Unclear
@@ -1042,7 +1027,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         if not v5.isascii():
             raise _fast.Unclear
         case6 = v5
-    payload = b"".join((b"".join(v2), _PACK_1(_BYTE_CODES_0[v4]), case6))
+    payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
     if not 4 <= len(payload) <= 7:
         raise _fast.Unclear
     content = _PACK_1(254) + payload
@@ -1050,140 +1035,108 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
 
 
 def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not GyroStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        128,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not XcelStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        129,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_compass(item: Compass, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not CompassStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.avg_x
     v3 = item.avg_y
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        130,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_optflow(item: Optflow, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
     v2 = item.dx
     v3 = item.dy
     v4 = item.q
-    if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
+    if not 0 <= v4 <= 127:
         raise _fast.Unclear
-    content = _PACK_5(
-        131,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_0[v4],
-    )
+    if not (type(v2) is type(v3) is int):
+        raise _fast.Unclear
+    content = _PACK_5(131, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], v4)
     return content
 
 
 def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not LidarStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    content = b"".join((_PACK_6(132, _BYTE_CODES_0[v1]), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_6(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not SonarStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 7:
         raise _fast.Unclear
-    content = b"".join((_PACK_6(133, _BYTE_CODES_0[v1]), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_6(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_facing(item: Facing, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
     v2 = item.heading
     v3 = item.speed
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_7(160, _BYTE_CODES_0[v1], _BYTE_CODES_3[v2], _BYTE_CODES_2[v3])
+    content = _PACK_7(160, v1, _BYTE_CODES_2[v2], _BYTE_CODES_1[v3])
     return content
 
 
@@ -1266,7 +1219,6 @@ def encode(
     message: HostMessage | BrainMessage,
     sender: Sender | None = None,
     strict: bool = True,
-    *,
     engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
@@ -1278,6 +1230,9 @@ def encode(
         try:
             return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if not _CODES.are_filled:  # Nothing is: its tables were empty.
+                _CODES.fill()
+                return encode(message, sender)
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)
 
@@ -1300,6 +1255,9 @@ def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMes
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if not _TABLES.are_filled:  # Nothing is: its tables were empty.
+                _TABLES.fill()
+                return decode(frame, sender)
             engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 

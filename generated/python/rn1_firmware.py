@@ -627,7 +627,6 @@ _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
 _CODES = _fast.Tables()
-_BYTE_CODES_0 = _CODES.narrow(7, False)
 _PACK_0 = _struct.Struct("<B").pack
 _UNPACK_0 = _struct.Struct("<BB").unpack
 _UNPACK_1 = _struct.Struct(">HH").unpack
@@ -648,16 +647,16 @@ _UNPACK_7 = _struct.Struct(">H").unpack
 _PAIRS_1 = _TABLES.pairs(14, False)
 _UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
-_BYTE_CODES_1 = _CODES.narrow(7, True)
+_BYTE_CODES_0 = _CODES.narrow(7, True)
 _PACK_1 = _struct.Struct("<BBB").pack
-_BYTE_CODES_2 = _CODES.codes(14, True)
+_BYTE_CODES_1 = _CODES.codes(14, True)
 _PACK_2 = _struct.Struct(">BHH").pack
 _PACK_3 = _struct.Struct("<BB").pack
 _PACK_4 = _struct.Struct("<BBHHH").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _PACK_5 = _struct.Struct("<BBHH").pack
 _PACK_6 = _struct.Struct(">BBHH").pack
-_BYTE_CODES_3 = _CODES.codes(14, False)
+_BYTE_CODES_2 = _CODES.codes(14, False)
 _PACK_7 = _struct.Struct(">BH").pack
 _PACK_8 = _struct.Struct("<B5s5s5s5s").pack
 
@@ -676,16 +675,14 @@ def _read_maintenance_argument_run_motor_controller_flasher(
 def _write_maintenance_argument_run_motor_controller_flasher(
     item: MaintenanceArgumentRunMotorControllerFlasher
 ) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if type(item) is not MaintenanceArgumentRunMotorControllerFlasher:
         raise _fast.Unclear
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
         raise _fast.Unclear
-    if type(v1) is not int:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
-    return _PACK_0(_BYTE_CODES_0[v1])
+    return _PACK_0(v1)
 
 
 def _read_move_manual(data: bytes) -> MoveManual:
@@ -896,8 +893,6 @@ _HOST_HEADS = _fast.Heads(_head_host)
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     if not 0x80 <= data[0] <= 0xFE:
         raise _fast.Unclear
     end = data.find(b"\xff", 0)
@@ -993,8 +988,6 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
 def _decode_brain(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
         raise _fast.Unclear
-    if not _TABLES.are_filled:
-        _TABLES.fill()
     frame_size, read, _ = _BRAIN_KINDS[data[0]]
     end = frame_size
     if end != len(data):
@@ -1029,58 +1022,48 @@ def _frame_brain(payload: bytes, start_: int | None) -> bytes:
 
 
 def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.speed
     v2 = item.arc
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_1(128, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
+    content = _PACK_1(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
 
 def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.angle
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_2(129, _BYTE_CODES_2[v1], _BYTE_CODES_2[v2])
+    content = _PACK_2(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
 def _encode_decrease_phase_angle(item: DecreasePhaseAngle, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.ignored
-    if type(v1) is not int:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
-    content = _PACK_3(209, _BYTE_CODES_0[v1])
+    content = _PACK_3(209, v1)
     return content + b"\xff"
 
 
 def _encode_increase_phase_angle(item: IncreasePhaseAngle, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.ignored
-    if type(v1) is not int:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
-    content = _PACK_3(210, _BYTE_CODES_0[v1])
+    content = _PACK_3(210, v1)
     return content + b"\xff"
 
 
 def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.magic
@@ -1090,13 +1073,13 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         raise _fast.Unclear
     v2: list[bytes] = []
     for each3 in v1:
-        if type(each3) is not int:
+        if not 0 <= each3 <= 127:
             raise _fast.Unclear
-        v2.append(_PACK_0(_BYTE_CODES_0[each3]))
+        v2.append(_PACK_0(each3))
     if v1 != [66, 17, 122]:
         raise _fast.Unclear
     v4 = item.operation
-    if type(v4) is not int and type(v4) is not MaintenanceOperation:
+    if not 0 <= v4 <= 127:
         raise _fast.Unclear
     v5 = item.argument
     if v4 in (82,):
@@ -1109,9 +1092,9 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         v7 = v5.motor_controller
         if not 1 <= v7 <= 4:
             raise _fast.Unclear
-        if type(v7) is not int:
+        if not 0 <= v7 <= 127:
             raise _fast.Unclear
-        case6 = _PACK_0(_BYTE_CODES_0[v7])
+        case6 = _PACK_0(v7)
     else:
         if type(v5) is not bytes:
             raise _fast.Unclear
@@ -1120,7 +1103,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         if not v5.isascii():
             raise _fast.Unclear
         case6 = v5
-    payload = b"".join((b"".join(v2), _PACK_0(_BYTE_CODES_0[v4]), case6))
+    payload = b"".join((b"".join(v2), _PACK_0(v4), case6))
     if not 4 <= len(payload) <= 5:
         raise _fast.Unclear
     content = _PACK_0(254) + payload
@@ -1128,145 +1111,115 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
 
 
 def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not GyroStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        128,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not XcelStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        129,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_compass(item: Compass, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not CompassStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.avg_x
     v3 = item.avg_y
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(
-        130,
-        _BYTE_CODES_0[v1],
-        _BYTE_CODES_2[v2],
-        _BYTE_CODES_2[v3],
-        _BYTE_CODES_2[v4],
-    )
+    content = _PACK_4(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not LidarStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    content = b"".join((_PACK_3(132, _BYTE_CODES_0[v1]), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_3(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if type(v1) is not int and type(v1) is not SonarStatus:
+    if not 0 <= v1 <= 127:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 3:
         raise _fast.Unclear
-    content = b"".join((_PACK_3(133, _BYTE_CODES_0[v1]), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_3(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_facing(item: Facing, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
     v2 = item.heading
     v3 = item.speed
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_5(160, _BYTE_CODES_0[v1], _BYTE_CODES_2[v2], _BYTE_CODES_2[v3])
+    content = _PACK_5(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
 def _encode_optflow_integral(item: OptflowIntegral, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
+    if not 0 <= v1 <= 127:
+        raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
-    if not (type(v1) is type(v2) is type(v3) is int):
+    if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_6(161, _BYTE_CODES_0[v1], _BYTE_CODES_2[v2], _BYTE_CODES_2[v3])
+    content = _PACK_6(161, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
 def _encode_motor_controller_message(item: MotorControllerMessage, sender: str | None) -> bytes:
-    if not _CODES.are_filled:
-        _CODES.fill()
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.last_msg
     if type(v1) is not int:
         raise _fast.Unclear
-    content = _PACK_7(209, _BYTE_CODES_3[v1])
+    content = _PACK_7(209, _BYTE_CODES_2[v1])
     return content
 
 
@@ -1396,7 +1349,6 @@ def encode(
     message: HostMessage | BrainMessage,
     sender: Sender | None = None,
     strict: bool = True,
-    *,
     engine: _rt.Engine = "fast",
 ) -> bytes:
     """The frame of a message.
@@ -1408,6 +1360,9 @@ def encode(
         try:
             return _ENCODERS[type(message)](message, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if not _CODES.are_filled:  # Nothing is: its tables were empty.
+                _CODES.fill()
+                return encode(message, sender)
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)
 
@@ -1430,6 +1385,9 @@ def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMes
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if not _TABLES.are_filled:  # Nothing is: its tables were empty.
+                _TABLES.fill()
+                return decode(frame, sender)
             engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 

@@ -19,6 +19,7 @@ from protogen.runtime.frame import (
 )
 from protogen.runtime.layout import Layout, is_optional
 from protogen.runtime.machine import Cut, verdict_on
+from protogen.runtime.number import as_integer
 from protogen.runtime.sender import Identity, SenderSpec
 
 
@@ -84,11 +85,13 @@ def _part_value(part: ValuePart, given: int | None, strict: bool) -> int:
     value = part.default if given is None else given
     if value is None:
         raise EncodeError(part.name, _how_to_give(part))
-    if not isinstance(value, int) or isinstance(value, bool):
-        raise EncodeError(part.name, f"must be an integer, not {value!r}")
-    if strict and not part.least <= value <= part.greatest:
-        raise EncodeError(part.name, f"{value} is not in {part.least}..{part.greatest}")
-    return int(value)
+    try:
+        number = as_integer(value)
+    except EncodeError as error:
+        raise error.inside(part.name) from None
+    if strict and not part.least <= number <= part.greatest:
+        raise EncodeError(part.name, f"{number} is not in {part.least}..{part.greatest}")
+    return number
 
 
 def _how_to_give(part: ValuePart) -> str:

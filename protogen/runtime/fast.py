@@ -6,7 +6,6 @@ reference (construct, and the machine of `machine.py`) decides and says what is 
 
 from __future__ import annotations
 
-import marshal
 import struct
 from collections.abc import Callable, Iterable
 from typing import Any, Literal, Protocol, TypeVar
@@ -17,7 +16,6 @@ from protogen.runtime.events import UnknownEvent
 from protogen.runtime.late import frame_formats
 from protogen.runtime.number import ByteOrder, Number
 from protogen.runtime.pairs import (
-    INTEGERS,
     PairLists,
     Pairs,
     Unclear,
@@ -32,7 +30,6 @@ AnyT = TypeVar("AnyT")
 __all__ = [
     "ANYTHING",
     "BYTES",
-    "INTEGERS",
     "Heads",
     "Members",
     "Packers",
@@ -44,7 +41,6 @@ __all__ = [
     "checked",
     "closed",
     "frame_formats",
-    "in_turn",
     "new",
     "seven_bit_float",
     "unknown",
@@ -189,23 +185,6 @@ class Packers(dict[int, Callable[..., bytes]]):
     def __missing__(self, count: int) -> Callable[..., bytes]:
         self[count] = pack = struct.Struct(self._front + self._record * count).pack
         return pack
-
-
-def in_turn(*columns: list[int]) -> list[int]:
-    """The first integer of each column, then the second of each, and so on.
-
-    Raises Unclear, or ValueError, unless the columns are equally long and all they hold are
-    integers of 32 bits, not only something that looks like one.
-    """
-    width = len(columns)
-    values = [0] * (width * len(columns[0]))
-    for index, column in enumerate(columns):
-        values[index::width] = column
-    # Behind five bytes each such integer takes five, a type and four of value; nothing else has
-    # that type. So this tells all of them faster than a loop.
-    if marshal.dumps(values, 2)[5::5] != b"i" * len(values):
-        raise Unclear
-    return values
 
 
 # --- floats of 7 bits a byte --------------------------------------------------------------------

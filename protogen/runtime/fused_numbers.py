@@ -40,8 +40,15 @@ def _pair(number: Number) -> Item:
         # 1.0 is found where 1 is.
         write=(Step(wrong="type({v}) is not int"), *looking_up(codes)),
         counts=True,
-        lists=Lists(2, lists.decode, lambda values: lists.encode(sequence(values))),
+        lists=Lists(2, lists.decode, lambda values: lists.encode(_integers(sequence(values)))),
     )
+
+
+def _integers(values: Any) -> Any:
+    """The values. Raises Unclear where one is no int, but something like one."""
+    if not set(map(type, values)) <= {int}:
+        raise Unclear
+    return values
 
 
 def _ascii_list(data: bytes) -> list[int]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import EncodeError
+from protogen.runtime.number import as_integer
 from protogen.runtime.sender import Identity, SenderSpec
 
 _EVENTS = ("message", "unknown", "invalid")
@@ -26,7 +27,7 @@ def encode_line(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> bytes:
     if event == "message":
         return _encode_message(sender, line)
     if event == "unknown":
-        identity, given = split_parts(sender, _mapping(line, "parts"))
+        identity, given = split_parts(sender, _parts(line))
         return encode_frame(sender, identity, _bytes(line, "payload"), given, strict=False)
     raise EncodeError("event", f"{event!r} without raw bytes can't be sent")
 
@@ -42,7 +43,7 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
         payload = record.to_payload(strict=False)
     except EncodeError as error:
         raise error.inside("fields") from None
-    parts = _mapping(line, "parts") if "parts" in line else {}
+    parts = _parts(line) if "parts" in line else {}
     shown = {part.name for part in sender.layout.identity}
     given = {name: value for name, value in parts.items() if name not in shown}
     return encode_frame(sender, message.IDENTITY, payload, given, strict=False)
@@ -53,11 +54,25 @@ def split_parts(
 ) -> tuple[Identity, dict[str, Any]]:
     """The identity among the parts of an unknown frame, and the other parts."""
     names = [part.name for part in sender.layout.identity]
-    for name in names:
-        if not isinstance(parts.get(name), int):
-            raise EncodeError(name, "an unknown frame needs the number of each identity part")
     others = {name: value for name, value in parts.items() if name not in names}
-    return tuple(parts[name] for name in names), others
+    return tuple(_identifying(name, parts.get(name)) for name in names), others
+
+
+def _identifying(name: str, value: Any) -> int:
+    try:
+        return as_integer(value)
+    except EncodeError:
+        problem = "an unknown frame needs the number of each identity part"
+        raise EncodeError(name, problem) from None
+
+
+def _parts(line: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The values of a frame's parts. To JSON, unlike Python, true and false are no numbers."""
+    parts = _mapping(line, "parts")
+    for name, value in parts.items():
+        if isinstance(value, bool):
+            raise EncodeError(str(name), f"must be an integer, not {value!r}")
+    return parts
 
 
 def _mapping(line: Mapping[str, Any], key: str) -> Mapping[str, Any]:

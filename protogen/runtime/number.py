@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable
 from typing import Literal
 
 from protogen.runtime.dataclass import dataclass, field
-from protogen.runtime.errors import ByteError
+from protogen.runtime.errors import ByteError, EncodeError
 
 ByteOrder = Literal["little", "big"]
 
@@ -60,6 +61,17 @@ class Number:
         if self.signed and raw >> (self.bits - 1):
             raw -= 1 << self.bits
         return raw
+
+
+def as_integer(value: object) -> int:
+    """The integer that a value is to Python: an int, a bool, an enum's member, one of NumPy's.
+
+    Raises EncodeError for anything else, floats and texts of numbers among them.
+    """
+    try:
+        return operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise EncodeError("", f"must be an integer, not {value!r}") from None
 
 
 def _join_groups(groups: Iterable[int]) -> int:

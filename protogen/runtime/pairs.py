@@ -9,9 +9,6 @@ from functools import lru_cache
 from protogen.runtime.dataclass import dataclass
 from protogen.runtime.number import ByteOrder, Number
 
-INTEGERS = frozenset((int,))
-"""What the types of all elements of an array of integers are."""
-
 
 class Unclear(Exception):  # noqa: N818 - it is no error: the reference decides
     """These bytes or values are not plainly in order."""
@@ -83,8 +80,6 @@ class PairLists:
 
     def encode(self, values: Sequence[int]) -> bytes:
         """The bytes of integers. Raises Unclear, or struct.error."""
-        if not set(map(type, values)) <= INTEGERS:
-            raise Unclear
         count = len(values)
         plain = struct.pack(f"<{count}{'h' if self.signed else 'H'}", *values)
         lanes = int.from_bytes(plain, "little")

@@ -17,6 +17,7 @@ from typing import Any, Literal
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import EncodeError, join_path
 from protogen.runtime.nearest import nearest_reading
+from protogen.runtime.number import as_integer
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""
@@ -80,7 +81,7 @@ def refuse(violations: list[Violation]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class IntegerRule(Rule):
-    """An integer of `bits` bits.
+    """An integer of `bits` bits; whatever Python takes where it needs one is one.
 
     `named` is the enum or flags class of its values. `least` and `greatest` are the range that the
     schema gives; a `special` value may be outside of it. The physical value is
@@ -101,14 +102,13 @@ class IntegerRule(Rule):
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> int:
         """The raw value."""
-        if not isinstance(value, int) or isinstance(value, bool):
-            raise EncodeError("", f"must be an integer, not {value!r}")
+        raw = as_integer(value)
         low, high = self._capacity()
-        if not low <= value <= high:
-            raise EncodeError("", self._out_of_range(value, low, high))
+        if not low <= raw <= high:
+            raise EncodeError("", self._out_of_range(raw, low, high))
         if strict:
-            refuse(self.violations(value, scope))
-        return int(value)
+            refuse(self._violations(raw))
+        return raw
 
     def from_wire(self, raw: int, scope: Scope) -> int:
         """The raw value, as a member of its enum where it has one."""
@@ -116,8 +116,11 @@ class IntegerRule(Rule):
 
     def violations(self, value: int, scope: Scope) -> list[Violation]:
         """A constant or range that does not hold; a value or bits without a name."""
+        return self._violations(as_integer(value))
+
+    def _violations(self, value: int) -> list[Violation]:
         if self.const is not None and value != self.const:
-            return [Violation("", f"must be {self.const}, not {int(value)}")]
+            return [Violation("", f"must be {self.const}, not {value}")]
         if value in self.special.values():
             return []
         if not self._in_range(value):
@@ -197,7 +200,7 @@ class IntegerRule(Rule):
 
     def _out_of_range(self, value: int, least: int | None, greatest: int | None) -> str:
         unit = f" ({self.unit})" if self.unit and self.scale == 1 and not self.offset else ""
-        return f"{int(value)} is not in {_bounds(least, greatest)}{unit}"
+        return f"{value} is not in {_bounds(least, greatest)}{unit}"
 
     def _unnamed(self, value: int) -> list[Violation]:
         if self.named is None:
@@ -209,7 +212,7 @@ class IntegerRule(Rule):
         if member.is_known:
             return []
         allowed = ", ".join(f"{known.name} = {known.value}" for known in self.named)
-        problem = f"{int(value)} has no name; there are {allowed}"
+        problem = f"{value} has no name; there are {allowed}"
         return [Violation("", problem, self.closed)]
 
     def _called(self, name: str) -> int:

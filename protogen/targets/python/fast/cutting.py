@@ -113,8 +113,9 @@ class _Cutter(FrameFunction):
 
     def body(self) -> tuple[str, ...]:
         self.lines.add("size = len(data)")
-        self.lines.add("if not _TABLES.are_filled:")
-        self.lines.add("    _TABLES.fill()")
+        if self.lines.constants.use("_TABLES."):
+            self.lines.add("if not _TABLES.are_filled:")
+            self.lines.add("    _TABLES.fill()")
         self.lines.add("add = events.append")
         if self._deferred is not None:
             self.lines.add("unchecked: list[bytes] = []")
@@ -617,8 +618,6 @@ class _Decoder(_Cutter):
 
     def body(self) -> tuple[str, ...]:
         self.lines.refuse_if("type(data) is not bytes")
-        self.lines.add("if not _TABLES.are_filled:")
-        self.lines.add("    _TABLES.fill()")
         self._start()
         self._frame()
         self._numbers()

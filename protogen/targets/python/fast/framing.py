@@ -135,7 +135,10 @@ class _Framer:
         return Packed(_order(part.type), _CODES[part.type.size], self._value(part, bare=False))
 
     def _values(self) -> list[str]:
-        """Check what callers give; the variables that have yet to be seen to be integers."""
+        """Check what callers give; the variables that have yet to be seen to be integers.
+
+        Where `struct` writes them, it sees to that.
+        """
         integers = []
         own = {part.name for part in self.frame.sender.frame.caller_parts}
         for name, argument in self.values.items():
@@ -149,7 +152,8 @@ class _Framer:
             least, greatest = part.least, part.greatest
             if not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
                 self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
-            integers.append(f"{part.name}_")
+            if not _is_plain(part.type):
+                integers.append(f"{part.name}_")
         return integers
 
     def _payload(self) -> None:

@@ -30,6 +30,10 @@ class Constants:
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
         return self.named("NUMBER", f"_rt.Number({arguments})")
 
+    def use(self, name: str) -> bool:
+        """Whether some constant so far is made by something of that name."""
+        return any(expression.startswith(name) for expression in self._names)
+
     @property
     def text(self) -> tuple[str, ...]:
         """One assignment for each."""

@@ -11,7 +11,7 @@ from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.layout import fixed_size, outer_names
 from protogen.targets.python.fast.lines import Constants
 from protogen.targets.python.fast.reading import message_reader, struct_reader
-from protogen.targets.python.fast.writing import struct_writer, with_codes
+from protogen.targets.python.fast.writing import struct_writer
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import method
@@ -55,6 +55,10 @@ class Fast:
     """Entries of the table of encoders by the message's class."""
     modules: tuple[str, ...]
     """Modules of the standard library that the text names."""
+    tables: bool
+    """Whether readers look values up in tables that have to be filled first."""
+    codes: bool
+    """Whether writers do."""
 
 
 def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
@@ -86,6 +90,8 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
         encoders=tuple(encoders.values()),
         table=tuple(f"{class_name(name)}: _encode_{name}," for name in encoders),
         modules=tuple(name for name in ("re", "struct", "zlib") if _USES[name] in joined),
+        tables=constants.use("_TABLES."),
+        codes=constants.use("_CODES."),
     )
 
 
@@ -111,7 +117,7 @@ def _records(
         functions.append(
             _function(f"_read_{struct.name}", f"data: bytes, at: int{outer}", given, body)
         )
-        body = with_codes(struct_writer(struct, constants))
+        body = struct_writer(struct, constants)
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
         name = class_name(message.name)
@@ -136,7 +142,7 @@ def _encoder(
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
     parameters = f"item: {class_name(message.name)}, sender: str | None{given}"
-    body = with_codes(framing.encoder(message, own, of_caller, constants))
+    body = framing.encoder(message, own, of_caller, constants)
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 

@@ -40,7 +40,10 @@ _GREATEST_FLOAT32 = "3.4028234663852886e38"
 
 
 def payload_writer(message: Message, lines: Lines) -> None:
-    """Check a message `item` and set `payload`."""
+    """Check a message `item` and set `payload`.
+
+    What an integer may be, and how great, is left to `struct` wherever it writes the value itself.
+    """
     lines.add(f"payload = {_Writer(lines).record('item', message.fields)}")
     if message.sizes.fixed is None:
         lines.refuse_if(outside(message.sizes, "payload"))
@@ -56,13 +59,6 @@ def content_writer(
     writer = _Writer(lines)
     writer.begin(head, integers)
     return writer.record("item", message.fields)
-
-
-def with_codes(body: tuple[str, ...]) -> tuple[str, ...]:
-    """The body of a function, behind what fills the tables in which it looks values up."""
-    if not any(_CODES in line for line in body):
-        return body
-    return ("if not _CODES.are_filled:", "    _CODES.fill()", *body)
 
 
 _CODES = "BYTE_CODES"
@@ -87,16 +83,22 @@ def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
 
 
 def _are_plain(fields: tuple[Field, ...]) -> bool:
-    """Whether all fields are integers that `struct` writes as they are, and `in_turn` tells."""
+    """Whether all fields are integers that `struct` writes as they are."""
     orders = {order_of(item.type) for item in fields} - {""}
     return bool(fields) and len(orders) < 2 and all(map(_is_plain, fields))
 
 
 def _is_plain(item: Field) -> bool:
     type_ = item.type
-    if not isinstance(type_, Integer) or not is_native(type_) or is_named(type_):
+    if not isinstance(type_, Integer) or not is_native(type_):
         return False
-    return not item.ranged and item.const is None and type_.bits + (not type_.signed) <= 32
+    is_closed = type_.enum is not None and type_.enum.closed
+    return not item.ranged and item.const is None and not is_closed
+
+
+def _is_narrow(type_: Integer) -> bool:
+    """Whether `struct` writes the value, but as one that may be greater."""
+    return type_.size == 1 and not type_.signed and not is_native(type_) and type_.role != "bool"
 
 
 _TYPES_IN_LINE = 6
@@ -222,21 +224,22 @@ class _Writer:
     def _integer(self, value: str, type_: Integer, item: Field | None) -> None:
         if type_.role == "bool":
             self.lines.refuse_if(f"type({value}) is not bool")
-        elif is_named(type_):
-            self._named(value, type_)
-        else:
-            self._bytes.integers.append(value)
+        elif not is_native(type_) and not _is_narrow(type_):
+            self._looked_up(value, type_)
+        if type_.enum is not None and type_.enum.closed:
+            members = f"frozenset(map(int, {class_name(type_.enum.name)}))"
+            self.lines.refuse_if(f"{value} not in {self.lines.constants.named('VALUES', members)}")
         self._in_range(value, item)
         self._put(type_, self._coded(value, type_))
 
-    def _named(self, value: str, type_: Integer) -> None:
+    def _looked_up(self, value: str, type_: Integer) -> None:
+        """See to it that a value is an integer. In tables 1.0 is found where 1 is."""
         named = type_.enum or type_.flags
-        assert named is not None
+        if named is None:
+            self._bytes.integers.append(value)
+            return
         name = class_name(named.name)
         self.lines.refuse_if(f"type({value}) is not int and type({value}) is not {name}")
-        if type_.enum is not None and type_.enum.closed:
-            members = self.lines.constants.named("VALUES", f"frozenset(map(int, {name}))")
-            self.lines.refuse_if(f"{value} not in {members}")
 
     def _in_range(self, value: str, item: Field | None) -> None:
         if item is None or not item.ranged or item.least is None or item.greatest is None:
@@ -258,6 +261,9 @@ class _Writer:
         assert code is not None
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.encode({value})"
+        if _is_narrow(type_):
+            self.lines.refuse_if(f"not 0 <= {value} <= {type_.greatest}")
+            return value
         if type_.size == 1:
             codes = f"_CODES.narrow({type_.bits}, {type_.signed})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
@@ -353,7 +359,6 @@ class _Writer:
             encode = f"_fast.PairLists({arguments}).encode"
             self._piece(f"{self.lines.constants.named('PAIR_LIST', encode)}({value})")
         elif array_code(array) is not None and isinstance(element, Integer):
-            self.lines.refuse_if(f"not set(map(type, {value})) <= _fast.INTEGERS")
             self._all_in_range(value, item)
             self._piece(self._packed(value, array))
         else:
@@ -361,12 +366,6 @@ class _Writer:
 
     def _plain_records(self, value: str, element: Struct) -> None:
         """Records of integers, written together with what stands in front of them."""
-        each_typed = f"for each in {value} if type(each) is {class_name(element.name)}"
-        columns = [self.lines.local("column") for _ in element.fields]
-        for name, item in zip(columns, element.fields, strict=True):
-            # Where some record is of another type, the first column is too short.
-            each = each_typed if name == columns[0] else f"for each in {value}"
-            self.lines.add(f"{name} = [each.{item.name} {each}]")
         codes = "".join(str(code_of(item.type)) for item in element.fields)
         order = next((order_of(item.type) for item in element.fields if order_of(item.type)), "")
         if self._bytes.order and order and self._bytes.order != order:
@@ -374,9 +373,15 @@ class _Writer:
         due = self._bytes
         front = (due.order or order or "<") + due.codes
         packers = self.lines.constants.named("PACKERS", f'_fast.Packers("{front}", "{codes}")')
-        values = [*due.values, f"*_fast.in_turn({', '.join(columns)})"]
+        values = self.lines.local("values")
+        # All that `struct` is given, whatever it is: what is no integer it refuses.
+        self.lines.add(f"{values}: list[_typing.Any] = [{', '.join(due.values)}]")
+        with self.lines.block(f"for each in {value}:"):
+            self.lines.refuse_if(f"type(each) is not {class_name(element.name)}")
+            numbers = tuple_of(f"each.{item.name}" for item in element.fields)
+            self.lines.add(f"{values} += {numbers}")
         due.codes = ""
-        self._piece(f"{packers}[len({value})]({', '.join(values)})")
+        self._piece(f"{packers}[len({value})](*{values})")
 
     def _all_in_range(self, value: str, item: Field | None) -> None:
         if item is None or not item.ranged or item.least is None or item.greatest is None:
