@@ -7,6 +7,7 @@ it has to decide alike; and on what is in order it has to decide, or it would no
 from __future__ import annotations
 
 import struct
+from array import array
 from dataclasses import fields, replace
 from decimal import Decimal
 from enum import IntEnum
@@ -31,7 +32,9 @@ from protogen.runtime.number import Number
 from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_tables
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
-RFLEX = next(path for path in DOCUMENTS if path.stem == "rflex")
+DAGNY, MATTY, RFLEX = (
+    next(path for path in DOCUMENTS if path.stem == name) for name in ("dagny", "matty", "rflex")
+)
 SEEDS = range(max(6, settings().max_examples // 10))
 
 
@@ -180,6 +183,31 @@ def test_messages_are_sent_without_the_reference(
     for (message, numbers), frame in zip(sent, due, strict=True):
         parts = dict(zip_values(spec, numbers, names))
         assert module.encode(message, sender, **parts) == frame
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize("like", [bytes, bytearray, memoryview, lambda data: array("B", data)])
+def test_anything_like_bytes_is_taken(engine: Any, like: Any) -> None:
+    matty = module_at(MATTY)
+    due = matty.Gps(nmea="$GPRMC")
+    frame = like(matty.encode(due, counter=1))
+    assert matty.decode(frame, "esp", engine) == due
+    assert [event.message for event in matty.Decoder("esp", engine).feed(frame)] == [due]
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize("other", ["55", None, 5, [0x55]], ids=repr)
+def test_what_is_not_like_bytes_is_refused(engine: Any, other: Any) -> None:
+    matty = module_at(MATTY)
+    says = "needs bytes, a bytearray or a memoryview, not"
+    with pytest.raises(TypeError, match=says):
+        matty.decode(other, "esp", engine)
+    for decoder in (matty.Decoder("esp", engine), module_at(DAGNY).Decoder("robot", engine)):
+        decoder.feed(b"\x55")
+        before = decoder.pending
+        with pytest.raises(TypeError, match=says):
+            decoder.feed(other)
+        assert decoder.pending == before
 
 
 def decoded(path: Path, sender: str) -> list[Any]:

@@ -1183,7 +1183,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
 }
 _DECODERS: dict[
     str,
-    _typing.Callable[[bytes], HostMessage | RobotMessage],
+    _typing.Callable[[_typing.Any], HostMessage | RobotMessage],
 ] = {
     "host": _decode_host,
     "robot": _decode_robot,
@@ -1294,22 +1294,26 @@ def encode(
 
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
 ) -> HostMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["robot"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["robot"], engine: _rt.Engine = "fast"
 ) -> RobotMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
 ) -> HostMessage | RobotMessage: ...
-def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | RobotMessage:
+def decode(
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+) -> HostMessage | RobotMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
     if engine == "fast":
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if type(frame) is not bytes:
+                return decode(_fast.octets(frame), sender)
             if not _TABLES.are_filled:  # Nothing is: its tables were empty.
                 _TABLES.fill()
                 return decode(frame, sender)

@@ -936,7 +936,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
 }
 _DECODERS: dict[
     str,
-    _typing.Callable[[bytes], PcMessage | EspMessage],
+    _typing.Callable[[_typing.Any], PcMessage | EspMessage],
 ] = {
     "pc": _decode_pc,
     "esp": _decode_esp,
@@ -1019,20 +1019,26 @@ def encode(
 
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["pc"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["pc"], engine: _rt.Engine = "fast"
 ) -> PcMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["esp"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["esp"], engine: _rt.Engine = "fast"
 ) -> EspMessage: ...
 @_typing.overload
-def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage: ...
-def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> PcMessage | EspMessage:
+def decode(
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+) -> PcMessage | EspMessage: ...
+def decode(
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+) -> PcMessage | EspMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
     if engine == "fast":
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if type(frame) is not bytes:
+                return decode(_fast.octets(frame), sender)
             if not _TABLES.are_filled:  # Nothing is: its tables were empty.
                 _TABLES.fill()
                 return decode(frame, sender)

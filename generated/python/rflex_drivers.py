@@ -2050,7 +2050,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
 }
 _DECODERS: dict[
     str,
-    _typing.Callable[[bytes], LinuxMessage | FlexMessage],
+    _typing.Callable[[_typing.Any], LinuxMessage | FlexMessage],
 ] = {
     "linux": _decode_linux,
     "flex": _decode_flex,
@@ -2204,22 +2204,26 @@ def encode(
 
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["linux"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["linux"], engine: _rt.Engine = "fast"
 ) -> LinuxMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["flex"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["flex"], engine: _rt.Engine = "fast"
 ) -> FlexMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
 ) -> LinuxMessage | FlexMessage: ...
-def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> LinuxMessage | FlexMessage:
+def decode(
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+) -> LinuxMessage | FlexMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
     if engine == "fast":
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if type(frame) is not bytes:
+                return decode(_fast.octets(frame), sender)
             if not _TABLES.are_filled:  # Nothing is: its tables were empty.
                 _TABLES.fill()
                 return decode(frame, sender)

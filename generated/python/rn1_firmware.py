@@ -1260,7 +1260,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
 }
 _DECODERS: dict[
     str,
-    _typing.Callable[[bytes], HostMessage | BrainMessage],
+    _typing.Callable[[_typing.Any], HostMessage | BrainMessage],
 ] = {
     "host": _decode_host,
     "brain": _decode_brain,
@@ -1369,22 +1369,26 @@ def encode(
 
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["host"], engine: _rt.Engine = "fast"
 ) -> HostMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["brain"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["brain"], engine: _rt.Engine = "fast"
 ) -> BrainMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
 ) -> HostMessage | BrainMessage: ...
-def decode(frame: bytes, sender: Sender, engine: _rt.Engine = "fast") -> HostMessage | BrainMessage:
+def decode(
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+) -> HostMessage | BrainMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
     if engine == "fast":
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if type(frame) is not bytes:
+                return decode(_fast.octets(frame), sender)
             if not _TABLES.are_filled:  # Nothing is: its tables were empty.
                 _TABLES.fill()
                 return decode(frame, sender)

@@ -521,7 +521,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
 }
 _DECODERS: dict[
     str,
-    _typing.Callable[[bytes], DaemonMessage | BoardMessage],
+    _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage],
 ] = {
     "daemon": _decode_daemon,
     "board": _decode_board,
@@ -597,24 +597,26 @@ def encode(
 
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["daemon"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["daemon"], engine: _rt.Engine = "fast"
 ) -> DaemonMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: _typing.Literal["board"], engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: _typing.Literal["board"], engine: _rt.Engine = "fast"
 ) -> BoardMessage: ...
 @_typing.overload
 def decode(
-    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
 ) -> DaemonMessage | BoardMessage: ...
 def decode(
-    frame: bytes, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
 ) -> DaemonMessage | BoardMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
     if engine == "fast":
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
+            if type(frame) is not bytes:
+                return decode(_fast.octets(frame), sender)
             if not _TABLES.are_filled:  # Nothing is: its tables were empty.
                 _TABLES.fill()
                 return decode(frame, sender)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from protogen.runtime.codec import Encoder, Protocol
 from protogen.runtime.dataclass import dataclass, field
-from protogen.runtime.decoder import Decoder, Engine
+from protogen.runtime.decoder import BytesLike, Decoder, Engine
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import CodecError, DecodeError, EncodeError, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEvent
@@ -30,6 +30,7 @@ __all__ = [
     "ArrayRule",
     "BitRange",
     "BoolRule",
+    "BytesLike",
     "ChecksumPart",
     "CodecError",
     "CounterPart",

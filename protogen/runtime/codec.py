@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Generic
 
 from protogen.runtime import late
-from protogen.runtime.decoder import Engine, check_engine
+from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import FrameEvent, UnknownEvent
 from protogen.runtime.message import Message
@@ -80,12 +80,18 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
             raise EncodeError("sender", f"{name!r} sends nothing; {', '.join(self.senders)} do")
         return late.encode_line(spec, line)
 
-    def read(self, frame: bytes, sender: str) -> FrameEvent[MessageT_co, PartsT_co]:
-        """The event of exactly one valid frame. Raises DecodeError."""
-        return late.read_frame(self.sender(sender), frame)
+    def read(self, frame: BytesLike, sender: str) -> FrameEvent[MessageT_co, PartsT_co]:
+        """The event of exactly one valid frame. Raises DecodeError.
 
-    def decode(self, frame: bytes, sender: str, engine: Engine = "construct") -> MessageT_co:
-        """The message of exactly one frame, as the reference reads it. Raises DecodeError."""
+        Raises TypeError for what is not like bytes.
+        """
+        return late.read_frame(self.sender(sender), octets(frame))
+
+    def decode(self, frame: BytesLike, sender: str, engine: Engine = "construct") -> MessageT_co:
+        """The message of exactly one frame, as the reference reads it. Raises DecodeError.
+
+        Raises TypeError for what is not like bytes.
+        """
         check_engine(engine)
         event = self.read(frame, sender)
         if isinstance(event, UnknownEvent):

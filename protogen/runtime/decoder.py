@@ -17,10 +17,23 @@ Engine = Literal["fast", "construct"]
 `fast` does the same with generated straight-line code wherever bytes and values are in order."""
 
 
+BytesLike = bytes | bytearray | memoryview
+"""What bytes are taken from; other objects with a buffer are taken as well."""
+
+
 def check_engine(engine: str) -> None:
     """Raise ValueError unless there is such an engine."""
     if engine not in ("fast", "construct"):
         raise ValueError(f"there is no engine {engine!r}; there are: fast, construct")
+
+
+def octets(data: object) -> bytes:
+    """The bytes of a bytes-like object. Raises TypeError for anything else."""
+    try:
+        return bytes(memoryview(data))  # type: ignore[arg-type]
+    except TypeError:
+        kind = type(data).__name__
+        raise TypeError(f"needs bytes, a bytearray or a memoryview, not {kind}") from None
 
 
 class Decoder(Generic[MessageT_co, PartsT_co]):
@@ -61,13 +74,19 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """How many bytes were taken that no event covers yet."""
         return len(self._data) - self._done
 
-    def feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
-        """Take the next bytes of the input; the events that are certain now."""
+    def feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
+        """Take the next bytes of the input; the events that are certain now.
+
+        Raises TypeError for what is not like bytes.
+        """
         lane = self._lane
         if lane is None or (self._data and not self._is_waiting):
             return self._feed(data)
         # All in front is delivered, and a frame may start at the first of these bytes.
-        whole = self._data + data
+        try:
+            whole = self._data + data
+        except TypeError:
+            whole = self._data + octets(data)
         events: list[Event[MessageT_co, PartsT_co]] = []
         end = lane(whole, 0, self._offset, events)
         if end == len(whole):
@@ -83,9 +102,12 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return self._deliver()
         return events
 
-    def _feed(self, data: bytes | bytearray | memoryview) -> list[Event[MessageT_co, PartsT_co]]:
+    def _feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
         """The same in any state."""
-        self._data += data
+        try:
+            self._data += data
+        except TypeError:
+            self._data += octets(data)
         if self._is_waiting:
             if self._still_waits(self._scan):
                 return []

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.dataclass import dataclass
+from protogen.runtime.decoder import octets
 from protogen.runtime.enums import KEPT, Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.late import frame_formats
@@ -42,6 +43,7 @@ __all__ = [
     "closed",
     "frame_formats",
     "new",
+    "octets",
     "seven_bit_float",
     "unknown",
 ]

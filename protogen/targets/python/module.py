@@ -236,7 +236,7 @@ def _decoder_heads(senders: tuple[SenderView, ...], message: str, parts: str) ->
 
 
 def _decode_head(name: str, message: str, after: int) -> str:
-    parameters = f"frame: bytes, sender: {name}, {_ENGINE}"
+    parameters = f"frame: _rt.BytesLike, sender: {name}, {_ENGINE}"
     return method("def decode(", parameters, f") -> {message}", 0, after)
 
 
