@@ -36,6 +36,11 @@ SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 SENDERS = [
     (path, sender.name) for path in (*SCHEMAS, *SAMPLERS) for sender in protocol_of(path).senders
 ]
+STUFFED = [
+    (path, sender)
+    for path, sender in SENDERS
+    if protocol_of(path).sender(sender).frame.transparency is not None
+]
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
 EXAMPLES = settings().max_examples
 SEEDS = range(max(4, EXAMPLES // 20))
@@ -93,6 +98,20 @@ def test_telling_bytes_have_the_tables_that_python_fills(path: Path, sender: str
         dice = Random(f"{path.stem} {sender} {seed}")
         check(path, sender, bytes(dice.choice(marks) for _ in range(dice.randrange(500))))
         check(path, sender, handwritten_streams.random_stream(spec, dice, 20))
+
+
+@pytest.mark.parametrize(("path", "sender"), STUFFED, ids=name_of)
+def test_a_byte_that_is_another_anywhere_has_the_tables_that_python_fills(
+    path: Path, sender: str
+) -> None:
+    """Whole frames are taken where much stands behind them: what differs must be seen there too."""
+    frames = list(dict.fromkeys(material_of(path, sender).frames))
+    dice, marks, data = Random(path.stem), marks_of(path, sender), bytearray()
+    for frame in dice.sample(frames, min(len(frames), 12)):
+        for place in dice.sample(range(len(frame)), min(len(frame), 40)):
+            other = dice.choice((*marks, dice.randrange(256)))
+            data += frame[:place] + bytes((other,)) + frame[place + 1 :] + frame
+    check(path, sender, bytes(data))
 
 
 @EVERY_SENDER

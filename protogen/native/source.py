@@ -11,7 +11,7 @@ from jinja2 import Environment
 from protogen.capture.layout import capture_schema, message_record
 from protogen.capture.schema import CaptureSchema, Choice, Column, Record, TableSchema
 from protogen.model.protocol import Protocol, Sender
-from protogen.targets.c.decoder import DecoderView
+from protogen.targets.c.decoder import DecoderView, GroupView
 from protogen.targets.c.emit import Unit, texts, unit_of
 from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
@@ -109,6 +109,9 @@ def _driver(protocol: Protocol, sender: Sender) -> Driver:
             source=source.replace(_CALL, _DIRECT),
             module=unit.module.name,
             direct=_direct(decoder, list(schema.messages)),
+            d=decoder,
+            stuffed=_stuffed(decoder),
+            names=list(schema.messages),
             tables=tables,
             spellings=spellings,
             layout=[expression for expression, _ in layout],
@@ -160,6 +163,13 @@ def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:
         for message in group.messages
         if group.fixed and len(group.messages) == 1
     ]
+
+
+def _stuffed(decoder: DecoderView) -> list[GroupView]:
+    """The messages whose frames are taken sixteen bytes at a time; the rest is the decoder's."""
+    if not decoder.whole or decoder.stuffing is None or decoder.seven_bit:
+        return []
+    return [group for group in decoder.groups if len(group.messages) == 1]
 
 
 def _table(view: MessageView, table: TableSchema) -> _Table:
