@@ -2,26 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from protogen.convert.arrow_tables import batch_of, schema_of
-from protogen.convert.batches import Batch
+from protogen.convert.batches import Batch, Rows
 from protogen.convert.errors import ConvertError, needed
-from protogen.convert.outputs import Pending
+from protogen.convert.outputs import Pending, continuation
+from protogen.convert.parquet_encodings import spelling_of
 from protogen.convert.tables import Names, Table
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 _MOST_ROWS = 1 << 17
-"""Rows of a group of rows."""
+"""Rows of a group of rows, or some more."""
 _MOST_KEPT = 32 << 20
 """Bytes of rows of all tables together that wait for their group to fill."""
+_MOST_PIECES = 1 << 13
+"""Columns of groups of rows, in all files that are being written. Parquet keeps a record of some
+kilobytes of each, and writes it when a file ends."""
 
-Sink = Callable[["pa.Table"], None]
+
+class Sink(Protocol):
+    """A file that is being written."""
+
+    def write_table(self, rows: pa.Table, /) -> None:
+        """Write a group of rows."""
+
+    def close(self) -> None:
+        """Write what tells where the groups are."""
+
+
+class _Kept:
+    """A table: where its rows go, and those that wait."""
+
+    def __init__(self, table: Table, schema: pa.Schema) -> None:
+        self.table = table
+        self.schema = schema
+        self.batches: list[pa.RecordBatch] = []
+        self.rows = 0
+        self.bytes = 0
+        self.sink: Sink | None = None
+        self.files = 0
+        """How many files there are, with the one that is being written."""
+        self.pieces = 0
+        """What is recorded of the file that is being written."""
+
+    def take(self, rows: Rows) -> None:
+        """Keep rows."""
+        taken = batch_of(rows, self.schema)
+        self.batches.append(taken)
+        self.rows += taken.num_rows
+        self.bytes += taken.nbytes
+
+    def release(self) -> pa.Table:
+        """The rows that waited."""
+        import pyarrow as pa
+
+        found = pa.Table.from_batches(self.batches, self.schema)
+        self.batches, self.rows, self.bytes = [], 0, 0
+        return found
 
 
 class ArrowWriter:
@@ -33,81 +75,100 @@ class ArrowWriter:
         needed("pyarrow", f"writing {self.SUFFIX} files")
         self._name = name
         self._pending = pending
-        self._files = ExitStack()
-        self._sinks: dict[str, Sink] = {}
-        self._schemas: dict[str, pa.Schema] = {}
-        self._kept: dict[str, list[pa.RecordBatch]] = {}
-        self._rows: dict[str, int] = {}
-        self._sizes: dict[str, int] = {}
+        self._kept: dict[str, _Kept] = {}
 
     def write(self, batch: Batch) -> None:
         """Take the rows of a batch."""
         for rows in batch.rows():
-            name = rows.table.name
-            if name not in self._sinks:
-                self._open(rows.table)
-            taken = batch_of(rows, self._schemas[name])
-            self._kept[name].append(taken)
-            self._rows[name] += taken.num_rows
-            self._sizes[name] += taken.nbytes
-            if self._rows[name] >= _MOST_ROWS:
-                self._write(name)
-        while sum(self._sizes.values()) > _MOST_KEPT:
-            self._write(max(self._sizes, key=lambda name: self._sizes[name]))
+            kept = self._kept.get(rows.table.name) or self._begin(rows.table)
+            kept.take(rows)
+            if kept.rows >= _MOST_ROWS:
+                self._write(kept)
+        while sum(kept.bytes for kept in self._kept.values()) > _MOST_KEPT:
+            self._write(max(self._kept.values(), key=lambda kept: kept.bytes))
 
     def close(self) -> None:
         """Write what is left."""
-        with self._files:
-            for name in self._sinks:
-                if self._rows[name]:
-                    self._write(name)
+        with ExitStack() as files:
+            for kept in self._kept.values():
+                files.callback(self._end, kept)
+            for kept in self._kept.values():
+                if kept.rows:
+                    self._write(kept)
 
-    def _open(self, table: Table) -> None:
+    def _begin(self, table: Table) -> _Kept:
         schema = schema_of(table, {"protogen.capture": self._name})
-        path = self._pending.path(f"{table.name}/{self._name}.{self.SUFFIX}")
-        self._schemas[table.name] = schema
-        self._sinks[table.name] = self._sink(path, table, schema)
-        self._kept[table.name] = []
-        self._rows[table.name] = self._sizes[table.name] = 0
+        self._kept[table.name] = kept = _Kept(table, schema)
+        return kept
 
-    def _write(self, name: str) -> None:
+    def _write(self, kept: _Kept) -> None:
+        rows = kept.release()
+        if kept.sink is None:
+            first = f"{kept.table.name}/{self._name}.{self.SUFFIX}"
+            path = self._pending.path(continuation(first, kept.files))
+            kept.sink = self._sink(path, kept.table, rows)
+            kept.files += 1
+        kept.sink.write_table(rows)
+
+    def _end(self, kept: _Kept) -> None:
+        """End the file that is being written."""
+        sink, kept.sink, kept.pieces = kept.sink, None, 0
+        if sink is not None:
+            sink.close()
+
+    def _sink(self, path: Path, table: Table, first: pa.Table) -> Sink:
+        """A new file, whose first rows these will be."""
+        return _ArrowFile(path, first.schema)
+
+
+class _ArrowFile:
+    """A file of the IPC format."""
+
+    def __init__(self, path: Path, schema: pa.Schema) -> None:
         import pyarrow as pa
 
-        self._sinks[name](pa.Table.from_batches(self._kept[name], self._schemas[name]))
-        self._kept[name] = []
-        self._rows[name] = self._sizes[name] = 0
+        self._file = pa.OSFile(str(path), "wb")
+        self._writer = pa.ipc.new_file(self._file, schema)
 
-    def _sink(self, path: Path, table: Table, schema: pa.Schema) -> Sink:
-        import pyarrow as pa
+    def write_table(self, rows: pa.Table) -> None:
+        """Write a record batch."""
+        self._writer.write_table(rows.combine_chunks())
 
-        file = self._files.enter_context(pa.OSFile(str(path), "wb"))
-        writer = self._files.enter_context(pa.ipc.new_file(file, schema))
-        return lambda rows: writer.write_table(rows.combine_chunks())
+    def close(self) -> None:
+        """Write the footer."""
+        with self._file:
+            self._writer.close()
 
 
 class ParquetWriter(ArrowWriter):
-    """The same in Parquet."""
+    """The same in Parquet. A table that has many groups of rows goes on in another file."""
 
     SUFFIX = "parquet"
 
-    def _sink(self, path: Path, table: Table, schema: pa.Schema) -> Sink:
+    def _write(self, kept: _Kept) -> None:
+        super()._write(kept)
+        kept.pieces += len(kept.schema)
+        if sum(other.pieces for other in self._kept.values()) > _MOST_PIECES:
+            self._end(max(self._kept.values(), key=lambda other: other.pieces))
+
+    def _sink(self, path: Path, table: Table, first: pa.Table) -> Sink:
         from pyarrow import parquet
 
+        spelling = spelling_of(first)
         options: dict[str, Any] = {
-            "compression": "snappy",
+            "compression": spelling.compression,
             # Values of sensors seldom come back; looking for those that do takes most of the time.
             "use_dictionary": [
                 column.name for column in table.all_columns if isinstance(column.type, Names)
             ],
+            "column_encoding": spelling.encodings or None,
             # A reader looks for places and times; bounds of all else cost more than they help.
             "write_statistics": [table.frame_columns[0].name, table.frame_columns[2].name],
         }
         try:
-            writer = parquet.ParquetWriter(str(path), schema, **options)
+            return cast(Sink, parquet.ParquetWriter(str(path), first.schema, **options))
         except NotImplementedError as error:  # It has no structs without members.
             raise ConvertError(
                 f"Parquet has no place for what {table.name} holds: {error}",
                 "convert to another format, such as arrow",
             ) from None
-        self._files.enter_context(writer)
-        return lambda rows: writer.write_table(rows, row_group_size=_MOST_ROWS)

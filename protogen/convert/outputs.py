@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 _PARTIAL = ".partial"
+_CONTINUED = re.compile(r"\.part-[0-9]{4,}(?=\.[^.]+$)")
+
+
+def continuation(relative: str, number: int) -> str:
+    """What a file is called that goes on, as the `number`th, where the first one ended; 0: that."""
+    stem, dot, suffix = relative.rpartition(".")
+    return f"{stem}.part-{number:04}{dot}{suffix}" if number else relative
 
 
 class Pending:
@@ -68,14 +76,17 @@ def remove(folder: Path, relatives: Iterable[str]) -> None:
 
 
 def sweep(folder: Path, names: Iterable[str], keep: Iterable[str]) -> None:
-    """Remove what attempts at files of these names left in the folder's folders, but for `keep`."""
+    """Remove what attempts at files of these names left in the folder's folders, but for `keep`.
+
+    Those go along in which such files go on.
+    """
     ours, kept = set(names), set(keep)
     for path in list(folder.glob("*/*")):
         name, is_partial = path.name, path.name.endswith(_PARTIAL)
         if is_partial:
             name = name[1:].removesuffix(_PARTIAL).rpartition(".")[0]
         relative = path.relative_to(folder).as_posix()
-        if name in ours and (is_partial or relative not in kept):
+        if _CONTINUED.sub("", name) in ours and (is_partial or relative not in kept):
             path.unlink(missing_ok=True)
             _remove_empty(path.parent, folder)
 
