@@ -15,13 +15,41 @@ from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.fields import Field
-from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.readings import physical, value_name
 from protogen.model.types import Integer
 from protogen.model.wire import Unit
 from protogen.runtime.decoder import Decoder
-from protogen.targets.python.live import module_of
+from protogen.targets.python.live import kept_module
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What is in a payload."""
+
+    fields: tuple[Field, ...] = ()
+    payload: bytes = b""
+
+    @cached_property
+    def _rows(self) -> list[Row]:
+        units = tuple(Unit(byte, bytes((byte,))) for byte in self.payload)
+        found = dissect(self.fields, Cursor(units, 0))
+        return [row for row in found if row.value_type is not None]
+
+    @cached_property
+    def values(self) -> Mapping[str, str]:
+        """Each number and text by its path, in words: `1280 (50.75 deg)`."""
+        return {row.path: _words(row) for row in self._rows}
+
+    @cached_property
+    def raw(self) -> Mapping[str, int]:
+        """The integers, as they are on the wire."""
+        return {row.path: row.value for row in self._rows if isinstance(row.value, int)}
+
+    @cached_property
+    def meanings(self) -> Mapping[str, Hashable]:
+        """What the values mean, the same for the same meaning in other words."""
+        return {row.path: _meaning(row) for row in self._rows}
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +60,24 @@ class Reading:
     """None where it sees none."""
     why: str = ""
     """Why there is none."""
-    values: Mapping[str, str] = field(default_factory=dict)
-    """Each number and text by its path, in words: `1280 (50.75 deg)`."""
-    raw: Mapping[str, int] = field(default_factory=dict)
-    """The integers among them, as they are on the wire."""
-    meanings: Mapping[str, Hashable] = field(default_factory=dict)
-    """What they mean, the same for the same meaning in other words: 0.0 is 0, and 1 m is 100 cm."""
+    contents: Contents = Contents()
+    parts: Mapping[str, str] = field(default_factory=dict)
+    """What the sender chose in the frame itself."""
+
+    @property
+    def values(self) -> Mapping[str, str]:
+        """Each number and text by its path, in words: `1280 (50.75 deg)`."""
+        return ChainMap(dict(self.contents.values), dict(self.parts))
+
+    @property
+    def raw(self) -> Mapping[str, int]:
+        """The integers among the fields, as they are on the wire."""
+        return self.contents.raw
+
+    @property
+    def meanings(self) -> Mapping[str, Hashable]:
+        """What they mean, the same for the same meaning in other words: 0.0 is 0, 1 m is 100 cm."""
+        return {**self.parts, **self.contents.meanings}
 
 
 class Side:
@@ -45,10 +85,11 @@ class Side:
 
     def __init__(self, protocol: Protocol) -> None:
         self.protocol = protocol
+        self._decoders: dict[str, Decoder[Any, Any]] = {}
 
     @cached_property
     def _module(self) -> ModuleType:
-        return module_of(self.protocol)
+        return kept_module(self.protocol)
 
     @property
     def _codec(self) -> Any:
@@ -65,27 +106,30 @@ class Side:
         except (Refused, KeyError, TypeError, ValueError):
             return None  # Values of the other version may be none of this one's.
 
-    def reads(self, sender: str, frame: bytes) -> Reading:
-        """What a receiver makes of a frame that stands alone."""
-        decoder = Decoder(self._codec.sender(sender))
+    def _decoder(self, sender: str) -> Decoder[Any, Any]:
+        """What takes one frame after the other, each with an end of input behind it."""
+        if sender not in self._decoders:
+            self._decoders[sender] = Decoder(self._codec.sender(sender))
+        return self._decoders[sender]
+
+    def reads(self, sender: str, frame: bytes, like: Reading | None = None) -> Reading:
+        """What a receiver makes of a frame that stands alone.
+
+        `like` is what another receiver made of it. Most messages of two versions are the same, and
+        then so is what is in them.
+        """
+        decoder = self._decoder(sender)
         events = [*decoder.feed(frame), *decoder.flush()]
         found = [event for event in events if event.kind == "message"]
         if not found:
             return Reading(None, _why(events))
         event = found[0]
         name = event.message.NAME
-        rows = _rows(self.protocol.message(name), event.payload)
-        values = {row.path: _words(row) for row in rows}
+        contents = Contents(self.protocol.message(name).fields, event.payload)
+        if like is not None and like.contents == contents:
+            contents = like.contents
         parts = {f"frame.{part}": str(value) for part, value in asdict(event.parts).items()}
-        raw = {row.path: row.value for row in rows if isinstance(row.value, int)}
-        meanings = {row.path: _meaning(row) for row in rows}
-        return Reading(name, "", ChainMap(values, parts), raw, ChainMap(meanings, {**parts}))
-
-
-def _rows(message: Message, payload: bytes) -> list[Row]:
-    """The values of a payload."""
-    units = tuple(Unit(byte, bytes((byte,))) for byte in payload)
-    return [row for row in dissect(message.fields, Cursor(units, 0)) if row.value_type is not None]
+        return Reading(name, "", contents, parts)
 
 
 def _meaning(row: Row) -> Hashable:

@@ -190,9 +190,11 @@ class Witnesses:
             if frame is None:
                 continue
             sent = one.reads(sender.name, frame)
-            received = other.reads(theirs, frame) if listens else Reading(None, "nobody listens")
             if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.
+            received = Reading(None, "nobody listens")
+            if listens:
+                received = other.reads(theirs, frame, like=sent)
             harm, differences = self._judged(sent, received, old_sends)
             if harm is not None:
                 yield Witness(
@@ -215,7 +217,9 @@ class Witnesses:
         name = (messages if old_sends else _swapped(messages)).get(message.name)
         other = self._new if old_sends else self._old
         for theirs in other.protocol.messages:
-            if theirs.name == name and _names(theirs) == _names(message):
+            if theirs.name != name or _is_drawn_alike(theirs, message):
+                continue
+            if _names(theirs) == _names(message):
                 yield from _drawn(theirs, sender)
 
     # --- what is read -----------------------------------------------------------------------------
@@ -249,6 +253,8 @@ class Witnesses:
             if change.old_part is not None
         }
         names = {**renamed, **parts}
+        if not names and sent.contents is received.contents and sent.parts == received.parts:
+            return
         theirs = dict(received.meanings)
         mapping = names if old_sends else _swapped(names)
         for path, meaning in sent.meanings.items():
@@ -265,6 +271,12 @@ def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
     dice = Random(message.name)  # noqa: S311 - nothing secret
     count = min(boundary_rounds(message, sender.frame), ROUNDS) + RANDOM
     yield from islice(samples(message, sender.frame, dice), count)
+
+
+def _is_drawn_alike(one: Message, other: Message) -> bool:
+    """Whether the same samples are drawn for both."""
+    shapes = [(m.name, m.fields, m.unspecified, m.sizes) for m in (one, other)]
+    return shapes[0] == shapes[1]
 
 
 def _shown(value: str | None) -> str:

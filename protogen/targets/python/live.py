@@ -11,6 +11,21 @@ from protogen.model.protocol import Protocol
 from protogen.targets.python.emit import kept_source
 
 _NUMBERS = itertools.count()
+_IMPORTED: dict[int, tuple[Protocol, ModuleType]] = {}
+"""What was imported last, by the protocol's address; a protocol that is kept keeps its own."""
+_KEPT = 8
+
+
+def kept_module(protocol: Protocol) -> ModuleType:
+    """The module of a protocol, which is imported once for whoever asks again soon."""
+    found = _IMPORTED.get(id(protocol))
+    if found is not None and found[0] is protocol:
+        return found[1]
+    module = module_of(protocol)
+    while len(_IMPORTED) >= _KEPT:
+        del _IMPORTED[next(iter(_IMPORTED))]
+    _IMPORTED[id(protocol)] = (protocol, module)
+    return module
 
 
 def module_of(protocol: Protocol) -> ModuleType:
