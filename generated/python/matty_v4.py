@@ -752,12 +752,12 @@ def _waits_pc(data: bytes, at: int) -> bool:
         return False
     if not data.startswith(b"\x55", at):
         return False
-    if data.find(b"\x55", at + 1) > 0:
-        return False
     try:
         content = data[at + 1:]
         part = False
-        if 0x56 in content:
+        if 0x55 in content or 0x56 in content:
+            if data.find(b"\x55", at + 1) > 0:
+                return False
             part = content.endswith(b"\x56")
             if part:
                 content = content[:-1]
@@ -888,12 +888,12 @@ def _waits_esp(data: bytes, at: int) -> bool:
         return False
     if not data.startswith(b"\x55", at):
         return False
-    if data.find(b"\x55", at + 1) > 0:
-        return False
     try:
         content = data[at + 1:]
         part = False
-        if 0x56 in content:
+        if 0x55 in content or 0x56 in content:
+            if data.find(b"\x55", at + 1) > 0:
+                return False
             part = content.endswith(b"\x56")
             if part:
                 content = content[:-1]

@@ -1365,15 +1365,16 @@ def _waits_linux(data: bytes, at: int) -> bool:
         return False
     if not data.startswith(b"\x1b\x02", at):
         return False
-    if data.find(b"\x1b\x02", at + 1) > 0:
-        return False
-    if data.find(b"\x1b\x03", at + 2) >= 0:
-        return False
     try:
-        held = data.endswith(b"\x1b", at + 2)
-        content = data[at + 2 : len(data) - held]
+        content = data[at + 2:]
         part = False
         if 0x1B in content or 0x7C in content:
+            if data.find(b"\x1b\x02", at + 1) > 0:
+                return False
+            if data.find(b"\x1b\x03", at + 2) >= 0:
+                return False
+            if content.endswith(b"\x1b"):
+                content = content[:-1]
             part = content.endswith((b"\x1b", b"\x7c"))
             if part:
                 content = content[:-1]
@@ -1530,15 +1531,16 @@ def _waits_flex(data: bytes, at: int) -> bool:
         return False
     if not data.startswith(b"\x1b\x02", at):
         return False
-    if data.find(b"\x1b\x02", at + 1) > 0:
-        return False
-    if data.find(b"\x1b\x03", at + 2) >= 0:
-        return False
     try:
-        held = data.endswith(b"\x1b", at + 2)
-        content = data[at + 2 : len(data) - held]
+        content = data[at + 2:]
         part = False
         if 0x1B in content or 0x7C in content:
+            if data.find(b"\x1b\x02", at + 1) > 0:
+                return False
+            if data.find(b"\x1b\x03", at + 2) >= 0:
+                return False
+            if content.endswith(b"\x1b"):
+                content = content[:-1]
             part = content.endswith((b"\x1b", b"\x7c"))
             if part:
                 content = content[:-1]

@@ -562,7 +562,7 @@ _CODES = _fast.Tables()
 _UNPACK_0 = _struct.Struct("<3s").unpack_from
 _NUMBER_0 = _rt.Number(16, False, "little", True)
 _PACK_0 = _struct.Struct("<3s").pack
-_PACK_1 = _struct.Struct("<B").pack
+_PACK_1 = _struct.Struct("<b").pack
 _UNPACK_1 = _struct.Struct("<BB").unpack
 _UNPACK_2 = _struct.Struct("<HH").unpack
 _PAIRS_0 = _TABLES.pairs(14, True)
@@ -578,16 +578,17 @@ _PAIR_LIST_0 = _fast.PairLists(14, False, "little").decode
 _MEMBERS_5 = _TABLES.members(SonarStatus, 7)
 _UNPACK_6 = _struct.Struct("<BHH").unpack
 _PAIRS_1 = _TABLES.pairs(14, False)
+_PACK_2 = _struct.Struct("<B").pack
 _BYTE_CODES_0 = _CODES.narrow(7, True)
-_PACK_2 = _struct.Struct("<BBB").pack
+_PACK_3 = _struct.Struct("<BBB").pack
 _BYTE_CODES_1 = _CODES.codes(14, True)
-_PACK_3 = _struct.Struct("<BHH").pack
-_PACK_4 = _struct.Struct("<BBHHH").pack
-_PACK_5 = _struct.Struct("<BBHHB").pack
+_PACK_4 = _struct.Struct("<BHH").pack
+_PACK_5 = _struct.Struct("<BbHHH").pack
+_PACK_6 = _struct.Struct("<BbHHb").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
-_PACK_6 = _struct.Struct("<BB").pack
+_PACK_7 = _struct.Struct("<Bb").pack
 _BYTE_CODES_2 = _CODES.codes(14, False)
-_PACK_7 = _struct.Struct("<BBHH").pack
+_PACK_8 = _struct.Struct("<BbHH").pack
 
 
 def _read_maintenance_argument_reconfig_uart(
@@ -627,7 +628,7 @@ def _write_maintenance_argument_run_motor_controller_flasher(
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
         raise _fast.Unclear
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     return _PACK_1(v1)
 
@@ -868,7 +869,7 @@ def _waits_host(data: bytes, at: int) -> bool:
 
 
 def _frame_host(payload: bytes, start_: int | None) -> bytes:
-    content = _PACK_1(start_) + payload
+    content = _PACK_2(start_) + payload
     return content + b"\xff"
 
 
@@ -943,7 +944,7 @@ def _waits_brain(data: bytes, at: int) -> bool:
 
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:
-    content = _PACK_1(start_) + payload
+    content = _PACK_2(start_) + payload
     return content
 
 
@@ -954,7 +955,7 @@ def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
     v2 = item.arc
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_2(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
+    content = _PACK_3(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
 
@@ -965,7 +966,7 @@ def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None)
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_3(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
+    content = _PACK_4(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
@@ -976,7 +977,7 @@ def _encode_move_relative_arc(item: MoveRelativeArc, sender: str | None) -> byte
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_3(130, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
+    content = _PACK_4(130, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
@@ -990,13 +991,13 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         raise _fast.Unclear
     v2: list[bytes] = []
     for each3 in v1:
-        if not 0 <= each3 <= 127:
+        if each3 < 0:
             raise _fast.Unclear
         v2.append(_PACK_1(each3))
     if v1 != [66, 17, 122]:
         raise _fast.Unclear
     v4 = item.operation
-    if not 0 <= v4 <= 127:
+    if v4 < 0:
         raise _fast.Unclear
     v5 = item.argument
     if v4 in (81, 82):
@@ -1016,7 +1017,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         v8 = v5.motor_controller
         if not 1 <= v8 <= 4:
             raise _fast.Unclear
-        if not 0 <= v8 <= 127:
+        if v8 < 0:
             raise _fast.Unclear
         case6 = _PACK_1(v8)
     else:
@@ -1030,7 +1031,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
     payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
     if not 4 <= len(payload) <= 7:
         raise _fast.Unclear
-    content = _PACK_1(254) + payload
+    content = _PACK_2(254) + payload
     return content + b"\xff"
 
 
@@ -1038,14 +1039,14 @@ def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1053,14 +1054,14 @@ def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1068,14 +1069,14 @@ def _encode_compass(item: Compass, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.avg_x
     v3 = item.avg_y
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1083,16 +1084,16 @@ def _encode_optflow(item: Optflow, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.dx
     v3 = item.dy
     v4 = item.q
-    if not 0 <= v4 <= 127:
+    if v4 < 0:
         raise _fast.Unclear
     if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_5(131, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], v4)
+    content = _PACK_6(131, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], v4)
     return content
 
 
@@ -1100,14 +1101,14 @@ def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    content = b"".join((_PACK_6(132, v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_7(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
@@ -1115,14 +1116,14 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 7:
         raise _fast.Unclear
-    content = b"".join((_PACK_6(133, v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_7(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
@@ -1130,13 +1131,13 @@ def _encode_facing(item: Facing, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.heading
     v3 = item.speed
     if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_7(160, v1, _BYTE_CODES_2[v2], _BYTE_CODES_1[v3])
+    content = _PACK_8(160, v1, _BYTE_CODES_2[v2], _BYTE_CODES_1[v3])
     return content
 
 

@@ -627,7 +627,7 @@ _BYTES = _fast.BYTES
 _MessageEvent = _rt.MessageEvent
 _TABLES = _fast.Tables()
 _CODES = _fast.Tables()
-_PACK_0 = _struct.Struct("<B").pack
+_PACK_0 = _struct.Struct("<b").pack
 _UNPACK_0 = _struct.Struct("<BB").unpack
 _UNPACK_1 = _struct.Struct(">HH").unpack
 _PAIRS_0 = _TABLES.pairs(14, True)
@@ -647,18 +647,19 @@ _UNPACK_7 = _struct.Struct(">H").unpack
 _PAIRS_1 = _TABLES.pairs(14, False)
 _UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
+_PACK_1 = _struct.Struct("<B").pack
 _BYTE_CODES_0 = _CODES.narrow(7, True)
-_PACK_1 = _struct.Struct("<BBB").pack
+_PACK_2 = _struct.Struct("<BBB").pack
 _BYTE_CODES_1 = _CODES.codes(14, True)
-_PACK_2 = _struct.Struct(">BHH").pack
-_PACK_3 = _struct.Struct("<BB").pack
-_PACK_4 = _struct.Struct("<BBHHH").pack
+_PACK_3 = _struct.Struct(">BHH").pack
+_PACK_4 = _struct.Struct("<Bb").pack
+_PACK_5 = _struct.Struct("<BbHHH").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
-_PACK_5 = _struct.Struct("<BBHH").pack
-_PACK_6 = _struct.Struct(">BBHH").pack
+_PACK_6 = _struct.Struct("<BbHH").pack
+_PACK_7 = _struct.Struct(">BbHH").pack
 _BYTE_CODES_2 = _CODES.codes(14, False)
-_PACK_7 = _struct.Struct(">BH").pack
-_PACK_8 = _struct.Struct("<B5s5s5s5s").pack
+_PACK_8 = _struct.Struct(">BH").pack
+_PACK_9 = _struct.Struct("<B5s5s5s5s").pack
 
 
 def _read_maintenance_argument_run_motor_controller_flasher(
@@ -680,7 +681,7 @@ def _write_maintenance_argument_run_motor_controller_flasher(
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
         raise _fast.Unclear
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     return _PACK_0(v1)
 
@@ -940,7 +941,7 @@ def _waits_host(data: bytes, at: int) -> bool:
 
 
 def _frame_host(payload: bytes, start_: int | None) -> bytes:
-    content = _PACK_0(start_) + payload
+    content = _PACK_1(start_) + payload
     return content + b"\xff"
 
 
@@ -1017,7 +1018,7 @@ def _waits_brain(data: bytes, at: int) -> bool:
 
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:
-    content = _PACK_0(start_) + payload
+    content = _PACK_1(start_) + payload
     return content
 
 
@@ -1028,7 +1029,7 @@ def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
     v2 = item.arc
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_1(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
+    content = _PACK_2(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
 
@@ -1039,7 +1040,7 @@ def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None)
     v2 = item.forward
     if not (type(v1) is type(v2) is int):
         raise _fast.Unclear
-    content = _PACK_2(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
+    content = _PACK_3(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
@@ -1047,9 +1048,9 @@ def _encode_decrease_phase_angle(item: DecreasePhaseAngle, sender: str | None) -
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.ignored
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
-    content = _PACK_3(209, v1)
+    content = _PACK_4(209, v1)
     return content + b"\xff"
 
 
@@ -1057,9 +1058,9 @@ def _encode_increase_phase_angle(item: IncreasePhaseAngle, sender: str | None) -
     if sender is not None and sender != "host":
         raise _fast.Unclear
     v1 = item.ignored
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
-    content = _PACK_3(210, v1)
+    content = _PACK_4(210, v1)
     return content + b"\xff"
 
 
@@ -1073,13 +1074,13 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         raise _fast.Unclear
     v2: list[bytes] = []
     for each3 in v1:
-        if not 0 <= each3 <= 127:
+        if each3 < 0:
             raise _fast.Unclear
         v2.append(_PACK_0(each3))
     if v1 != [66, 17, 122]:
         raise _fast.Unclear
     v4 = item.operation
-    if not 0 <= v4 <= 127:
+    if v4 < 0:
         raise _fast.Unclear
     v5 = item.argument
     if v4 in (82,):
@@ -1092,7 +1093,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
         v7 = v5.motor_controller
         if not 1 <= v7 <= 4:
             raise _fast.Unclear
-        if not 0 <= v7 <= 127:
+        if v7 < 0:
             raise _fast.Unclear
         case6 = _PACK_0(v7)
     else:
@@ -1106,7 +1107,7 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
     payload = b"".join((b"".join(v2), _PACK_0(v4), case6))
     if not 4 <= len(payload) <= 5:
         raise _fast.Unclear
-    content = _PACK_0(254) + payload
+    content = _PACK_1(254) + payload
     return content + b"\xff"
 
 
@@ -1114,14 +1115,14 @@ def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1129,14 +1130,14 @@ def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     v4 = item.int_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1144,14 +1145,14 @@ def _encode_compass(item: Compass, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.avg_x
     v3 = item.avg_y
     v4 = item.avg_z
     if not (type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_4(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
+    content = _PACK_5(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
@@ -1159,14 +1160,14 @@ def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 360:
         raise _fast.Unclear
-    content = b"".join((_PACK_3(132, v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_4(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
@@ -1174,14 +1175,14 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.distances
     if type(v2) is not list:
         raise _fast.Unclear
     if len(v2) != 3:
         raise _fast.Unclear
-    content = b"".join((_PACK_3(133, v1), _PAIR_LIST_1(v2)))
+    content = b"".join((_PACK_4(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
@@ -1189,13 +1190,13 @@ def _encode_facing(item: Facing, sender: str | None) -> bytes:
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.heading
     v3 = item.speed
     if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_5(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
+    content = _PACK_6(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
@@ -1203,13 +1204,13 @@ def _encode_optflow_integral(item: OptflowIntegral, sender: str | None) -> bytes
     if sender is not None and sender != "brain":
         raise _fast.Unclear
     v1 = item.status
-    if not 0 <= v1 <= 127:
+    if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
     v3 = item.int_y
     if not (type(v2) is type(v3) is int):
         raise _fast.Unclear
-    content = _PACK_6(161, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
+    content = _PACK_7(161, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
@@ -1219,7 +1220,7 @@ def _encode_motor_controller_message(item: MotorControllerMessage, sender: str |
     v1 = item.last_msg
     if type(v1) is not int:
         raise _fast.Unclear
-    content = _PACK_7(209, _BYTE_CODES_2[v1])
+    content = _PACK_8(209, _BYTE_CODES_2[v1])
     return content
 
 
@@ -1232,7 +1233,7 @@ def _encode_debug_numbers(item: DebugNumbers, sender: str | None) -> bytes:
     v4 = item.dbg4
     if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
         raise _fast.Unclear
-    content = _PACK_8(
+    content = _PACK_9(
         210,
         _NUMBER_0.encode(v1),
         _NUMBER_0.encode(v2),

@@ -93,8 +93,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             self._data = b""
             self._is_waiting = False
         else:
-            self._data = whole[end:] if end else whole
-            self._is_waiting = self._still_waits(0)
+            self._data = rest = whole[end:] if end else whole
+            waits = self._waits
+            self._is_waiting = waits is not None and waits(rest, 0)
         self._offset += end
         if self._data and not self._is_waiting:
             self._events = events

@@ -36,7 +36,8 @@ class _Waiting(FrameFunction):
         self.lines.add("size = len(data) - at")
         self._no_if(f"size >= {self.frame.framing.greatest}")
         self._no_other_start()
-        self._no_delimiters()
+        if not self._delimiters_show:
+            self._no_delimiters()
         with self.lines.block("try:"):
             self._content()
             for part in self.frame.head:
@@ -78,6 +79,10 @@ class _Waiting(FrameFunction):
         """Set `content` to all parts so far, but literals in front."""
         frame = self.frame
         begin = f"at + {frame.before}" if frame.before else "at"
+        if self._delimiters_show:
+            self.lines.add(f"content = data[{begin}:]")
+            self._delimited()
+            return
         if self._holds_end:
             # What begins an end is held back, because it may be content as well.
             first = f"at + {len(frame.start_bytes)}" if frame.start_bytes else "at"
@@ -94,6 +99,35 @@ class _Waiting(FrameFunction):
                 self._replaced()
             if frame.before and not frame.skipped:
                 self.lines.add(f"content = data[at : {begin}] + content")
+
+    @property
+    def _delimiters_show(self) -> bool:
+        """Whether a delimiter that has begun shows by a byte of the content, which is all stuffed.
+
+        Then most beginnings of frames need neither be searched nor unstuffed.
+        """
+        frame, start, end = self.frame, self.frame.start, self.frame.framing.end
+        literal_start = isinstance(start, StartLiteral) and start.protected
+        is_all = literal_start and frame.before == frame.skipped == len(frame.start_bytes)
+        overlaps = frame.start_bytes[:1] in frame.start_bytes[1:]
+        known = frame.replacements is not None and frame.specials(sending=False) is not None
+        ends = end is None or end.protected
+        return bool(frame.stuffed and is_all and not overlaps and known and ends)
+
+    def _delimited(self) -> None:
+        """Look closer where a byte of the content may belong to a delimiter, or to a code."""
+        frame, specials = self.frame, self.frame.specials(sending=False)
+        assert specials is not None
+        firsts = {literal_[0] for literal_ in (frame.start_bytes, frame.end) if literal_}
+        found = sorted({*specials, *firsts})
+        self.lines.add("part = False")
+        with self.lines.block(f"if {' or '.join(f'0x{byte:02X} in content' for byte in found)}:"):
+            self._no_delimiters()
+            if self._holds_end:
+                # What begins an end is held back, because it may be content as well.
+                with self.lines.block(f"if content.endswith({literal(frame.end[:1])}):"):
+                    self.lines.add("content = content[:-1]")
+            self._unreplace()
 
     @property
     def _holds_end(self) -> bool:

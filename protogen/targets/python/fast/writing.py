@@ -101,6 +101,7 @@ def _is_narrow(type_: Integer) -> bool:
     return type_.size == 1 and not type_.signed and not is_native(type_) and type_.role != "bool"
 
 
+_SEVEN = 7
 _TYPES_IN_LINE = 6
 
 
@@ -118,7 +119,7 @@ class _Bytes:
     codes: str = ""
     values: list[str] = field(default_factory=list)
     integers: list[str] = field(default_factory=list)
-    """Variables that have to be integers, and nothing that only looks like one."""
+    """Variables that have to be integers, and that `struct` does not get to see."""
 
 
 class _Writer:
@@ -177,6 +178,8 @@ class _Writer:
         """Let `struct` write a value together with its neighbours."""
         code = code_of(type_)
         assert code is not None
+        if isinstance(type_, Integer) and _is_narrow(type_) and type_.bits == _SEVEN:
+            code = "b"  # Which has no number above 127.
         self._pack(Packed(order_of(type_), code, expression))
 
     def _pack(self, item: Packed) -> None:
@@ -262,13 +265,20 @@ class _Writer:
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.encode({value})"
         if _is_narrow(type_):
-            self.lines.refuse_if(f"not 0 <= {value} <= {type_.greatest}")
+            self._in_narrow(value, type_)
             return value
         if type_.size == 1:
             codes = f"_CODES.narrow({type_.bits}, {type_.signed})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
         return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
+
+    def _in_narrow(self, value: str, type_: Integer) -> None:
+        """Check a value that fewer than 8 bits have to hold; `struct` sees that 7 are enough."""
+        if type_.bits == _SEVEN:
+            self.lines.refuse_if(f"{value} < 0")
+        else:
+            self.lines.refuse_if(f"not 0 <= {value} <= {type_.greatest}")
 
     def _float(self, value: str, type_: Float, item: Field | None) -> None:
         self.lines.refuse_if(f"type({value}) is not float")
