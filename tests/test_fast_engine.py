@@ -25,7 +25,7 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import fast, late
+from protogen.runtime import fast, late, runs
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate
 from protogen.runtime.number import Number
@@ -156,6 +156,105 @@ class TestChecksumsOfManyFrames:
         assert shown(events_of(path, "flex", "fast", [data])) == due
         assert shown(events_of(path, "flex", "fast", portions(data, Random(3)))) == due
         assert sum(item[0] == "message" for item in due) == 700 - len(wrong)
+
+
+def damaged(frames: list[bytes], random: Random) -> list[bytes]:
+    """Streams of the frames: as they are, and each with something wrong, or another, somewhere."""
+    place = random.randrange(len(frames) // 4, len(frames))
+    frame = frames[place]
+    at = random.randrange(1, len(frame))
+    wrong = [
+        frame,
+        frame[:at] + bytes((frame[at] ^ 1 << random.randrange(8),)) + frame[at + 1 :],
+        frame[:at],
+        frame[:at] + bytes((random.randrange(256),)) + frame[at:],
+        frame + frame[-2:],
+    ]
+    return [b"".join([*frames[:place], one, *frames[place + 1 :]]) for one in wrong]
+
+
+@EVERY_SENDER
+def test_runs_of_one_message(path: Path, sender: str) -> None:
+    """They are taken all at once, as long as they are in order and alike."""
+    if not hasattr(module_at(path), "_runs"):
+        return
+    random = Random(11)
+    by_name = {event.message.NAME: event.raw for event in decoded(path, sender)}
+    for frame in [*by_name.values()][:4]:
+        frames = [frame] * (5000 // len(frame))
+        for data in damaged(frames, random):
+            due = shown(events_of(path, sender, "construct", [data]))
+            assert shown(events_of(path, sender, "fast", [data])) == due
+
+
+class TestRuns:
+    def frames(self, count: int) -> list[bytes]:
+        esp = module_at(MATTY)
+        random = Random(2)
+        return [
+            esp.encode(
+                esp.Status(
+                    status=0,
+                    mode=random.randrange(3),
+                    voltage=random.randrange(1 << 16),
+                    current=0x5655,
+                    speed=-1,
+                    angle=random.randrange(-500, 500),
+                    encoder0=random.randrange(1 << 16),
+                    encoder1=0,
+                    encoder2=1,
+                    encoder3=2,
+                ),
+                counter=number & 0xFF,
+            )
+            for number in range(count)
+        ]
+
+    def taken(self, data: bytes) -> tuple[int, list[Any]]:
+        esp = module_at(MATTY)
+        events: list[Any] = []
+        end = esp._RUNS_0.take(data, 0, 0, events, esp._cut_esp, esp._ESP_HEADS)
+        return end, events
+
+    def test_they_are_taken(self) -> None:
+        data = b"".join(self.frames(900))
+        end, events = self.taken(data)
+        assert len(data) - end <= runs.LONG
+        assert b"".join(event.raw for event in events) == data[:end]
+        assert shown(events) == shown(events_of(MATTY, "esp", "construct", [data]))[: len(events)]
+
+    def test_others_are_left(self) -> None:
+        frames = self.frames(200)
+        ack = module_at(MATTY).encode(module_at(MATTY).Ack(), counter=1)
+        unknown = bytes.fromhex("55 02 01 5A A3")
+        for other in (ack, unknown, b"\x55\x56\x00", b"\x56"):
+            for place in (0, 1, 50):
+                data = b"".join([*frames[:place], other, *frames[place:]])
+                assert self.taken(data) == (0, [])
+                due = shown(events_of(MATTY, "esp", "construct", [data]))
+                assert shown(events_of(MATTY, "esp", "fast", [data])) == due
+
+    def test_longer_frames_than_there_are_are_left(self) -> None:
+        data = b"".join(self.frames(200))
+        short = replace(module_at(MATTY)._RUNS_0, greatest=20)
+        esp = module_at(MATTY)
+        assert short.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) == 0
+
+    @pytest.mark.parametrize("seed", range(6))
+    def test_the_same_events(self, seed: int) -> None:
+        random = Random(seed)
+        for data in damaged(self.frames(700), random):
+            due = shown(events_of(MATTY, "esp", "construct", [data]))
+            assert shown(events_of(MATTY, "esp", "fast", [data])) == due
+            halves = [data[: len(data) // 2], data[len(data) // 2 :]]
+            assert shown(events_of(MATTY, "esp", "fast", halves)) == due
+
+    def test_few_heads_are_remembered(self) -> None:
+        esp = module_at(MATTY)
+        data = b"".join(self.frames(200))
+        remembering = replace(esp._RUNS_0, numbers={bytes((n,)): [] for n in range(40)})
+        assert remembering.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) > 0
+        assert len(remembering.numbers) == 1
 
 
 CUT_BY_THE_REFERENCE = {("checksum_only", "station")}

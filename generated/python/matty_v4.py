@@ -17,6 +17,7 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
+from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "726898ed912fa822b88887315e8f66eefc016b1aa21b6ec013246747f9291116"
@@ -523,6 +524,17 @@ _NUMBER_0 = _rt.Number(24, False, "little", False)
 _UNPACK_4 = _struct.Struct("<3xBBHHhhHHHHhhhx").unpack
 _MEMBERS_3 = _TABLES.members(StatusStatus, 8)
 _UNPACK_5 = _struct.Struct("<3xBBx").unpack
+_RUNS_0 = _runs.StuffedRuns(
+    start=b"\x55",
+    end=b"",
+    greatest=252,
+    codes=((b"\x56", b"\x56\xa9"), (b"\x55", b"\x56\xaa")),
+    specials=b"\x56",
+    head=slice(1, 3),
+    alike=(0, 2),
+    counter=1,
+    xor_from=None,
+)
 _STUFFING_0 = _transparency.Escape(0x56, frozenset({0x55, 0x56}), "invert")
 _PACK_0 = _struct.Struct("<BBB").pack
 _PACK_1 = _struct.Struct("<BBBB").pack
@@ -651,6 +663,8 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:
@@ -791,6 +805,8 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:

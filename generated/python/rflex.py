@@ -18,6 +18,7 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
+from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "c6c32f0e21623c09fce54740524abf73e27033a6c90c7ea41df4db600404903a"
@@ -847,6 +848,17 @@ _UNPACK_9 = _struct.Struct(">4xIx").unpack
 _UNPACK_10 = _struct.Struct(">4xIBHx").unpack
 _MEMBERS_6 = _fast.Members(IoValue)
 _UNPACK_11 = _struct.Struct(">4xIIIx").unpack
+_RUNS_0 = _runs.StuffedRuns(
+    start=b"\x1b\x02",
+    end=b"\x1b\x03",
+    greatest=782,
+    codes=((b"\x1b", b"\x1b\x00"), (b"\x7c", b"\x7c\x1b\x01")),
+    specials=b"\x1b\x7c",
+    head=slice(0, 3),
+    alike=(0, 2, 3),
+    counter=1,
+    xor_from=4,
+)
 _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
@@ -1047,6 +1059,8 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     are_many = size - at > 1024
@@ -1227,6 +1241,8 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     are_many = size - at > 1024

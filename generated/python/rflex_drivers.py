@@ -18,6 +18,7 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
+from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "1505b9412ac30877e4786b80edfb26c1644687195cd01d012659df4eb4bcf04e"
@@ -994,6 +995,17 @@ _UNPACK_11 = _struct.Struct(">4xIBHx").unpack
 _UNPACK_12 = _struct.Struct(">4xIIIx").unpack
 _UNPACK_13 = _struct.Struct(">4xIIIIIBx").unpack
 _MEMBERS_6 = _TABLES.members(IrRunMode, 8)
+_RUNS_0 = _runs.StuffedRuns(
+    start=b"\x1b\x02",
+    end=b"\x1b\x03",
+    greatest=780,
+    codes=((b"\x1b", b"\x1b\x00"), (b"\x7c", b"\x7c\x1b\x01")),
+    specials=b"\x1b\x7c",
+    head=slice(0, 3),
+    alike=(0, 2, 3),
+    counter=1,
+    xor_from=0,
+)
 _STUFFING_0 = _transparency.Substitution(
     {0x1B: bytes.fromhex("1B 00"), 0x7C: bytes.fromhex("7C 1B 01")},
 )
@@ -1246,6 +1258,8 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     are_many = size - at > 1024
@@ -1410,6 +1424,8 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
+    if size - at > _runs.LONG:
+        at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     are_many = size - at > 1024

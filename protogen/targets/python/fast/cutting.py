@@ -116,6 +116,8 @@ class _Cutter(FrameFunction):
         if self.lines.constants.use("_TABLES."):
             self.lines.add("if not _TABLES.are_filled:")
             self.lines.add("    _TABLES.fill()")
+        if self.frame.has_runs:
+            self._runs()
         self.lines.add("add = events.append")
         if self._deferred is not None:
             self.lines.add("unchecked: list[bytes] = []")
@@ -141,6 +143,40 @@ class _Cutter(FrameFunction):
                 self.lines.add(f"at = _checksum.in_order(at, base, events, {given})")
         self.lines.add("return at")
         return self.lines.text
+
+    def _runs(self) -> None:
+        """Take runs of frames of one message at once, if their checksum is one that allows it."""
+        frame = self.frame
+        (part,) = frame.checksums
+        covered = frame.covered(part, self.content)
+        first = self._xors_to_nothing(part, covered)
+        if first is None and not self._sums_to_nothing(part, covered):
+            return
+        assert frame.remembered is not None
+        counting = [item for item in frame.shown if item not in frame.identity]
+        counter = frame.offset(counting[0]) if counting else None
+        places = range(frame.head_size - frame.skipped)
+        specials = frame.specials(sending=False)
+        assert specials is not None
+        codes = (
+            tuple_of((literal(byte), literal(code))) for byte, code in frame.replacements or ()
+        )
+        given = {
+            "start": literal(frame.start_bytes),
+            "end": literal(frame.end),
+            "greatest": frame.framing.greatest,
+            "codes": tuple_of(codes),
+            "specials": literal(bytes(specials)),
+            "head": "slice({}, {})".format(*frame.remembered),
+            "alike": tuple_of(str(place) for place in places if place != counter),
+            "counter": counter,
+            "xor_from": first,
+        }
+        arguments = ", ".join(f"{name}={value}" for name, value in given.items())
+        runs = self.lines.constants.named("RUNS", f"_runs.StuffedRuns({arguments})")
+        with self.lines.block("if size - at > _runs.LONG:"):
+            of_sender = f"_cut_{self.name}, _{self.name.upper()}_HEADS"
+            self.lines.add(f"at = {runs}.take(data, at, base, events, {of_sender})")
 
     @property
     def _deferred(self) -> int | None:

@@ -32,6 +32,9 @@ identity."""
 
 _MOST_SPECIALS = 4
 
+_LONG = 2048
+"""Frames of so many bytes are not taken several at once."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kin:
@@ -236,6 +239,36 @@ class FastFrame:
         between = [part for part in self.head if first <= self.offset(part) < last]
         plain = not any(isinstance(part, ChecksumPart) for part in between)
         return (first, last) if plain else None
+
+    @property
+    def has_runs(self) -> bool:
+        """Whether runs of frames of one message can be taken at once, but for their checksum.
+
+        Delimiters show by special bytes, all of a frame that is not a delimiter is stuffed, and
+        frames of one message that are equally long have all parts in the same places.
+        """
+        specials = self.specials(sending=False)
+        if not self.can_cut or self.replacements is None or specials is None:
+            return False
+        start, end = self.start_bytes, self.end
+        if self.ended_by == "start":
+            shows = len(start) == 1
+        else:
+            shows = (
+                self.ended_by == "end" and start[:1] != b"" and {start[0], end[0]} <= {*specials}
+            )
+        return (
+            shows
+            and self.before == self.skipped == len(start)
+            and not (self.behind or self.shares)
+            and all(len(code) > 1 for _, code in self.replacements)
+            and self.length is not None
+            and self.gives_content
+            and self.remembered is not None
+            and len(self.checksums) == 1
+            and self.tail == self.checksums
+            and self.framing.greatest < _LONG
+        )
 
     @property
     def around(self) -> tuple[int, int] | None:
