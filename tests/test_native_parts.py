@@ -121,6 +121,43 @@ def test_memory_is_used_again_when_nobody_looks_at_it() -> None:
     assert memory.rows(dtype, 1 << 18).ctypes.data == place
 
 
+class Watched(NativeEngine):
+    """A decoder that tells how far off the numbers were that it began with."""
+
+    def __init__(self, seen: list[int]) -> None:
+        super().__init__(library_of(protocol_of(RN1), protocol_of(RN1).sender("brain")))
+        self._seen = seen
+
+    def renumber(self, more: int) -> None:
+        self._seen.append(more)
+        super().renumber(more)
+
+
+def missed(data: bytes, part: int | None) -> list[int]:
+    """How far off the foreseen numbers of parts were, whose tables are those of one decoder."""
+    seen: list[int] = []
+    engines = [Watched(seen) for _ in range(4)]
+    found = gathered(Parts(memoryview(data), engines, part).tables(2), len(data), 2)
+    assert_same_tables(found, columns(data, protocol_of(RN1), "brain"))
+    return seen
+
+
+@pytest.mark.parametrize("part", [1000, 1001, None], ids=str)
+def test_numbers_are_foreseen_where_frames_have_one_size(part: int | None) -> None:
+    """Their rows need not be touched again, wherever parts begin inside frames."""
+    frame = next(item for item in material_of(RN1, "brain").frames if len(item) == 8)
+    seen = missed(frame * (3000 if part else 600_000), part)
+    assert len(seen) >= 2
+    assert not any(seen)
+
+
+def test_numbers_that_were_not_foreseen_are_mended() -> None:
+    frames = material_of(RN1, "brain").frames
+    short, long = min(frames, key=len), max(frames, key=len)
+    seen = missed(short * 1000 + long * 20 + short * 1000, 1500)
+    assert min(seen) < 0 < max(seen)
+
+
 def material_dtype():
     import numpy as np
 

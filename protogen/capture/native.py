@@ -108,10 +108,10 @@ class NativeEngine:
         self._offset = 0
         self._sequence = 0
 
-    def start(self, offset: int) -> None:
-        """Begin a stream at this byte of the capture; events are numbered from 0."""
-        self._decoder.start(offset, 0)
-        self._offset, self._sequence = offset, 0
+    def start(self, offset: int, sequence: int = 0) -> None:
+        """Begin a stream at this byte of the capture; the first event has this number."""
+        self._decoder.start(offset, sequence)
+        self._offset, self._sequence = offset, sequence
 
     def renumber(self, more: int) -> None:
         """The numbers of the next events are greater by so many."""

@@ -20,12 +20,17 @@ from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
-PART = 4 << 20
-"""Bytes of a part."""
+ROWS = 8 << 20
+"""Bytes of rows that a part should have: many for what a part costs by itself, and so few that
+those of all parts at hand stay in the processor's cache."""
+PARTS = range(1 << 20, (8 << 20) + 1)
+"""Bytes that a part may have."""
 ROOM = 64 << 20
 """Bytes of rows that a part may have before its turn has come."""
-_WINDOW = 1 << 10
-"""Bytes at least that a decoder runs on at a time to find a frame of the next part."""
+_WINDOW = 1 << 6
+_EVENTS = 4
+"""Bytes and events at least for which a decoder runs on at a time to find a frame of the next
+part."""
 
 _SAMPLE = 1 << 16
 """Bytes that tell how many rows there will be."""
@@ -34,8 +39,8 @@ _SAMPLE = 1 << 16
 class Engine(Protocol):
     """A decoder that can begin anywhere."""
 
-    def start(self, offset: int) -> None:
-        """Begin a stream at this byte of the capture; events are numbered from 0."""
+    def start(self, offset: int, sequence: int = 0) -> None:
+        """Begin a stream at this byte of the capture; the first event has this number."""
 
     def renumber(self, more: int) -> None:
         """The numbers of the next events are greater by so many."""
@@ -57,6 +62,14 @@ class _Run:
 
 
 @dataclass(frozen=True, slots=True)
+class _Known:
+    """A place behind which no byte belongs to an event in front of it: the next event's number."""
+
+    offset: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class _Meeting:
     """A frame that two decoders have completed: its number for each of them, and its end."""
 
@@ -69,16 +82,24 @@ class Parts:
     """Reads a capture in parts, some of them ahead."""
 
     def __init__(
-        self, data: memoryview, engines: Sequence[Engine], part: int = PART, room: int = ROOM
+        self,
+        data: memoryview,
+        engines: Sequence[Engine],
+        part: int | None = None,
+        room: int = ROOM,
     ) -> None:
         """`engines`: one for each part that is decoded at a time, and one more at least.
 
-        A part whose rows take more than `room` bytes is decoded on only when its turn has come.
+        `part`: bytes of a part; None: what suits the rows. A part whose rows take more than `room`
+        bytes is decoded on only when its turn has come.
         """
         self._data = data
         self._free = list(engines)
-        self._part = part
+        self._given = part
+        self._part = part or PARTS[0]
         self._room = room
+        self._known = _Known(0, 0)
+        self._rate = (0, 1)
 
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
@@ -104,13 +125,28 @@ class Parts:
         if len(self._data) > self._part:
             engine = self._free[0]
             engine.start(0)
-            engine.step(self._data[: min(self._part, _SAMPLE)])
+            taken, tables = engine.step(self._data[: min(self._part, _SAMPLE)])
+            self._rate = (tables.events, max(1, tables.size))
+            if self._given is None:
+                wanted = ROWS * taken // max(1, tables.nbytes)
+                self._part = min(max(wanted, PARTS[0]), PARTS[-1])
 
     def _decode_ahead(
         self, pool: ThreadPoolExecutor, starts: Iterator[int], ahead: deque[Future[_Run]]
     ) -> None:
         while self._free and (start := next(starts, None)) is not None:
-            ahead.append(pool.submit(self._decode, self._free.pop(), start))
+            engine = self._free.pop()
+            engine.start(start, self._foreseen(start))
+            ahead.append(pool.submit(self._decode, engine, start))
+
+    def _foreseen(self, start: int) -> int:
+        """The number of the first event from a byte on, if all goes on as before.
+
+        It is right where frames have one size. Then rows need not be numbered anew, which takes a
+        third as long as to fill them; else they are.
+        """
+        events, size = self._rate
+        return self._known.number + (start - self._known.offset) * events // size
 
     def _end(self, position: int) -> int:
         """Of the part that begins there, or that the byte is in."""
@@ -118,7 +154,6 @@ class Parts:
 
     def _decode(self, engine: Engine, start: int) -> _Run:
         """Decode a part as if a stream began there."""
-        engine.start(start)
         run = _Run(engine, start)
         end, size = self._end(start), 0
         while run.position < end and size <= self._room:
@@ -143,7 +178,7 @@ class Parts:
 
     def _seam(self, run: _Run, other: _Run) -> Generator[Tables, None, _Run]:
         """Run on to where both agree, or through the part; then that which goes on is left."""
-        start, window = run.position, _WINDOW
+        start, window = run.position, self._window()
         end = self._end(start)
         while run.position < end:
             stop = min(end, run.position + window)
@@ -153,12 +188,24 @@ class Parts:
                 if met is not None:
                     yield until(tables, met.number, met.end)
                     _take_over(other, met)
+                    self._learn(_Known(met.end, met.number + 1))
                     self._free.append(run.engine)
                     return other
                 yield tables
             window *= 2
         self._free.append(other.engine)
         return run
+
+    def _window(self) -> int:
+        events, size = self._rate
+        return min(max(_WINDOW, _EVENTS * size // max(1, events)), _SAMPLE)
+
+    def _learn(self, known: _Known) -> None:
+        """Foresee numbers from here on, by the rate since the last time."""
+        before = self._known
+        if known.number > before.number:
+            self._rate = (known.number - before.number, known.offset - before.offset)
+        self._known = known
 
 
 def _meeting(tables: Tables, others: Sequence[Tables], start: int) -> _Meeting | None:

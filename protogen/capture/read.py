@@ -11,7 +11,7 @@ from typing import BinaryIO
 from protogen.capture.arrays import numpy
 from protogen.capture.engines import Engine, EngineName, Maker, makers
 from protogen.capture.gather import gathered
-from protogen.capture.parallel import PART, Parts
+from protogen.capture.parallel import Parts
 from protogen.capture.protocols import protocol_of, sender_of
 from protogen.capture.source import Source, opened, pieces
 from protogen.capture.tables import Tables
@@ -93,7 +93,7 @@ class _Reading:
         """All tables, in order."""
         if workers > 1 and self.in_parts and isinstance(self.capture, memoryview):
             engines = [self.maker() for _ in range(workers + 2)]
-            yield from Parts(self.capture, engines, chunk or PART).tables(workers)
+            yield from Parts(self.capture, engines, chunk).tables(workers)
             return
         engine: Engine = self.maker()
         for piece in pieces(self.capture, chunk or CHUNK):

@@ -15,11 +15,8 @@ if TYPE_CHECKING:
     from protogen.capture.tables import Rows
 
 
-_TABLE = [
-    (name, "uintp")
-    for name in ("rows", "count", "room", "lent", "lent_count", "own", "own_capacity")
-]
-"""`struct protogen_table`."""
+_WORDS = 7
+"""`struct protogen_table`: rows, count, room, lent, lent_count, own, own_capacity."""
 
 
 _FEW = 1 << 12
@@ -98,10 +95,9 @@ class Decoder:
         if not self._pointer:
             raise MemoryError
         finalize(self, library.free, self._pointer)
-        dtype = numpy().dtype(_TABLE)
-        size = library.tables * dtype.itemsize
-        memory = (ctypes.c_uint8 * size).from_address(self._pointer)
-        self._tables = numpy().frombuffer(memory, dtype)
+        size = library.tables * _WORDS * ctypes.sizeof(ctypes.c_size_t)
+        memory = (ctypes.c_size_t * (library.tables * _WORDS)).from_address(self._pointer)
+        self._tables = memoryview(memory).cast("B").cast("P")
         self._state = State.from_address(self._pointer + size)
 
     def start(self, offset: int, sequence: int) -> None:
@@ -144,15 +140,16 @@ class Decoder:
 
     def filled(self) -> list[tuple[int, int, int, int]]:
         """The tables with rows: number, rows in lent memory, rows in its own, and where that is."""
-        tables = self._tables
-        in_lent = (tables["lent"] != 0) & (tables["rows"] == tables["lent"])
-        lent = numpy().where(in_lent, tables["count"], tables["lent_count"])
-        own = numpy().where(in_lent, 0, tables["count"])
-        numbers = numpy().flatnonzero(lent + own)
-        return [
-            (number, int(lent[number]), int(own[number]), int(tables["own"][number]))
-            for number in numbers.tolist()
-        ]
+        words = self._tables.tolist()
+        found = []
+        for number in range(self._library.tables):
+            rows, count, _, lent, lent_count, own, _ = words[
+                number * _WORDS : (number + 1) * _WORDS
+            ]
+            in_lent, in_own = (count, 0) if lent and rows == lent else (lent_count, count)
+            if in_lent or in_own:
+                found.append((number, in_lent, in_own, own))
+        return found
 
     def _check(self) -> None:
         if self._state.failed:
