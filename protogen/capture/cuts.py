@@ -17,12 +17,13 @@ Frame = tuple[int, int]
 """Offset and size of a valid frame."""
 
 
-def frames_of(tables: Tables, low: int, high: int) -> dict[Frame, int]:
-    """The valid frames that start from `low` on, before `high`, and their numbers."""
+def frames_of(tables: Tables, low: int, high: int | None = None) -> dict[Frame, int]:
+    """The valid frames that start from `low` on, before `high` if given, and their numbers."""
     found: dict[Frame, int] = {}
     for rows in (*tables.messages.values(), tables.unknown):
         if len(rows):
-            chosen = rows[_place(rows, "offset", low) : _place(rows, "offset", high)]
+            end = None if high is None else _place(rows, "offset", high)
+            chosen = rows[_place(rows, "offset", low) : end]
             places = zip(chosen["offset"].tolist(), chosen["size"].tolist(), strict=True)
             found |= dict(zip(places, chosen["sequence"].tolist(), strict=True))
     return found
@@ -63,8 +64,10 @@ def behind(tables: Tables, number: int, end: int) -> Tables:
 
 def renumbered(tables: Tables, more: int) -> Tables:
     """The same tables, whose events have numbers that are greater by `more`. Changes the rows."""
+    if not more:
+        return tables
     for rows in each(tables):
-        if len(rows) and more:
+        if len(rows):
             rows["sequence"] += numpy().uint64(more % (1 << 64))
     return replace(tables, sequence=tables.sequence + more)
 
@@ -87,7 +90,7 @@ def _place(rows: Rows, column: str, least: int) -> int:
 def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> Tables:
     return replace(
         tables,
-        messages={name: cut(rows) for name, rows in tables.messages.items()},
+        messages={name: cut(rows) if len(rows) else rows for name, rows in tables.messages.items()},
         invalid=cut(tables.invalid),
         unknown=cut(tables.unknown),
     )

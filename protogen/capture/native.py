@@ -83,6 +83,8 @@ class Memory:
 
 _LITTLE = 1 << 17
 """Bytes that come out of the process's own heap."""
+_FEW = 1 << 12
+"""Bytes of a capture whose rows are sooner copied than memory is found for them."""
 _UNUSED = 3
 """The list, the loop and the question itself refer to a block that nobody uses."""
 _TELLING = 1 << 13
@@ -129,7 +131,7 @@ class NativeEngine:
 
     def step(self, data: bytes | memoryview) -> tuple[int, Tables]:
         """Take some of the next bytes, until a table is full: how many, and what came of them."""
-        lent = self._lend(len(data))
+        lent = self._lend(len(data)) if len(data) > _FEW else {}
         taken = self._decoder.feed(address_of(data), len(data))
         return taken, self._tables(lent, taken)
 
@@ -194,7 +196,8 @@ def tables_of(
 def appended(rows: Rows, address: int, count: int) -> Rows:
     """The rows, and behind them those at an address."""
     found: Rows = numpy().empty(len(rows) + count, rows.dtype)
-    ctypes.memmove(found.ctypes.data, rows.ctypes.data, rows.nbytes)
-    behind = found.ctypes.data + rows.nbytes
-    ctypes.memmove(behind, address, count * rows.dtype.itemsize)
+    place = found.ctypes.data
+    if len(rows):
+        ctypes.memmove(place, rows.ctypes.data, rows.nbytes)
+    ctypes.memmove(place + rows.nbytes, address, count * rows.dtype.itemsize)
     return found

@@ -210,7 +210,7 @@ class Parts:
 
 def _meeting(tables: Tables, others: Sequence[Tables], start: int) -> _Meeting | None:
     """The first frame from the byte `start` on that both have."""
-    mine = frames_of(tables, start, 1 << 63)
+    mine = frames_of(tables, start)
     last = max((offset for offset, _ in mine), default=-1)
     theirs: dict[Frame, int] = {}
     for item in others:
