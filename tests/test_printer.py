@@ -167,6 +167,20 @@ def test_csv_puts_in_quotes_what_csv_does(tmp_path: Path) -> None:
     assert found.decode() == expected.getvalue()
 
 
+@pytest.mark.parametrize("code", ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8"])
+def test_integers_of_any_length_are_those_of_python(code: str) -> None:
+    limits = np.iinfo(code)
+    around = [10**power + more for power in range(20) for more in (-1, 0, 1)]
+    values = [sign * value for value in [*around, 1 << 31, 1 << 32, 1 << 63] for sign in (-1, 1)]
+    fitting = [value for value in values if limits.min <= value <= limits.max]
+    rows = np.array([*fitting, limits.min, limits.max], code)
+    programs = Programs()
+    programs.number(operand(code, source=1), code)
+    programs.text("\n")
+    programs.end()
+    assert printed([rows], programs).splitlines() == [str(it) for it in rows.tolist()]
+
+
 @pytest.mark.parametrize("counts", [[0, 0], [2, 0], [1, 2]])
 def test_lists_in_lists_may_all_be_empty(counts: list[int]) -> None:
     """Then there is no struct that has the inner ones."""

@@ -11,9 +11,10 @@ import io
 import json
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 from protogen.convert.batches import Batch, Rows
+from protogen.convert.draining import DrainedFile
 from protogen.convert.outputs import Pending
 from protogen.convert.tables import Column, ColumnType, Listed, Record, Scalar, Table
 from protogen.convert.values import as_list
@@ -33,7 +34,7 @@ class CsvWriter:
         self._name = name
         self._pending = pending
         self._files = ExitStack()
-        self._open_files: dict[str, BinaryIO] = {}
+        self._open_files: dict[str, DrainedFile] = {}
 
     def write(self, batch: Batch) -> None:
         """Write the rows of a batch."""
@@ -61,7 +62,7 @@ class CsvWriter:
         """Write what is left."""
         self._files.close()
 
-    def _open(self, table: Table) -> BinaryIO:
+    def _open(self, table: Table) -> DrainedFile:
         facts = {
             "table": dict(table.facts),
             "columns": {column.name: dict(column.facts) for column in table.all_columns},
@@ -70,7 +71,7 @@ class CsvWriter:
         beside = f"{table.name}/{self._name}.columns.json"
         self._pending.path(beside).write_text(text, encoding="utf-8")
         path = self._pending.path(f"{table.name}/{self._name}.csv")
-        file = self._files.enter_context(path.open("wb"))
+        file = self._files.enter_context(DrainedFile(path))
         file.write(_lines([[column.name for column in table.all_columns]]))
         self._open_files[table.name] = file
         return file

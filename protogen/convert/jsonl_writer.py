@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.convert.batches import Batch
+from protogen.convert.draining import DrainedFile
 from protogen.convert.outputs import Pending
 
 
@@ -10,7 +11,7 @@ class JsonlWriter:
     """Writes one file."""
 
     def __init__(self, name: str, pending: Pending) -> None:
-        self._file = pending.path(f"{name}.jsonl").open("wb")
+        self._file = DrainedFile(pending.path(f"{name}.jsonl"))
 
     def write(self, batch: Batch) -> None:
         """Write the events of a batch."""

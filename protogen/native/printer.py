@@ -26,6 +26,8 @@ DEPTH = 16
 """Lists inside of lists, and the row around them."""
 _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
+_SLACK = 16
+"""C copies texts in pieces of so many bytes."""
 _OPERAND = [("source", "i4"), ("code", "i4"), ("offset", "i8")]
 _STEP = [("kind", "i4"), ("a", "i4"), ("b", "i8"), ("c", "i8"), ("x", _OPERAND), ("y", _OPERAND)]
 
@@ -143,7 +145,7 @@ class Printer:
         spellings = [_spelling(text) for table in script.escapes for text in table]
         shared = (
             np.array([tuple(step) for step in script.steps], _STEP),
-            np.frombuffer(script.pool or b"\0", "u1"),
+            np.frombuffer(script.pool + bytes(_SLACK), "u1"),
             np.array(script.texts or [(0, 0)], "i8"),
             np.array([(_in_64_bits(it), step) for it, step in script.choices] or [(0, 0)], "i8"),
             np.frombuffer(b"".join(spellings) or b"\0", "u1"),

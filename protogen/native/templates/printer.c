@@ -77,7 +77,7 @@ struct choice {
 
 struct printer {
     const struct step *steps;
-    const uint8_t *pool;
+    const uint8_t *pool; /* Behind it are SLACK bytes more. */
     const struct text *texts;
     const struct choice *choices;
     const uint8_t *escapes; /* Tables: for each character 8 bytes, how many there are and those. */
@@ -162,38 +162,63 @@ static double double_at(const uint8_t *at, int32_t code) {
 /* --- texts --------------------------------------------------------------------------------------- */
 
 #define MOST_DIGITS 20
+#define SLACK 16 /* So many bytes behind what is printed may be written, too. */
+
+/* Copy a fixed text, in pieces that compilers have instructions for. */
+static uint8_t *put_fixed(uint8_t *out, const uint8_t *from, int64_t size) {
+    int64_t place = 0;
+    do {
+        memcpy(out + place, from + place, SLACK);
+        place += SLACK;
+    } while (place < size);
+    return out + size;
+}
+
+/* Four digits. */
+static uint8_t *put_four(uint8_t *out, uint32_t value) {
+    const uint32_t front = value / 100U;
+    memcpy(out, &DIGITS[2U * front], 2);
+    memcpy(out + 2, &DIGITS[2U * (value - front * 100U)], 2);
+    return out + 4;
+}
+
+/* Up to four digits, without zeros in front. How many there are is not guessed by a branch. */
+static uint8_t *put_few(uint8_t *out, uint32_t value) {
+    const unsigned none = (unsigned)(value < 10U) + (unsigned)(value < 100U) + (unsigned)(value < 1000U);
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    const uint32_t front = value / 100U;
+    uint16_t high, low;
+    uint32_t digits;
+    memcpy(&high, &DIGITS[2U * front], 2);
+    memcpy(&low, &DIGITS[2U * (value - front * 100U)], 2);
+    digits = ((uint32_t)low << 16 | high) >> (8U * none);
+    memcpy(out, &digits, 4);
+#else
+    uint8_t digits[8] = {0};
+    put_four(digits, value);
+    memcpy(out, &digits[none], 4);
+#endif
+    return out + (4U - none);
+}
 
 static uint8_t *put_natural(uint8_t *out, uint64_t value) {
-    uint8_t digits[MOST_DIGITS];
-    size_t place = MOST_DIGITS;
-    while (value > UINT32_MAX) {
-        const uint64_t rest = value / 100U;
-        memcpy(&digits[place -= 2], &DIGITS[2U * (size_t)(value - rest * 100U)], 2);
-        value = rest;
+    uint32_t back;
+    if (value < 10000U) {
+        return put_few(out, (uint32_t)value);
     }
-    {
-        uint32_t small = (uint32_t)value;
-        while (small >= 100U) {
-            const uint32_t rest = small / 100U;
-            memcpy(&digits[place -= 2], &DIGITS[2U * (small - rest * 100U)], 2);
-            small = rest;
-        }
-        if (small >= 10U) {
-            memcpy(&digits[place -= 2], &DIGITS[2U * small], 2);
-        } else {
-            digits[--place] = (uint8_t)('0' + small);
-        }
+    if (value < 100000000U) {
+        const uint32_t front = (uint32_t)value / 10000U;
+        return put_four(put_few(out, front), (uint32_t)value - front * 10000U);
     }
-    memcpy(out, &digits[place], MOST_DIGITS - place);
-    return out + (MOST_DIGITS - place);
+    out = put_natural(out, value / 100000000U);
+    back = (uint32_t)(value % 100000000U);
+    return put_four(put_four(out, back / 10000U), back % 10000U);
 }
 
 static uint8_t *put_integer(uint8_t *out, int64_t value, int32_t code) {
-    if (value < 0 && code != U8) {
-        *out++ = '-';
-        return put_natural(out, 0U - (uint64_t)value);
-    }
-    return put_natural(out, (uint64_t)value);
+    const uint64_t minus = value < 0 && code != U8;
+    *out = '-';
+    return put_natural(out + minus, ((uint64_t)value ^ (0U - minus)) + minus);
 }
 
 #define MOST_OF_FLOAT 40
@@ -248,8 +273,7 @@ static uint8_t *put_short(uint8_t *out, double value) {
 
 static uint8_t *put_text(const struct printer *printer, uint8_t *out, int64_t number) {
     const struct text *const text = &printer->texts[number];
-    memcpy(out, printer->pool + text->place, (size_t)text->size);
-    return out + text->size;
+    return put_fixed(out, printer->pool + text->place, text->size);
 }
 
 /* The shortest decimal that is read as the same number. NULL where there is no memory. */
@@ -346,8 +370,7 @@ static uint8_t *put_row(const struct printer *printer, const struct table *table
             return out;
         case TEXT:
             NEED(step->c);
-            memcpy(out, printer->pool + step->b, (size_t)step->c);
-            out += step->c;
+            out = put_fixed(out, printer->pool + step->b, step->c);
             break;
         case INTEGER:
             NEED(MOST_DIGITS + 1);
@@ -486,7 +509,7 @@ static uint64_t offset_of(const struct table *table) {
 
 /* Print rows of all tables by their offsets, as many as there is room for. Returns the bytes. */
 PROTOGEN_EXPORT size_t protogen_print(const struct printer *printer, struct table *tables, size_t count, uint8_t *room, size_t size) {
-    const uint8_t *const end = room + size;
+    const uint8_t *const end = size < SLACK ? room : room + (size - SLACK);
     uint8_t *out = room;
     for (;;) {
         struct table *first = NULL;

@@ -1,0 +1,50 @@
+"""Files that go to the disk while they are written hold what was written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from protogen.convert import draining
+from protogen.convert.draining import DrainedFile
+
+
+def test_all_that_was_written_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(draining, "_STRETCH", 1000)
+    dice = Random(1)
+    pieces = [dice.randbytes(dice.randrange(700)) for _ in range(100)]
+    with DrainedFile(tmp_path / "file") as file:
+        file.write(pieces[0])
+        file.writelines(pieces[1:])
+    assert (tmp_path / "file").read_bytes() == b"".join(pieces)
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fadvise"), reason="the system takes no advice")
+def test_every_stretch_is_told_of_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[tuple[int, int]] = []
+
+    def note(descriptor: int, start: int, size: int, advice: int) -> None:
+        assert advice == os.POSIX_FADV_DONTNEED
+        told.append((start, start + size))
+
+    monkeypatch.setattr(draining, "_STRETCH", 1000)
+    monkeypatch.setattr(os, "posix_fadvise", note)
+    with DrainedFile(tmp_path / "file") as file:
+        file.writelines(bytes(500) for _ in range(20))
+    ends = [end for _, end in told]
+    assert ends == list(range(1000, 10001, 1000))
+    for place in range(500, 7000, 1000):
+        assert sum(start <= place < end for start, end in told) > 1
+
+
+def test_files_are_written_where_no_advice_is_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(os, "posix_fadvise", raising=False)
+    monkeypatch.setattr(draining, "_STRETCH", 10)
+    with DrainedFile(tmp_path / "file") as file:
+        file.write(bytes(100))
+    assert (tmp_path / "file").read_bytes() == bytes(100)
