@@ -16,6 +16,7 @@ from test_json_lines import capture_of
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.mcap_writer import json_schema
 from protogen.convert.tables import tables_of
+from protogen.convert.values import json_of_each
 
 pytest.importorskip("pyarrow")
 mcap_reader = pytest.importorskip("mcap.reader")
@@ -215,6 +216,21 @@ def test_csv_shows_lists_as_json_and_bytes_as_digits(sink: Path, tmp_path: Path)
     facts = json.loads((tmp_path / "out" / "numbers" / "run.columns.json").read_text("utf-8"))
     assert facts["columns"]["angle"]["unit"] == "deg"
     assert facts["table"]["protogen.message"] == "numbers"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [],
+        [[]],
+        [[1, 2.5, None, True], {}, {"a": {"b": [b"\x01\xff"]}}, "é", float("nan")],
+        ["\ud800", ["\ud800", "\ud800"], ', "\ud800", ', "\\ud800"],
+    ],
+    ids=["none", "an empty one", "of every kind", "as the seam"],
+)
+def test_json_of_many_values_is_that_of_each(values: list[Any]) -> None:
+    expected = [json.dumps(value, default=bytes.hex) for value in values]
+    assert json_of_each(values, bytes.hex) == expected
 
 
 @pytest.mark.parametrize("sender", ["pc", "board"])

@@ -17,7 +17,7 @@ from protogen.convert.batches import Batch, Rows
 from protogen.convert.draining import DrainedFile
 from protogen.convert.outputs import Pending
 from protogen.convert.tables import Column, ColumnType, Listed, Record, Scalar, Table
-from protogen.convert.values import as_list
+from protogen.convert.values import as_list, json_of_each
 
 if TYPE_CHECKING:
     from protogen.convert.printed_csv import CsvPrinter
@@ -95,7 +95,8 @@ def _shown(type: ColumnType, values: list[Any]) -> Any:
         case Scalar("bool"):
             return [None if value is None else str(value).lower() for value in values]
         case Listed() | Record():
-            return [None if value is None else json.dumps(value, default=_hex) for value in values]
+            texts = iter(json_of_each([value for value in values if value is not None], _hex))
+            return [None if value is None else next(texts) for value in values]
         case _:
             return values
 

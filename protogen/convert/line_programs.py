@@ -293,6 +293,7 @@ def unknown_program(programs: Programs, table: TableSchema, sender: str) -> int:
     programs.text(', "payload": "')
     programs.step(Kind.SPAN, PAYLOADS, x=first, y=size)
     programs.text('"')
+    programs.when(Kind.IF, operand("u1", source=DIFFERS), partial(print_raw, programs, places))
     print_end(programs)
     return start
 

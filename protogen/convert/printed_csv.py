@@ -17,7 +17,7 @@ from protogen.convert.batches import Rows
 from protogen.convert.nested import ListsOf, Structs
 from protogen.convert.programs import Programs, needs_quotes, operand
 from protogen.convert.tables import Column
-from protogen.convert.values import as_list
+from protogen.convert.values import as_list, json_of_each
 from protogen.native.printer import BESIDE, Kind, Operand, Printer, Table
 
 Show = Callable[[Column, Any], Sequence[str]]
@@ -105,14 +105,17 @@ def _cell(programs: Programs, lent: _Lent, values: Any, show: Callable[[Any], An
             starts = lent.number(values.starts.astype("i8"))
             programs.step(Kind.SPAN, lent.take(values.data), x=starts, y=sizes)
             return "spans"
-    _texts(programs, lent, [text.encode() for text in show(values)])
+    _texts(programs, lent, show(values))
     return "texts"
 
 
-def _texts(programs: Programs, lent: _Lent, texts: Sequence[bytes]) -> None:
-    ends = np.cumsum([len(text) for text in texts], dtype="i8")
-    sizes = np.diff(ends, prepend=0)
-    blob, starts = lent.take(b"".join(texts)), lent.number(ends - sizes)
+def _texts(programs: Programs, lent: _Lent, texts: Sequence[str]) -> None:
+    whole = "".join(texts)
+    each: Sequence[str | bytes] = texts
+    if not whole.isascii():
+        each = [text.encode() for text in texts]
+    sizes = np.fromiter(map(len, each), "i8", len(each))
+    blob, starts = lent.take(whole.encode()), lent.number(np.cumsum(sizes) - sizes)
     programs.step(Kind.QUOTE)
     programs.step(Kind.COPY, blob, x=starts, y=lent.number(sizes))
     programs.step(Kind.UNQUOTE)
@@ -206,4 +209,4 @@ def json_texts(values: Any, default: Callable[[Any], str]) -> list[str]:
             return [form % row for row in zip(*columns, strict=True)]
         case Numbers(values=numbers, missing=None) if numbers.dtype.kind in "iu":
             return list(map(str, numbers.tolist()))
-    return [json.dumps(value, default=default) for value in as_list(values)]
+    return json_of_each(as_list(values), default)

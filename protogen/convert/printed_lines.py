@@ -79,10 +79,13 @@ class PrintedLines:
         return self._library.differs(self._numbers[name], rows, line, start)
 
     def _of_unknown(self, batch: ColumnBatch) -> Table:
-        if self._library is not None:  # It may need the bytes of the line, too.
-            return self._copied(self._plain.unknown(batch))
-        payloads = batch.filled.payloads.tobytes()
-        return _rows(batch, batch.filled.unknown, self._unknown, _NONE, payloads)
+        filled = batch.filled
+        differs: Array | bytes = _NONE
+        if self._library is not None:
+            data, start = batch.data, filled.offset
+            differs = self._library.unknown_differ(filled.unknown, filled.payloads, data, start)
+        payloads = filled.payloads.tobytes()
+        return _rows(batch, filled.unknown, self._unknown, differs, payloads)
 
     def _copied(self, lines: Lines) -> Table:
         offsets, texts = lines

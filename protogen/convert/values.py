@@ -1,11 +1,29 @@
-"""The values of a column as Python has them."""
+"""The values of a column as Python has them, and as JSON."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Sequence
 from typing import Any
+
+_BETWEEN = "\ud800"
+"""Half a character, which no text has."""
+_SEAM = f", {json.dumps(_BETWEEN)}, "
 
 
 def as_list(values: Any) -> list[Any]:
     """The values as a list, whatever a batch holds them in; None where one is missing."""
     tolist = getattr(values, "tolist", None)
     return list(values) if tolist is None else tolist()
+
+
+def json_of_each(values: Sequence[Any], default: Callable[[Any], Any]) -> list[str]:
+    """What `json.dumps` makes of each value. All at once: calling it takes longer than its work."""
+    if not values:
+        return []
+    parted: list[Any] = [_BETWEEN] * (2 * len(values) - 1)
+    parted[::2] = values
+    texts = json.dumps(parted, default=default)[1:-1].split(_SEAM)
+    if len(texts) == len(values):
+        return texts
+    return [json.dumps(value, default=default) for value in values]

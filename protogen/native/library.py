@@ -65,6 +65,9 @@ class Library:
         if driver.spells:
             spell = (size, pointer, size, pointer, long, pointer)
             self._spell = _function(library, "protogen_spell", ctypes.c_int, *spell)
+            others = (pointer, size, pointer, pointer, long, pointer)
+            name = "protogen_spell_unknown"
+            self._spell_unknown = _function(library, name, ctypes.c_int, *others)
 
     def differs(self, number: int, rows: Rows, line: bytes, start: int) -> Rows:
         """For each row of a table, whether an encoder makes other bytes of it than `line` has.
@@ -77,6 +80,16 @@ class Library:
         data = numpy().frombuffer(line, "u1")
         places = (data.ctypes.data, start, found.ctypes.data)
         if not self._spell(number, whole.ctypes.data, len(rows), *places):
+            raise MemoryError
+        return found
+
+    def unknown_differ(self, rows: Rows, payloads: Rows, line: bytes, start: int) -> Rows:
+        """The same for the table of unknown frames."""
+        whole, bytes_of = numpy().ascontiguousarray(rows), numpy().ascontiguousarray(payloads)
+        found: Rows = numpy().zeros(len(rows), "u1")
+        data = numpy().frombuffer(line, "u1")
+        places = (bytes_of.ctypes.data, data.ctypes.data, start, found.ctypes.data)
+        if not self._spell_unknown(whole.ctypes.data, len(rows), *places):
             raise MemoryError
         return found
 

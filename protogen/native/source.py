@@ -114,6 +114,7 @@ def _driver(protocol: Protocol, sender: Sender) -> Driver:
             names=list(schema.messages),
             tables=tables,
             spellings=spellings,
+            wrapped=_wrapped(unit, decoder) if spellings else (),
             layout=[expression for expression, _ in layout],
         )
     )
@@ -142,6 +143,12 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
         for item in unit.framing.messages
         if item.name in tables
     ]
+
+
+def _wrapped(unit: Unit, decoder: DecoderView) -> tuple[str, ...]:
+    """The parts that go into a frame beside the payload, as they follow each other in C."""
+    frame = next(it.frame for it in unit.framing.messages if it.frame.decoder is decoder)
+    return tuple(part.name for part in (*frame.identity, *frame.arguments))
 
 
 def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:
