@@ -33,6 +33,10 @@ C99 = {
     "avr-gcc": ("-std=c99", "-Os", "-mmcu=atmega328p"),
     "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),
 }
+COMPILED = ("-S", "-o", "unit.s")
+"""Up to machine code as text, for what GCC only says when it optimises."""
+PARSED = ("-fsyntax-only",)
+"""Up to where types are checked: all that Clang warns of, or that a header can be warned of."""
 TAGGED = ROOT / "tests" / "c_schemas" / "tagged.yaml"
 LINTED = [*SCHEMAS, TAGGED]
 KINDS = [(style, events) for style in STYLES for events in EVENTS]
@@ -41,10 +45,10 @@ _MISRA = re.compile(r"misra-c2012-(\d+\.\d+)")
 _STATED = re.compile(r"^\| (\d+\.\d+) \|", re.MULTILINE)
 
 
-def quiet(command: Sequence[str | Path]) -> None:
+def quiet(command: Sequence[str | Path], folder: Path | None = None) -> None:
     """Run a program that must find nothing to say."""
     done = subprocess.run(
-        [str(word) for word in command], capture_output=True, text=True, check=False
+        [str(word) for word in command], capture_output=True, text=True, check=False, cwd=folder
     )
     said = done.stdout + done.stderr
     assert done.returncode == 0, said
@@ -74,12 +78,31 @@ def test_no_compiler_warns(path: Path, style: Style, events: Events, tmp_path: P
     if made.stubs is not None:
         units.append(made.stubs)
     for compiler, flags in C99.items():
+        depth = COMPILED if compiler != "clang" and style == "split" else PARSED
         for unit in units:
-            output = tmp_path / "unit.o"
-            quiet([require_tool(compiler), *flags, *WARNINGS, "-c", "-o", output, unit])
+            extent = PARSED if unit.stem == "user" else depth
+            quiet([require_tool(compiler), *flags, *WARNINGS, *extent, unit], tmp_path)
     for unit in translation_units(made, tmp_path, "cc"):
-        output = tmp_path / "unit.o"
-        quiet([require_tool("g++"), "-std=c++11", *WARNINGS, "-c", "-o", output, unit])
+        quiet([require_tool("g++"), "-std=c++11", *WARNINGS, *COMPILED, unit], tmp_path)
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", LINTED, ids=name_of)
+def test_a_single_header_holds_the_code_of_the_source(
+    path: Path, events: Events, tmp_path: Path
+) -> None:
+    """So what compilers say of one when they optimise, they say of the other."""
+    two, one = tmp_path / "two", tmp_path / "one"
+    two.mkdir()
+    one.mkdir()
+    split = generate(protocol_of(path), two, COptions(style="split", events=events))
+    single = generate(protocol_of(path), one, COptions(style="single", events=events))
+    assert split.source is not None
+    head, include, code = split.source.read_text(encoding="utf-8").partition(
+        f'#include "{split.protocol.name}.h"\n'
+    )
+    assert include and head.count("\n") < 2
+    assert code in single.header.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
