@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 import pytest
-from c_proof.drivers import Driver, decode_driver, push_driver
+from c_proof.drivers import Driver, decode_driver, first_driver, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
@@ -36,25 +36,32 @@ PUSHES: list[tuple[Path, Events, str]] = (
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
     ]
 )
-STATES = "-eva-slevel=1200"
-"""A payload's checks are followed for each size and element alone."""
+FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
+"""Whose smallest frames are small enough to follow each way through the decoder alone."""
 MATTY = ROOT / "schemas" / "matty.yaml"
 
 
-def prove(made: Generated, driver: Driver, machine: str = WIDE, *options: str) -> Report:
+def decode_driver_of(made: Generated) -> Driver:
+    """The driver of all `decode` functions, as they are now."""
+    assert made.source is not None
+    texts = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
+    return decode_driver(made.protocol, *texts)
+
+
+def prove(made: Generated, driver: Driver, machine: str = WIDE) -> Report:
     """Analyse a driver of generated code."""
     source = made.folder / "driver.c"
     source.write_text(driver.text, encoding="utf-8")
-    return analyse(source, made.folder, machine, *driver.options, *options)
+    return analyse(source, made.folder, machine, *driver.options)
 
 
 @pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)
 def test_no_payload_harms_a_decode_function(path: Path, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path)
-    driver = decode_driver(protocol, made.header.read_text(encoding="utf-8"))
+    driver = decode_driver_of(made)
     assert len(driver.proves) == len(protocol.messages)
-    report = prove(made, driver, machine, STATES)
+    report = prove(made, driver, machine)
     assert (report.alarms, report.found) == (0, ())
 
 
@@ -65,6 +72,14 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     driver = push_driver(protocol, made.header.read_text(encoding="utf-8"))
     assert len(driver.proves) == len(protocol.senders)
     report = prove(made, driver, machine)
+    assert (report.alarms, report.found) == (0, ())
+
+
+@pytest.mark.parametrize("path", FIRST, ids=name_of)
+def test_no_event_has_bytes_that_were_not_received(path: Path, tmp_path: Path) -> None:
+    protocol = protocol_of(path)
+    made = generate(protocol, tmp_path, COptions(events="messages"))
+    report = prove(made, first_driver(protocol, made.header.read_text(encoding="utf-8")))
     assert (report.alarms, report.found) == (0, ())
 
 
@@ -116,19 +131,29 @@ def test_an_event_that_is_not_filled_is_found(tmp_path: Path) -> None:
     assert any("uninitialized" in found for found in report.found)
 
 
+def test_more_payload_than_was_received_is_found(tmp_path: Path) -> None:
+    """It is in the buffer all right, but from an earlier frame, or from nowhere."""
+    made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
+    assert made.source is not None
+    changed(made.source, r"(event->payload_size = payload);", r"\1 + 2U;")
+    header = made.header.read_text(encoding="utf-8")
+    assert prove(made, push_driver(made.protocol, header)).found == ()
+    report = prove(made, first_driver(made.protocol, header))
+    assert any("event->payload + i" in found for found in report.found), report.found
+
+
 def test_a_member_that_is_too_small_by_an_element_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
-    header = changed(made.header, r"\bnmea\[121\];", "nmea[120];")
-    report = prove(made, decode_driver(made.protocol, header), WIDE, STATES)
+    changed(made.header, r"\bnmea\[121\];", "nmea[120];")
+    report = prove(made, decode_driver_of(made))
     assert report.alarms > 0
 
 
 def test_a_size_that_is_not_checked_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
-    header = made.header.read_text(encoding="utf-8")
     assert made.source is not None
     changed(made.source, r"(size != )18([uU]\) \{\s+return MATTY_ERROR_SIZE)", r"\g<1>17\2")
-    report = prove(made, decode_driver(made.protocol, header), WIDE, STATES)
+    report = prove(made, decode_driver_of(made))
     assert report.alarms > 0
     assert any("out of bounds read" in found for found in report.found)
 

@@ -15,6 +15,12 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Counted, Integer, Octets, Struct, Switch, Text, Type
 
+FIRST = 3
+"""Bytes behind those of a smallest frame: of its payload, or of the next one."""
+STATES = "-eva-slevel=1200"
+"""A payload's checks are followed for each size and element alone."""
+PATHS = 4000
+"""States that are followed alone at one place."""
 _DECODE = re.compile(
     r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, size_t size\);"
 )
@@ -27,21 +33,18 @@ _POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
 _HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
 #include "{name}.c"
 #include "__fc_builtin.h"
+#include <stddef.h>
 
 static volatile int any;
 static volatile uint8_t sink;
 """
-_DECODER = """
+_TAKE = """
 static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
     (void)user;
-    if (event->payload_size > 0) {{
-        /* EVA has to show that these two bytes are there. `decode` is shown to read no others. */
-        sink = event->payload[0];
-        sink = event->payload[event->payload_size - 1];
-    }}
-}}
+{reads}}}
 
-{step}static void prove_{prefix}_push(void) {{
+{step}"""
+_ENDLESS = """static void prove_{prefix}_push(void) {{
     struct {prefix}_decoder decoder;
     Frama_C_make_unknown((char *)&decoder, sizeof decoder);
     {prefix}_decoder_init({init});
@@ -53,6 +56,27 @@ static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
             {prefix}_decoder_flush(&decoder);
         }}
     }}
+}}
+"""
+_ENDS = """    if (event->payload_size > 0) {
+        /* EVA has to show that these two bytes are there. `decode` is shown to read no others. */
+        sink = event->payload[0];
+        sink = event->payload[event->payload_size - 1];
+    }
+"""
+_EACH = """    for (size_t i = 0; i < event->payload_size; i++) {
+        sink = event->payload[i]; /* EVA has to show that it was received. */
+    }
+"""
+_FIRST = """static void prove_{prefix}_first(void) {{
+    struct {prefix}_decoder decoder; /* Nothing is in its buffer but what it puts there. */
+    Frama_C_make_unknown((char *)&decoder, offsetof(struct {prefix}_decoder, buffer));
+    {prefix}_decoder_init({init});
+    //@ loop unroll {count};
+    for (int i = 0; i < {count}; i++) {{
+        {push}
+    }}
+    {prefix}_decoder_flush(&decoder);
 }}
 """
 _CALLS = {
@@ -108,7 +132,7 @@ class Driver:
     """What EVA has to be told."""
 
 
-def decode_driver(protocol: Protocol, header: str) -> Driver:
+def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
     """Every payload of up to a byte more than the greatest, for each message's `decode`."""
     flat = re.sub(r"\s+", " ", header)
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
@@ -121,7 +145,10 @@ def decode_driver(protocol: Protocol, header: str) -> Driver:
         given = {"prefix": prefix, "struct": struct, "room": room, "steps": room + 2}
         parts.append(_PAYLOAD.format(splits=splits, **given))
         proofs.append(f"{prefix}_decode")
-    return _driver(parts, proofs)
+    # Bytes that are copied are all alike: to follow each of them takes most of the time.
+    copy = f"{protocol.name}_copy"
+    options = (STATES, *((f"-eva-slevel-function={copy}:0",) if f"{copy}(" in source else ()))
+    return replace(_driver(parts, proofs), options=options)
 
 
 def push_driver(protocol: Protocol, header: str) -> Driver:
@@ -131,10 +158,33 @@ def push_driver(protocol: Protocol, header: str) -> Driver:
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
     upper, bounds = protocol.name.upper(), _bounds(header)
-    parts = [_decoder(prefix, upper, bounds, polls=prefix in polled) for prefix in prefixes]
+    parts = [
+        _decoder(_ENDLESS, prefix, upper, polls=prefix in polled, bounds=bounds, reads=_ENDS)
+        for prefix in prefixes
+    ]
     head = _HEAD.format(name=protocol.name, upper=upper)
     driver = _driver([head, *parts], [f"{prefix}_push" for prefix in prefixes])
     return replace(driver, options=_apart(sorted(polled)))
+
+
+def first_driver(protocol: Protocol, header: str) -> Driver:
+    """The first bytes that a decoder gets, any of them: a smallest frame, and a few more.
+
+    Its buffer holds nothing but what was put there, so that EVA sees where an event has more
+    payload than was received. In `push_driver`, where any number of bytes came before, it can't.
+    """
+    polled = set(_POLLS.findall(header))
+    upper = protocol.name.upper()
+    parts = [_HEAD.format(name=protocol.name, upper=upper)]
+    proofs = []
+    for sender in protocol.senders:
+        prefix = f"{protocol.name}_{sender.name}"
+        count = sender.framing.least + FIRST
+        given = {"polls": prefix in polled, "count": count, "reads": _EACH}
+        parts.append(_decoder(_FIRST, prefix, upper, **given))
+        proofs.append(f"{prefix}_first")
+    driver = _driver(parts, proofs)
+    return replace(driver, options=(*_apart(sorted(polled)), f"-eva-slevel={PATHS}"))
 
 
 def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
@@ -146,10 +196,10 @@ def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
     return ("-eva-split-return=full", f"-eva-slevel-function={depths}")
 
 
-def _decoder(prefix: str, upper: str, bounds: str, *, polls: bool) -> str:
+def _decoder(proof: str, prefix: str, upper: str, *, polls: object, **given: object) -> str:
     calls = _POLLED if polls else _CALLS
-    given = {name: text.format(prefix=prefix, upper=upper) for name, text in calls.items()}
-    return _DECODER.format(prefix=prefix, bounds=bounds, **given)
+    words = {name: text.format(prefix=prefix, upper=upper) for name, text in calls.items()}
+    return f"{_TAKE}{proof}".format(prefix=prefix, **words, **given)
 
 
 def _bounds(header: str) -> str:
