@@ -25,6 +25,7 @@ from corpus import (
 )
 from hypothesis import settings
 
+from protogen.runtime import decoder as runtime_decoder
 from protogen.runtime import late
 from protogen.runtime.machine import Candidate
 from protogen.runtime.starts import starts_of
@@ -148,6 +149,86 @@ def _is_cut_fast(path: Path, sender: str, frame: bytes, candidates: list[Any]) -
     candidates.clear()
     events = module_at(path).Decoder(sender).feed(frame)
     return [event.kind for event in events] == ["message"] and not candidates
+
+
+# --- large frames in little portions --------------------------------------------------------------
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("looked", [0, 1, 20])
+@pytest.mark.parametrize("stream", [clean, noisy])
+def test_what_is_left_to_a_candidate_gives_the_same(
+    path: Path, sender: str, stream: Any, looked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here with frames of any size, so that all that can happen to a large one does happen."""
+    dice = Random(looked)
+    portions = list(small_portions(stream(material_of(path, sender), dice), dice))
+    flushes = {number for number in range(len(portions)) if dice.random() < 0.02}
+    expected = steps(module_at(path).Decoder(sender, "construct"), portions, flushes)
+    monkeypatch.setattr(runtime_decoder, "_LOOKED", looked)
+    for engine in ("fast", "construct"):
+        assert steps(module_at(path).Decoder(sender, engine), portions, flushes) == expected
+
+
+def steps(decoder: Any, portions: list[bytes], flushes: set[int]) -> list[Any]:
+    """What each step gives, and leaves behind."""
+    found = []
+    for number, portion in enumerate(portions):
+        found.append((shown(decoder.feed(portion)), decoder.pending))
+        if number in flushes:
+            found.append((shown(decoder.flush()), decoder.pending))
+    return [*found, shown(decoder.flush())]
+
+
+LARGE = """
+protocol: large
+endpoints: {station: Station}
+byte_order: little
+frame:
+  sync: {literal: 0x55, unprotected: accepted}
+  id: {type: uint8, id: true}
+  count: {type: uint16, counts: payload}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: id..payload}
+messages:
+  list: {id: 2, from: station, fields: {a: {type: bytes, size: fill}}}
+decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
+"""
+
+
+def test_the_time_for_a_frame_grows_with_its_size(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not with the square of it: how many bytes are looked at or copied, with each byte fed."""
+    path = tmp_path / "large.yaml"
+    path.write_text(LARGE, encoding="utf-8")
+    monkeypatch.setattr(runtime_decoder, "_LOOKED", 64)
+    fast = [looked_at(path, size, "fast") for size in (1000, 4000, 16000)]
+    assert all(count < 64 * 64 * 2 + 20 * size for count, size in fast), fast
+    reference = [looked_at(path, size, "construct") for size in (1000, 4000, 16000)]
+    assert all(count < 64 * 64 * 2 + 20 * size for count, size in reference), reference
+
+
+def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:
+    """How many bytes are looked at until a frame is whole that comes byte by byte, and its size."""
+    module = module_at(path)
+    frame = module.encode(module.List(a=bytes(place % 251 for place in range(size))), "station")
+    decoder = module.Decoder("station", engine)
+    looked = [0]
+
+    def counted(function: Any) -> Any:
+        def call(*given: Any) -> Any:
+            looked[0] += len(decoder._data)
+            return function(*given)
+
+        return call
+
+    for name in ("_lane", "_cut", "_waits", "_join", "_deliver"):
+        if getattr(decoder, name) is not None:
+            setattr(decoder, name, counted(getattr(decoder, name)))
+    events = [event for byte in frame for event in decoder.feed(bytes([byte]))]
+    assert [event.kind for event in events] == ["message"]
+    return looked[0], len(frame)
 
 
 # --- frames that no document has ------------------------------------------------------------------

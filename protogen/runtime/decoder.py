@@ -20,6 +20,9 @@ Engine = Literal["fast", "construct"]
 BytesLike = bytes | bytearray | memoryview
 """What bytes are taken from; other objects with a buffer are taken as well."""
 
+_LOOKED = 4096
+"""So many bytes are looked through in the time that a candidate takes to be given one."""
+
 
 def check_engine(engine: str) -> None:
     """Raise ValueError unless there is such an engine."""
@@ -58,6 +61,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._is_anywhere = isinstance(sender.frame.start, late.Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
+        self._behind: list[bytes] = []  # What came behind it, and the candidate has taken.
         self._offset = 0  # Of the first of these bytes in the input.
         # Places in these bytes:
         self._done = 0  # All in front of it is delivered.
@@ -72,7 +76,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     @property
     def pending(self) -> int:
         """How many bytes were taken that no event covers yet."""
-        return len(self._data) - self._done
+        return (self._pushed if self._behind else len(self._data)) - self._done
 
     def feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the next bytes of the input; the events that are certain now.
@@ -80,7 +84,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         Raises TypeError for what is not like bytes.
         """
         lane = self._lane
-        if lane is None or (self._data and not self._is_waiting):
+        if lane is None or (self._data and (not self._is_waiting or len(self._data) > _LOOKED)):
             return self._feed(data)
         # All in front is delivered, and a frame may start at the first of these bytes.
         try:
@@ -105,6 +109,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def _feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
         """The same in any state."""
+        if len(self._data) > _LOOKED:
+            data = octets(data)
+            if self._is_little(data):
+                if self._candidate is not None:
+                    return self._feed_little(self._candidate, data)
+                if self._is_waiting:
+                    self._open_candidate()
+            self._join()
         try:
             self._data += data
         except TypeError:
@@ -119,12 +131,42 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._run(final=False)
         return self._deliver()
 
+    def _is_little(self, data: bytes) -> bool:
+        """Whether to look at all that has come takes longer than a candidate takes for `data`.
+
+        Else the time for a frame would grow with the square of its size.
+        """
+        if self._is_anywhere or self._failure is not None:
+            return False  # There is more to do than to ask the candidate.
+        size = len(self._data) if self._candidate is None else self._pushed
+        return size - self._scan > _LOOKED * len(data)
+
+    def _feed_little(
+        self, candidate: Candidate, data: bytes
+    ) -> list[Event[MessageT_co, PartsT_co]]:
+        """The same where all in front is the candidate's, and nothing else is looked at."""
+        self._behind.append(data)
+        for byte in data:
+            self._pushed += 1
+            verdict = candidate.push(byte)
+            if verdict is not None:
+                self._join()
+                self._judge(verdict)
+                self._run(final=False)
+                return self._deliver()
+        return []
+
+    def _join(self) -> None:
+        """Put what has come in one piece."""
+        if self._behind:
+            self._data = b"".join((self._data, *self._behind))
+            self._behind = []
+
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
+        self._join()
         if self._is_waiting:
-            self._is_waiting = False
-            self._pushed = self._scan
-            self._candidate = late.Candidate(self._sender)
+            self._open_candidate()
         self._run(final=True)
         events = self._deliver()
         self._offset += len(self._data)
@@ -189,11 +231,18 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Whether a frame plainly begins there, on which there is no verdict as yet."""
         return self._waits is not None and self._waits(self._data, start)
 
+    def _open_candidate(self) -> None:
+        """Leave what was waited for to a candidate, from its first byte on."""
+        self._is_waiting = False
+        self._is_fresh = False
+        self._pushed = self._scan
+        self._candidate = late.Candidate(self._sender)
+
     def _take_up(self) -> None:
         """Go on with what was waited for: a whole frame now, or something for a candidate."""
         self._is_waiting = False
         if not self._cut_frames():
-            self._candidate = late.Candidate(self._sender)
+            self._open_candidate()
 
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
