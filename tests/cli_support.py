@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from typer import testing
+from typer.main import get_command
 from typer.testing import CliRunner, Result
 
 from protogen.cli import app
@@ -85,6 +87,10 @@ def compiled(text: str) -> Protocol:
         compilation = compile_file(path)
     assert compilation.protocol is not None, compilation.problems
     return compilation.protocol
+
+
+# To make the commands of all functions takes longer than most of them run.
+testing._get_command = cache(get_command)
 
 
 def run(*arguments: str, input: str | bytes | None = None) -> Result:

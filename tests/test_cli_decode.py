@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 from cli_support import ROOT, run, start
+from compiled import module_at, protocol_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from protogen.cli import codec
 from protogen.cli.tagged import tagged_pieces
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
@@ -267,7 +269,11 @@ SENDERS = [
 @pytest.mark.parametrize(("name", "sender"), SENDERS)
 @given(data=st.binary(max_size=120))
 def test_any_bytes_come_back(name: str, sender: str, data: bytes) -> None:
-    assert back(str(ROOT / "schemas" / f"{name}.yaml"), sender, data) == data
+    path = ROOT / "schemas" / f"{name}.yaml"
+    made = codec.Codec(protocol_of(path), module_at(path))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(codec, "open_codec", lambda schema: made)  # Once for all captures.
+        assert back(str(path), sender, data) == data
 
 
 def test_a_capture_comes_back_through_a_pipe(tmp_path: Path) -> None:
