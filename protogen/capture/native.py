@@ -84,7 +84,7 @@ class Memory:
 _LITTLE = 1 << 17
 """Bytes that come out of the process's own heap."""
 _FEW = 1 << 12
-"""Bytes of a capture whose rows are sooner copied than memory is found for them."""
+"""Bytes of a capture, or of rows, that are sooner copied than memory is found for rows."""
 _UNUSED = 3
 """The list, the loop and the question itself refer to a block that nobody uses."""
 _TELLING = 1 << 13
@@ -144,8 +144,8 @@ class NativeEngine:
         """Memory for what so many bytes may bring."""
         found: dict[int, Rows] = {}
         for number, rate in enumerate(self._memory.rates):
-            if rate:
-                dtype = self._dtypes.each[number]
+            dtype = self._dtypes.each[number]
+            if rate * size * dtype.itemsize > _FEW:
                 most = max(1, self._budget // dtype.itemsize)
                 found[number] = self._memory.rows(dtype, min(most, int(rate * size * 1.1) + 8))
                 self._decoder.lend(number, found[number])
@@ -195,9 +195,13 @@ def tables_of(
 
 def appended(rows: Rows, address: int, count: int) -> Rows:
     """The rows, and behind them those at an address."""
+    size = count * rows.dtype.itemsize
+    if not len(rows) and size <= _FEW:  # To ask where an array lies takes longer than this.
+        few: Rows = numpy().frombuffer(bytearray(ctypes.string_at(address, size)), rows.dtype)
+        return few
     found: Rows = numpy().empty(len(rows) + count, rows.dtype)
     place = found.ctypes.data
     if len(rows):
         ctypes.memmove(place, rows.ctypes.data, rows.nbytes)
-    ctypes.memmove(place + rows.nbytes, address, count * rows.dtype.itemsize)
+    ctypes.memmove(place + rows.nbytes, address, size)
     return found

@@ -28,9 +28,9 @@ PARTS = range(1 << 20, (8 << 20) + 1)
 ROOM = 64 << 20
 """Bytes of rows that a part may have before its turn has come."""
 _WINDOW = 1 << 6
+"""Bytes at least that a decoder runs on at a time to find a frame of the next part."""
 _EVENTS = 4
-"""Bytes and events at least for which a decoder runs on at a time to find a frame of the next
-part."""
+"""As many events should be in them."""
 
 _SAMPLE = 1 << 16
 """Bytes that tell how many rows there will be."""
@@ -99,7 +99,7 @@ class Parts:
         self._part = part or PARTS[0]
         self._room = room
         self._known = _Known(0, 0)
-        self._rate = (0, 1)
+        self._rate = (0, 1)  # Events, and the bytes that they cover.
 
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
@@ -142,8 +142,8 @@ class Parts:
     def _foreseen(self, start: int) -> int:
         """The number of the first event from a byte on, if all goes on as before.
 
-        It is right where frames have one size. Then rows need not be numbered anew, which takes a
-        third as long as to fill them; else they are.
+        It is right where frames have one size. Then rows need not be numbered anew, which may take
+        a third as long as to fill them; else they are.
         """
         events, size = self._rate
         return self._known.number + (start - self._known.offset) * events // size
@@ -197,6 +197,7 @@ class Parts:
         return run
 
     def _window(self) -> int:
+        """Bytes that a decoder runs on at first."""
         events, size = self._rate
         return min(max(_WINDOW, _EVENTS * size // max(1, events)), _SAMPLE)
 
