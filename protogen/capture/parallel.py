@@ -202,11 +202,9 @@ class Parts:
         return min(max(_WINDOW, _EVENTS * size // max(1, events)), _SAMPLE)
 
     def _learn(self, known: _Known) -> None:
-        """Foresee numbers from here on, by the rate since the last time."""
-        before = self._known
-        if known.number > before.number:
-            self._rate = (known.number - before.number, known.offset - before.offset)
-        self._known = known
+        """Foresee numbers from here on, by the rate since the last frame that was known."""
+        before, self._known = self._known, known
+        self._rate = (known.number - before.number, known.offset - before.offset)
 
 
 def _meeting(tables: Tables, others: Sequence[Tables], start: int) -> _Meeting | None:
