@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from cli_support import SINK, run
+from test_convert_columns import batches_of
 from test_json_lines import capture_of
 
 np = pytest.importorskip("numpy")
@@ -15,7 +16,8 @@ pa = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 
 from protogen.convert import arrow_writers  # noqa: E402
-from protogen.convert.outputs import continuation, sweep  # noqa: E402
+from protogen.convert.arrow_tables import batch_of, schema_of  # noqa: E402
+from protogen.convert.outputs import Pending, continuation, sweep  # noqa: E402
 from protogen.convert.parquet_encodings import spelling_of  # noqa: E402
 
 COUNT = 5000
@@ -125,6 +127,33 @@ def test_a_table_with_many_groups_goes_on_in_another_file(
     capture.touch()
     convert(capture, tmp_path / "parts")
     assert [path.name for path in (tmp_path / "parts" / "numbers").iterdir()] == ["run.parquet"]
+
+
+def test_rare_rows_wait_in_few_batches(
+    capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of a table that gets a row now and then would wait for long, each by itself."""
+    path = capture.with_name("sink.yaml")
+    batches = batches_of(path, "pc", capture.read_bytes()[:60_000], None)
+    assert len(batches) > 8
+    monkeypatch.setattr(arrow_writers, "_MOST_BATCHES", 3)
+    pending = Pending(tmp_path)
+    writer = arrow_writers.ArrowWriter("run", pending)
+    for batch in batches:
+        writer.write(batch)
+        assert all(len(kept.batches) < 3 for kept in writer._kept.values())
+    writer.close()
+    pending.commit()
+    found = {
+        file.parent.name: pa.ipc.open_file(file).read_all().to_pylist()
+        for file in tmp_path.glob("*/run.arrow")
+    }
+    expected: dict[str, list[Any]] = {}
+    for batch in batches:
+        for rows in batch.rows():
+            schema = schema_of(rows.table, {})
+            expected.setdefault(rows.table.name, []).extend(batch_of(rows, schema).to_pylist())
+    assert repr(dict(sorted(found.items()))) == repr(dict(sorted(expected.items())))
 
 
 def test_what_others_left_of_parts_is_swept_away(tmp_path: Path) -> None:

@@ -20,9 +20,11 @@ _MOST_ROWS = 1 << 17
 """Rows of a group of rows, or some more."""
 _MOST_KEPT = 32 << 20
 """Bytes of rows of all tables together that wait for their group to fill."""
+_MOST_BATCHES = 64
+"""Batches of a table that wait. One takes kilobytes, even if it has a single row."""
 _MOST_PIECES = 1 << 13
-"""Columns of groups of rows, in all files that are being written. Parquet keeps a record of some
-kilobytes of each, and writes it when a file ends."""
+"""Columns of groups of rows, in all files that are being written. Parquet keeps a record of one or
+two kilobytes of each, and writes it when a file ends."""
 
 
 class Sink(Protocol):
@@ -56,14 +58,19 @@ class _Kept:
         self.batches.append(taken)
         self.rows += taken.num_rows
         self.bytes += taken.nbytes
+        if len(self.batches) >= _MOST_BATCHES:
+            self.batches = self._joined().combine_chunks().to_batches()
 
     def release(self) -> pa.Table:
         """The rows that waited."""
-        import pyarrow as pa
-
-        found = pa.Table.from_batches(self.batches, self.schema)
+        found = self._joined()
         self.batches, self.rows, self.bytes = [], 0, 0
         return found
+
+    def _joined(self) -> pa.Table:
+        import pyarrow as pa
+
+        return pa.Table.from_batches(self.batches, self.schema)
 
 
 class ArrowWriter:
