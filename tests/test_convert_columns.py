@@ -176,6 +176,48 @@ def test_hold_lists_that_are_always_empty(tmp_path: Path, engine: str | None) ->
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_lists_of_structs_without_values(tmp_path: Path, engine: str | None) -> None:
+    """They have as many elements as a number says, though nothing of them is in the rows."""
+    path = tmp_path / "great.yaml"
+    fields = """{
+      n: uint8,
+      which: {type: uint8, values: {a: 1, b: 2}},
+      pick: {switch: which, cases: {
+        a: {fields: {x: {type: uint8, const: 4}}},
+        b: {fields: {inner: {fields: {y: {type: uint8, const: 5}}}}}}},
+      marks: {count: n, fields: {}},
+      fixed: {count: 2, fields: {}},
+      sevens: {count: n, fields: {seven: {type: uint8, const: 7}, yes: {type: bool, const: true}}},
+      two: {type: uint8, const: 2},
+      twice: {count: two, fields: {}},
+      around: {fields: {
+        three: {type: uint8, const: 3},
+        thrice: {count: three, fields: {}},
+        deep: {count: n, fields: {n: {type: uint8, const: 1}, once: {count: n, fields: {}}}}}},
+      points: {count: 2, fields: {
+        k: {type: uint8, values: {a: 1, b: 2}},
+        marks: {count: k, fields: {}},
+        outer: {count: n, fields: {}},
+        choice: {switch: k, cases: {
+          a: {fields: {x: {type: uint8, const: 4}}},
+          b: {fields: {y: {type: uint8, const: 5}}}}}}}}"""
+    scaled = GREAT.index("  scaled:")
+    path.write_text(GREAT[:scaled] + f"  marked: {{id: 3, from: one, fields: {fields}}}\n")
+    data = b"".join(
+        b"\x5a\xa5\x03" + bytes((len(payload), *payload))
+        for n, *pick in ((2, 1, 4), (0, 2, 5), (3, 1, 4))
+        for payload in [(n, *pick, *(7, 1) * n, 2, 3, *(1,) * n, 1, 4, 2, 5)]
+    )
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    shown = [json.loads(line)["fields"] for line in lines_of(expected)]
+    assert [len(it["marks"]) for it in shown] == [2, 0, 3]
+    assert rows_of(found) == rows_of(expected)
+    assert arrow_rows(found) == arrow_rows(expected)
+    assert lines_of(found) == lines_of(expected)
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
 def test_are_chosen_by_what_is_in_front(tmp_path: Path, engine: str | None) -> None:
     """A struct's field may have the name of one around it, which chooses until then.
 

@@ -21,8 +21,8 @@ np = pytest.importorskip("numpy")
 
 from protogen.convert.arrays import Numbers  # noqa: E402
 from protogen.convert.batches import Rows, Tally  # noqa: E402
+from protogen.convert.composed import ListsOf, Structs  # noqa: E402
 from protogen.convert.csv_writer import CsvWriter  # noqa: E402
-from protogen.convert.nested import ListsOf, Structs  # noqa: E402
 from protogen.convert.outputs import Pending  # noqa: E402
 from protogen.convert.printed_csv import CsvPrinter, json_texts  # noqa: E402
 from protogen.convert.programs import PLAIN, QUOTED, Programs, operand  # noqa: E402

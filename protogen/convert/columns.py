@@ -19,8 +19,9 @@ from protogen.capture.tables import Tables as Filled
 from protogen.convert.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
 from protogen.convert.batches import Rows, Tally
 from protogen.convert.chunks import Chunk
+from protogen.convert.composed import Same, Scattered
 from protogen.convert.meanings import NameFinder, physical
-from protogen.convert.nested import Same, Scattered, nested
+from protogen.convert.nested import nested
 from protogen.convert.tables import REASONS, Column, Naming, Physical, Table, Tables
 from protogen.model.fields import Field
 from protogen.model.types import Fixed

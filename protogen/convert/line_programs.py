@@ -1,13 +1,13 @@
 """What prints the rows of a message as lines of JSON, whatever they hold.
 
-The values are those of `plain_rows.py`, which says the same for people who read it.
+The values are those of `nested.py`, which takes the same steps with values.
 """
 
 from __future__ import annotations
 
 import json
 from collections import ChainMap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import prod
@@ -15,14 +15,15 @@ from typing import Any
 
 from protogen.capture.schema import Choice, Column, Dimension, Number, Record, TableSchema
 from protogen.capture.schema import Text as TextShape
-from protogen.convert.plain_rows import constant, json_value
+from protogen.convert.plain import constant_of
+from protogen.convert.plain_rows import json_value
 from protogen.convert.programs import JSON, Place, Programs, operand
 from protogen.model.fields import Field
-from protogen.model.types import Array, Fixed, Octets, Struct, Switch, Text, Type
+from protogen.model.types import Array, Counted, Extent, Fixed, Octets, Struct, Switch, Text, Type
 from protogen.native.printer import DEPTH, Kind, Operand
 
-Scope = ChainMap[str, Place]
-"""The numbers in front, which count and choose."""
+Scope = ChainMap[str, Place | int]
+"""The numbers in front, which count and choose: where they are, or constant ones themselves."""
 
 
 class UnprintableError(Exception):
@@ -63,20 +64,50 @@ class _Fields:
         scope = at.scope.new_child(_counts(columns, at))
         inner = _Spot(at.depth, at.offset, scope)
         for place, item in enumerate(fields):
-            comma = ", " if place else "{"
-            self._programs.text(f"{comma}{json.dumps(item.name, ensure_ascii=False)}: ")
+            self._name(place, item)
             column = known.get(item.name)
             if column is None:
-                self._constant(item, item.type)
+                self._unstored(item, item.type, inner)
+                _note_constant(scope, item)
             else:
                 _note(scope, item, column, inner)
                 here = inner.moved(column.position)
                 self._value(item, item.type, column, column.dimensions, here)
         self._programs.text("}" if fields else "{}")
 
-    def _constant(self, item: Field, type: Type) -> None:
-        value = json_value(type, constant(item, type))
-        self._programs.text(json.dumps(value, ensure_ascii=False))
+    def _name(self, place: int, item: Field) -> None:
+        comma = ", " if place else "{"
+        self._programs.text(f"{comma}{json.dumps(item.name, ensure_ascii=False)}: ")
+
+    def _unstored(self, item: Field, type: Type, at: _Spot) -> None:
+        """What is constant or holds nothing."""
+        if item.const is not None:
+            value = json_value(type, constant_of(item, type))
+            self._programs.text(json.dumps(value, ensure_ascii=False))
+            return
+        match type:
+            case Struct(fields=fields):
+                inner = _Spot(at.depth, at.offset, at.scope.new_child())
+                for place, member in enumerate(fields):
+                    self._name(place, member)
+                    self._unstored(member, member.type, inner)
+                    _note_constant(inner.scope, member)
+                self._programs.text("}" if fields else "{}")
+            case Array(element=Struct() | Switch() | Array() as element, extent=extent):
+                body = partial(self._unstored, item, element)
+                self._list(at, 0, _unstored_count(extent, at), body)
+            case Switch():
+                self._unstored_choice(item, type, at)
+            case _:
+                self._programs.text("[]")
+
+    def _unstored_choice(self, item: Field, type: Switch, at: _Spot) -> None:
+        bodies = {case.value: partial(self._case, item, case.type, None, at) for case in type.cases}
+        selector = at.scope[type.selector]
+        if isinstance(selector, int):
+            bodies[selector]()
+        else:
+            self._programs.choose(selector.seen(at.depth), list(bodies.items()), lambda: None)
 
     def _value(
         self, item: Field, type: Type, column: Column, left: Sequence[Dimension], at: _Spot
@@ -122,19 +153,20 @@ class _Fields:
     def _array(
         self, item: Field, type: Array, column: Column, left: Sequence[Dimension], at: _Spot
     ) -> None:
-        if at.depth + 2 > DEPTH:
-            raise UnprintableError
         inner = left[1:]
         sizes = [it.capacity for it in inner]
         stride = column.shape.size * prod(sizes[:-1] if _is_text(column) else sizes)
+        body = partial(self._value, item, type.element, column, inner)
+        self._list(at, stride, _count(left[0], type.extent, at), body)
+
+    def _list(
+        self, at: _Spot, stride: int, count: Operand | int, body: Callable[[_Spot], None]
+    ) -> None:
+        if at.depth + 2 > DEPTH:
+            raise UnprintableError
         element = _Spot(at.depth + 1, 0, at.scope)
         self._programs.text("[")
-        self._programs.listed(
-            at.operand(),
-            stride,
-            _count(left[0], type.extent, at),
-            partial(self._value, item, type.element, column, inner, element),
-        )
+        self._programs.listed(at.operand(), stride, count, partial(body, element))
         self._programs.text("]")
 
     def _choice(self, item: Field, type: Switch, choice: Choice, at: _Spot) -> None:
@@ -147,14 +179,13 @@ class _Fields:
         if isinstance(choice.selector, int):
             bodies.get(choice.selector, rest)()
         else:
-            selector = at.scope[choice.selector].seen(at.depth)
-            self._programs.choose(selector, list(bodies.items()), rest)
+            self._programs.choose(_seen(choice.selector, at), list(bodies.items()), rest)
 
     def _case(self, item: Field, type: Type, column: Column | None, at: _Spot) -> None:
         if isinstance(type, Struct) and not type.fields:
             self._programs.text("null")
         elif column is None:
-            self._constant(item, type)
+            self._unstored(item, type, at)
         else:
             self._value(item, type, column, column.dimensions, at)
 
@@ -178,7 +209,7 @@ def _is_text(column: Column) -> bool:
     return isinstance(column.shape, TextShape)
 
 
-def _counts(columns: Sequence[Column], at: _Spot) -> dict[str, Place]:
+def _counts(columns: Sequence[Column], at: _Spot) -> dict[str, Place | int]:
     """Where the counts of a record are, by the names of their columns."""
     return {
         item.name: Place(at.depth, item.shape.code, at.offset + item.position)
@@ -194,9 +225,28 @@ def _note(scope: Scope, item: Field, column: Column, at: _Spot) -> None:
         scope[item.name] = scope[column.name] = place
 
 
+def _note_constant(scope: Scope, item: Field) -> None:
+    if isinstance(item.const, int):
+        scope[item.name] = item.const
+
+
+def _seen(name: str, at: _Spot) -> Operand:
+    """The number of that name, which is in a column."""
+    place = at.scope[name]
+    assert isinstance(place, Place)
+    return place.seen(at.depth)
+
+
+def _unstored_count(extent: Extent, at: _Spot) -> Operand | int:
+    if isinstance(extent, Counted):
+        place = at.scope[extent.field]
+        return place if isinstance(place, int) else place.seen(at.depth)
+    return extent.count if isinstance(extent, Fixed) else 0
+
+
 def _count(dimension: Dimension, extent: Any, at: _Spot) -> Operand | int:
     if dimension.counted_by is not None:
-        return at.scope[dimension.counted_by].seen(at.depth)
+        return _seen(dimension.counted_by, at)
     return extent.count if isinstance(extent, Fixed) else dimension.capacity
 
 

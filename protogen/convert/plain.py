@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.model.fields import Field
-from protogen.model.types import Array, Float, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Float, Integer, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
 """The values of the fields in front, which choose the cases of switches."""
@@ -61,3 +61,10 @@ def reached(values: Any, path: Sequence[str]) -> Any:
             return None
         values = values.get(step)
     return values
+
+
+def constant_of(item: Field, type: Type) -> Any:
+    """The value of a constant field."""
+    if isinstance(item.const, tuple):
+        return list(item.const)
+    return bool(item.const) if isinstance(type, Integer) and type.role == "bool" else item.const

@@ -14,7 +14,7 @@ import numpy as np
 
 from protogen.convert.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
 from protogen.convert.batches import Rows
-from protogen.convert.nested import ListsOf, Structs
+from protogen.convert.composed import ListsOf, Structs
 from protogen.convert.programs import Programs, needs_quotes, operand
 from protogen.convert.tables import Column
 from protogen.convert.values import as_list, json_of_each

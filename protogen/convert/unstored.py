@@ -1,0 +1,116 @@
+"""Columns of what is in no row, because it is constant or holds nothing.
+
+Lists of such structs still have as many elements as a number says.
+"""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from protogen.convert.arrays import Array
+from protogen.convert.composed import Cases, ListsOf, Same, Scattered, Structs
+from protogen.convert.plain import constant_of
+from protogen.model.fields import Field
+from protogen.model.types import Array as ArrayType
+from protogen.model.types import Counted, Fixed, Struct, Switch, Type
+
+Values = Any
+Scope = ChainMap[str, Array]
+"""The numbers in front, which count and choose, of each row."""
+
+# --- numbers in front -----------------------------------------------------------------------------
+
+
+def constants_in(fields: Iterable[Field], count: int) -> dict[str, Array]:
+    """The constant integers, which may count and choose, too."""
+    numbers = {it.name: it.const for it in fields if isinstance(it.const, int)}
+    return {name: np.broadcast_to(number, count) for name, number in numbers.items()}
+
+
+def at_places(scope: Scope, places: Callable[[], Array]) -> Scope:
+    """What counts and chooses in these rows."""
+    return ChainMap(_Picked(scope, places))
+
+
+class _Picked(dict[str, Array]):
+    """Picks rows of what is asked for, and of nothing else."""
+
+    def __init__(self, scope: Scope, places: Callable[[], Array]) -> None:
+        super().__init__()
+        self._scope = scope
+        self._places = places
+
+    def __missing__(self, name: str) -> Array:
+        found: Array = self._scope[name][self._places()]
+        self[name] = found
+        return found
+
+
+# --- values ---------------------------------------------------------------------------------------
+
+
+def unstored(item: Field, type: Type, count: int, scope: Scope) -> Values:
+    """The values of what is constant or holds nothing, so many times."""
+    if item.const is not None:
+        return Same(constant_of(item, type), count)
+    match type:
+        case Struct(fields=fields):
+            inner = scope.new_child()
+            members = {}
+            for member in fields:
+                members[member.name] = unstored(member, member.type, count, inner)
+                inner.update(constants_in([member], count))
+            return Structs(members, count)
+        case ArrayType(element=Struct() | Switch() | ArrayType()):
+            return _unstored_lists(item, type, count, scope)
+        case Switch():
+            return _unstored_cases(item, type, count, scope)
+        case _:
+            return Same([], count)  # Nothing else holds nothing but an empty list.
+
+
+def _unstored_lists(item: Field, type: ArrayType, count: int, scope: Scope) -> ListsOf:
+    extent = type.extent
+    counts = (
+        scope[extent.field].astype("i4")
+        if isinstance(extent, Counted)
+        else np.full(count, extent.count if isinstance(extent, Fixed) else 0, "i4")
+    )
+    inner = at_places(scope, lambda: np.repeat(np.arange(count), counts))
+    return ListsOf(unstored(item, type.element, int(counts.sum()), inner), counts)
+
+
+def _unstored_cases(item: Field, type: Switch, count: int, scope: Scope) -> Cases:
+    chosen = scope[type.selector]
+    members = {}
+    for case in type.cases:
+        rows = np.flatnonzero(chosen == case.value)
+        places = np.full(count, -1, "i8")
+        places[rows] = np.arange(len(rows))
+        inner = at_places(scope, partial(_same, rows))
+        if len(rows):
+            values = unstored(item, case.type, len(rows), inner)
+            members[case.name] = Scattered(values, places)
+    return Cases(members, count)
+
+
+def _same(rows: Array) -> Array:
+    return rows
+
+
+def followed(values: Values, path: Sequence[str]) -> Values:
+    """What the rest of a path leads to."""
+    if not path:
+        return values
+    if isinstance(values, Structs):
+        return followed(values.members[path[0]], path[1:])
+    assert isinstance(values, Cases)
+    found = values.members.get(path[0])
+    if found is None:
+        return Same(None, len(values))
+    return Scattered(followed(found.values, path[1:]), found.places)
