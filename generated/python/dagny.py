@@ -1138,8 +1138,6 @@ def _encode_laser(item: Laser, sender: str | None) -> bytes:
     if len(v1) > 512:
         raise _fast.Unclear
     payload = _struct.pack(f"<{len(v1)}B", *v1)
-    if not 0 <= len(payload) <= 512:
-        raise _fast.Unclear
     if sender == "host":
         return _frame_host(payload, 76)
     if sender == "robot":

@@ -1723,12 +1723,19 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
             raise _fast.Unclear
         values4 += (each.cluster, each.distance)
     payload = _PACKERS_0[len(v3)](*values4)
-    if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
-        raise _fast.Unclear
     if number_ is None:
         number_ = 255
     content = _PACK_1(4, number_, 2, len(payload)) + payload
-    content += _BYTES[_checksum.xor_of(payload)]
+    folded = _FROM_BYTES_0(payload, "little")
+    if len(payload) > 32:
+        folded ^= folded >> 1024
+        folded ^= folded >> 512
+        folded ^= folded >> 256
+    folded ^= folded >> 128
+    folded ^= folded >> 64
+    folded ^= folded >> 32
+    folded ^= folded >> 16
+    content += _BYTES[(folded ^ folded >> 8) & 0xFF]
     if 0x1B in content or 0x7C in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
         content = content.replace(b"\x7c", b"\x7c\x1b\x01")

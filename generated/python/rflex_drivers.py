@@ -1887,8 +1887,6 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
             raise _fast.Unclear
         values4 += (each.cluster, each.distance)
     payload = _PACKERS_0[len(v3)](*values4)
-    if not 8 <= len(payload) <= 254 or (len(payload) - 8) % 3:
-        raise _fast.Unclear
     if number_ is None:
         number_ = 0
     content = _PACK_1(4, number_, 2, len(payload)) + payload

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
 from protogen.targets.python import frames as tables
@@ -22,8 +24,8 @@ They are checked after events were made, which are dropped from the first wrong 
 bounds what one of them costs.
 """
 
-FOLDED, GREATEST_FOLDED = 32, 256
-"""Bytes that are halved until one is left, and those of which that may be the half of the half."""
+FOLDED, _GREATEST_FOLDED = 32, 256
+"""Bytes that are always halved until one is left, and those that are halved at all."""
 
 
 def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
@@ -555,17 +557,8 @@ class _Cutter(FrameFunction):
         front = frame.head_size - frame.skipped - first
         greatest = front + frame.framing.payload.greatest + frame.tail_size
         data = self.frame.slice_of(self.content, first, 0)
-        if greatest > GREATEST_FOLDED:
-            self._stop_if(f"_checksum.xor_of({data})")
-            return
-        from_bytes = self.lines.constants.named("FROM_BYTES", "int.from_bytes")
-        self.lines.add(f'folded = {from_bytes}({data}, "little")')
-        if greatest > FOLDED:
-            with self.lines.block(f"if len({self.content}) > {first + FOLDED}:"):
-                for half in (128, 64, 32):
-                    if greatest > half:
-                        self.lines.add(f"folded ^= folded >> {8 * half}")
-        self._stop_if(half_by_half(self.lines, min(greatest, FOLDED)))
+        are_more = f"len({self.content}) > {first + FOLDED}"
+        self._stop_if(folded(self.lines, data, are_more, greatest))
 
     # --- the event --------------------------------------------------------------------------------
 
@@ -723,12 +716,26 @@ def is_plain_sum(part: ChecksumPart, frame: FastFrame) -> bool:
     return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
 
 
-def half_by_half(lines: Lines, size: int) -> str:
-    """The exclusive or of the bytes of `folded`, which are at most so many, as an expression."""
-    for half in (16, 8, 4, 2):
-        if size > half:
+def folded(lines: Lines, data: str, are_more: str, greatest: int) -> str:
+    """The exclusive or of at most so many bytes as an expression, worked out without a loop.
+
+    `are_more` is the condition that there are more than `FOLDED`; empty where that is known.
+    """
+    if greatest > _GREATEST_FOLDED:
+        return f"_checksum.xor_of({data})"
+    from_bytes = lines.constants.named("FROM_BYTES", "int.from_bytes")
+    lines.add(f'folded = {from_bytes}({data}, "little")')
+    if greatest > FOLDED:
+        with lines.block(f"if {are_more}:") if are_more else nullcontext():
+            _halve(lines, greatest, (128, 64, 32))
+    _halve(lines, greatest, (16, 8, 4, 2))
+    return "(folded ^ folded >> 8) & 0xFF" if greatest > 1 else "folded"
+
+
+def _halve(lines: Lines, greatest: int, halves: tuple[int, ...]) -> None:
+    for half in halves:
+        if greatest > half:
             lines.add(f"folded ^= folded >> {8 * half}")
-    return "(folded ^ folded >> 8) & 0xFF" if size > 1 else "folded"
 
 
 def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constants) -> str:

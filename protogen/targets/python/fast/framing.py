@@ -19,7 +19,7 @@ from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
-from protogen.targets.python.fast.cutting import FOLDED, checksum, half_by_half
+from protogen.targets.python.fast.cutting import FOLDED, checksum, folded
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Constants, Lines
 from protogen.targets.python.fast.writing import Packed, content_writer, payload_writer
@@ -254,16 +254,16 @@ class _Framer:
             self.lines.add(f"content += {self.lines.constants.number(part.type)}.encode({due})")
 
     def _folded(self, part: ChecksumPart) -> str:
-        """The exclusive or of so few bytes that they are halved without a loop, else nothing."""
-        message, payload = self.message, self._covered(part) == self._own_payload()
-        if message is None or message.sizes.fixed is None or not payload:
+        """The exclusive or of a message's payload as an expression; nothing for anything else."""
+        message, covered, own = self.message, self._covered(part), self._own_payload()
+        spec = part.algorithm
+        if message is None or covered not in (own, "payload"):
             return ""
-        size, spec = message.sizes.fixed, part.algorithm
-        if spec.kind != "xor" or spec.init != 0 or size > FOLDED:
+        if spec.kind != "xor" or spec.init != 0:
             return ""
-        from_bytes = self.lines.constants.named("FROM_BYTES", "int.from_bytes")
-        self.lines.add(f'folded = {from_bytes}({self._own_payload()}, "little")')
-        return half_by_half(self.lines, size)
+        if message.sizes.fixed is not None:
+            return folded(self.lines, covered, "", message.sizes.fixed)
+        return folded(self.lines, covered, f"len({covered}) > {FOLDED}", message.sizes.greatest)
 
     def _covered(self, part: ChecksumPart) -> str:
         """What a checksum covers, while the content ends where the part begins."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Counted,
+    Fill,
     Fixed,
     Float,
     Integer,
@@ -90,6 +92,21 @@ def outside(sizes: SizeSet, data: str) -> str:
         return f"len({data}) != {sizes.fixed}"
     bounds = f"not {sizes.least} <= len({data}) <= {sizes.greatest}"
     return f"{bounds} or (len({data}) - {sizes.least}) % {sizes.step}" if sizes.step > 1 else bounds
+
+
+def holds_records(fields: tuple[Field, ...], sizes: SizeSet) -> bool:
+    """Whether these are the sizes of fields, the last of which are as many records as there are.
+
+    Then nothing can be wrong with a size but the number of records.
+    """
+    last = fields[-1].type if fields else None
+    others = [fixed_size(item.type) for item in fields[:-1]]
+    if not isinstance(last, Array) or not isinstance(last.extent, Fill) or None in others:
+        return False
+    size, first = fixed_size(last.element), sum(filter(None, others))
+    return bool(size) and sizes == SizeSet(
+        first, first + (size or 0) * last.extent.greatest, size or 1
+    )
 
 
 def outer_names(struct: Struct) -> tuple[str, ...]:

@@ -24,6 +24,7 @@ from protogen.model.types import (
 from protogen.targets.python.fast.layout import (
     array_code,
     code_of,
+    holds_records,
     is_named,
     is_native,
     is_pair,
@@ -45,7 +46,7 @@ def payload_writer(message: Message, lines: Lines) -> None:
     What an integer may be, and how great, is left to `struct` wherever it writes the value itself.
     """
     lines.add(f"payload = {_Writer(lines).record('item', message.fields)}")
-    if message.sizes.fixed is None:
+    if message.sizes.fixed is None and not holds_records(message.fields, message.sizes):
         lines.refuse_if(outside(message.sizes, "payload"))
 
 
