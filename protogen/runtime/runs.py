@@ -14,6 +14,7 @@ from zlib import adler32
 from protogen.runtime.checksum import are_sound
 from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.events import MessageEvent
+from protogen.runtime.fast import BYTES
 from protogen.runtime.pairs import Unclear
 from protogen.runtime.sender import Cutter
 
@@ -156,14 +157,14 @@ class StuffedRuns:
         place = self.counter
         if place is None:
             return []
-        head = bytearray(first[self.head])
-        head[place - self.head.start] = 0
-        known = self.numbers.get(bytes(head))
+        head, index = first[self.head], place - self.head.start
+        front, behind = head[:index], head[index + 1 :]
+        key = front + b"\0" + behind
+        known = self.numbers.get(key)
         if known is None:
             if len(self.numbers) >= _KEPT:
                 self.numbers.clear()
-            known = self.numbers[bytes(head)] = []
-            for value in range(256):
-                head[place - self.head.start] = value
-                known.append(heads[bytes(head)][0])
+            # There when it is whole: others may look for it at the same time.
+            known = [heads[front + BYTES[value] + behind][0] for value in range(256)]
+            self.numbers[key] = known
         return [known[content[place]] for content in contents]
