@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol
 
 from protogen.convert.arrow_tables import batch_of, schema_of
 from protogen.convert.batches import Batch, Rows
+from protogen.convert.draining import Drain
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.outputs import Pending, continuation
 from protogen.convert.parquet_encodings import spelling_of
@@ -125,25 +128,46 @@ class ArrowWriter:
 
     def _sink(self, path: Path, table: Table, first: pa.Table) -> Sink:
         """A new file, whose first rows these will be."""
-        return _ArrowFile(path, first.schema)
-
-
-class _ArrowFile:
-    """A file of the IPC format."""
-
-    def __init__(self, path: Path, schema: pa.Schema) -> None:
         import pyarrow as pa
 
-        self._file = pa.OSFile(str(path), "wb")
-        self._writer = pa.ipc.new_file(self._file, schema)
+        return _File(path, lambda file: _Combining(pa.ipc.new_file(file, first.schema)))
+
+
+class _Combining:
+    """Writes the rows of a group as one record batch."""
+
+    def __init__(self, writer: Any) -> None:
+        self._writer = writer
+        self.close = writer.close
 
     def write_table(self, rows: pa.Table) -> None:
-        """Write a record batch."""
+        """Write a group of rows."""
         self._writer.write_table(rows.combine_chunks())
 
+
+class _File:
+    """A file that goes to the disk while it is written."""
+
+    def __init__(self, path: Path, open_writer: Callable[[Any], Any]) -> None:
+        import pyarrow as pa
+
+        self._drain = Drain()
+        with ExitStack() as files:
+            self._file = files.enter_context(pa.OSFile(str(path), "wb"))
+            # Arrow does not tell its own.
+            self._descriptor = os.open(path, os.O_RDONLY)
+            files.callback(os.close, self._descriptor)
+            self._writer = open_writer(self._file)
+            self._files = files.pop_all()
+
+    def write_table(self, rows: pa.Table) -> None:
+        """Write a group of rows."""
+        self._writer.write_table(rows)
+        self._drain.reach(self._descriptor, self._file.tell())
+
     def close(self) -> None:
-        """Write the footer."""
-        with self._file:
+        """Write what tells where the groups are."""
+        with self._files:
             self._writer.close()
 
 
@@ -173,7 +197,7 @@ class ParquetWriter(ArrowWriter):
             "write_statistics": [table.frame_columns[0].name, table.frame_columns[2].name],
         }
         try:
-            return cast(Sink, parquet.ParquetWriter(str(path), first.schema, **options))
+            return _File(path, lambda file: parquet.ParquetWriter(file, first.schema, **options))
         except NotImplementedError as error:  # It has no structs without members.
             raise ConvertError(
                 f"Parquet has no place for what {table.name} holds: {error}",

@@ -13,11 +13,27 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-_STRETCH = 16 << 20
+_STRETCH = 4 << 20
 """Bytes after which the system is told. It begins to write a stretch when it is told the first
 time, and forgets what was written when it is told again."""
 _TOLD = 4
 """How often it is told of a stretch, unless the file ends before."""
+
+
+class Drain:
+    """Tells the system how far a file has been written."""
+
+    def __init__(self) -> None:
+        self._told = 0
+
+    def reach(self, descriptor: int, written: int) -> None:
+        """So many bytes are written; the system may drop them from its cache."""
+        if written - self._told < _STRETCH:
+            return
+        self._told = written
+        if hasattr(os, "posix_fadvise"):  # Linux and most others have it, macOS and Windows not.
+            start = max(0, written - _TOLD * _STRETCH)
+            os.posix_fadvise(descriptor, start, written - start, os.POSIX_FADV_DONTNEED)
 
 
 class DrainedFile:
@@ -25,8 +41,8 @@ class DrainedFile:
 
     def __init__(self, path: Path) -> None:
         self._file = path.open("wb")
+        self._drain = Drain()
         self._written = 0
-        self._told = 0
 
     def __enter__(self) -> Self:
         return self
@@ -43,8 +59,7 @@ class DrainedFile:
         """Write some bytes."""
         self._file.write(data)
         self._written += len(data)
-        if self._written - self._told >= _STRETCH:
-            self._tell()
+        self._drain.reach(self._file.fileno(), self._written)
 
     def writelines(self, pieces: Iterable[bytes]) -> None:
         """Write one piece after the other."""
@@ -54,10 +69,3 @@ class DrainedFile:
     def close(self) -> None:
         """Write what is left."""
         self._file.close()
-
-    def _tell(self) -> None:
-        self._told = self._written
-        if hasattr(os, "posix_fadvise"):  # Linux and most others have it, macOS and Windows not.
-            start = max(0, self._written - _TOLD * _STRETCH)
-            size = self._written - start
-            os.posix_fadvise(self._file.fileno(), start, size, os.POSIX_FADV_DONTNEED)
