@@ -1063,6 +1063,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
         at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
+    together = 4
     are_many = size - at > 1024
     try:
         while at < size:
@@ -1116,10 +1117,11 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             at = end
             if are_many:
                 unchecked.append(content)
-                if len(unchecked) >= 256:
+                if len(unchecked) >= together:
                     if not _checksum.are_sound(unchecked, 4):
                         break
                     unchecked.clear()
+                    together = min(2 * together, 64)
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
     if unchecked:
@@ -1245,6 +1247,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
         at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
+    together = 4
     are_many = size - at > 1024
     try:
         while at < size:
@@ -1298,10 +1301,11 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             at = end
             if are_many:
                 unchecked.append(content)
-                if len(unchecked) >= 256:
+                if len(unchecked) >= together:
                     if not _checksum.are_sound(unchecked, 4):
                         break
                     unchecked.clear()
+                    together = min(2 * together, 64)
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
     if unchecked:

@@ -18,16 +18,22 @@ from protogen.runtime.fast import BYTES
 from protogen.runtime.pairs import Unclear
 from protogen.runtime.sender import Cutter
 
+ANYTHING = Exception
+"""What is raised where frames are no run; whatever it is, the cutter decides."""
+
 LONG = 2048
 """In so many bytes it is worth looking for runs."""
 
-_WINDOW = 8192
-"""So many bytes are looked at together, which bounds what is done in vain where they differ."""
+_FIRST, _WINDOW = 1024, 8192
+"""So many bytes are looked at together at first, and at most: twice as many after each run.
+
+So what is done in vain, where they are no run, is in proportion to what was not, and bounded.
+"""
 
 _KEPT = 32
 """So many heads are remembered; what comes off a wire must not fill the memory."""
 
-_LEAST = 16
+_LEAST = 8
 """Fewer frames are left to the cutter."""
 
 
@@ -62,31 +68,31 @@ class StuffedRuns:
 
         `cut` takes frames one by one; `heads` has the numbers and the reader for a content's head.
         """
+        window = _FIRST
         try:
             while len(data) - at > LONG:
-                found, end = self._run(data, at, base, cut, heads)
+                found, end = self._run(data[at : at + window], base + at, cut, heads)
                 events += found
-                at = end
-        except Exception:  # noqa: S110 - the cutter comes to what is not in order
-            pass
+                at += end
+                window = min(2 * window, _WINDOW)
+        except ANYTHING:  # The cutter comes to what is not in order.
+            return at
         return at
 
-    def _run(
-        self, data: bytes, at: int, base: int, cut: Cutter, heads: Any
-    ) -> tuple[list[Any], int]:
+    def _run(self, data: bytes, base: int, cut: Cutter, heads: Any) -> tuple[list[Any], int]:
         """The events of one run, and the place behind it. Raises Unclear, or anything."""
-        begun = at + len(self.start)
-        parts = data[begun : at + _WINDOW].split(self.end + self.start)
+        begun = len(self.start)
+        parts = data[begun:].split(self.end + self.start)
         parts.pop()  # It may go on.
-        if len(parts) < _LEAST or not data.startswith(self.start, at):
+        if len(parts) < _LEAST or not data.startswith(self.start):
             raise Unclear
-        codec = self._codec(data[at : begun + len(parts[0]) + len(self.end)], cut)
+        codec = self._codec(data[: begun + len(parts[0]) + len(self.end)], cut)
         contents = self._contents(parts)
         first = contents[0]
         self._check(first, contents)
         numbers, read = heads[first[self.head]]
         around = len(self.start) + len(self.end)
-        places = list(accumulate([len(part) + around for part in parts], initial=at))
+        places = list(accumulate([len(part) + around for part in parts], initial=0))
         raws = [data[low:high] for low, high in pairwise(places)]
         shown = self._shown(first, contents, heads) or [numbers] * len(contents)
         found = []

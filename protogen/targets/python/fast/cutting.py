@@ -17,11 +17,12 @@ from protogen.targets.python.literals import tuple_of
 _SHORT = 256
 """So many bytes can be summed by Adler-32 without its modulus showing."""
 
-_MANY, _TOGETHER = 1024, 256
-"""Bytes from which on exclusive ors are compared together, and those of how many frames.
+_MANY, _FIRST, _TOGETHER = 1024, 4, 64
+"""Bytes from which on exclusive ors are compared together; those of how many frames at first, and
+at most.
 
-They are checked after events were made, which are dropped from the first wrong one on: so this also
-bounds what one of them costs.
+They are checked after events were made, which are dropped from the first wrong one on. So what is
+done in vain is in proportion to what was not, and bounded.
 """
 
 FOLDED, _GREATEST_FOLDED = 32, 256
@@ -123,6 +124,7 @@ class _Cutter(FrameFunction):
         self.lines.add("add = events.append")
         if self._deferred is not None:
             self.lines.add("unchecked: list[bytes] = []")
+            self.lines.add(f"together = {_FIRST}")
             self.lines.add(f"are_many = size - at > {_MANY}")
         if self.frame.ended_by == "start":
             # Behind a frame that ends where the next start is, that needs not be checked again.
@@ -582,9 +584,10 @@ class _Cutter(FrameFunction):
             self.lines.add(f"unchecked.append({self.content})")
             if not is_known:
                 return
-            with self.lines.block(f"if len(unchecked) >= {_TOGETHER}:"):
+            with self.lines.block("if len(unchecked) >= together:"):
                 self._stop_if(f"not _checksum.are_sound(unchecked, {self._deferred})")
                 self.lines.add("unchecked.clear()")
+                self.lines.add(f"together = min(2 * together, {_TOGETHER})")
 
     @property
     def _read_from(self) -> str:
