@@ -18,7 +18,6 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
-from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "0c279702240892abbf46c1dba40fd0bfc28d955cf8f9231472d19cdce291e429"
@@ -404,7 +403,7 @@ _UNPACK_2 = _struct.Struct("<3xHHx").unpack
 _MEMBERS_1 = _TABLES.members(GpsModeMode, 8)
 _UNPACK_3 = _struct.Struct("<3xBBHHhhHHHHx").unpack
 _MEMBERS_2 = _TABLES.members(StatusStatus, 8)
-_RUNS_0 = _runs.StuffedRuns(
+_RUNS_0 = _fast.Runs(
     start=b"\x55",
     end=b"",
     greatest=250,
@@ -518,7 +517,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
     add = events.append
     try:
@@ -658,7 +657,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
     add = events.append
     try:

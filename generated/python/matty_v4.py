@@ -17,7 +17,6 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
-from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "726898ed912fa822b88887315e8f66eefc016b1aa21b6ec013246747f9291116"
@@ -524,7 +523,7 @@ _NUMBER_0 = _rt.Number(24, False, "little", False)
 _UNPACK_4 = _struct.Struct("<3xBBHHhhHHHHhhhx").unpack
 _MEMBERS_3 = _TABLES.members(StatusStatus, 8)
 _UNPACK_5 = _struct.Struct("<3xBBx").unpack
-_RUNS_0 = _runs.StuffedRuns(
+_RUNS_0 = _fast.Runs(
     start=b"\x55",
     end=b"",
     greatest=252,
@@ -663,7 +662,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
     add = events.append
     try:
@@ -805,7 +804,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
     add = events.append
     try:

@@ -18,7 +18,6 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
-from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "c6c32f0e21623c09fce54740524abf73e27033a6c90c7ea41df4db600404903a"
@@ -848,7 +847,7 @@ _UNPACK_9 = _struct.Struct(">4xIx").unpack
 _UNPACK_10 = _struct.Struct(">4xIBHx").unpack
 _MEMBERS_6 = _fast.Members(IoValue)
 _UNPACK_11 = _struct.Struct(">4xIIIx").unpack
-_RUNS_0 = _runs.StuffedRuns(
+_RUNS_0 = _fast.Runs(
     start=b"\x1b\x02",
     end=b"\x1b\x03",
     greatest=782,
@@ -1059,7 +1058,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
@@ -1243,7 +1242,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []

@@ -18,7 +18,6 @@ from protogen.runtime import api as _rt
 from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
-from protogen.runtime import runs as _runs
 from protogen.runtime import transparency as _transparency
 
 SPEC_HASH = "1505b9412ac30877e4786b80edfb26c1644687195cd01d012659df4eb4bcf04e"
@@ -995,7 +994,7 @@ _UNPACK_11 = _struct.Struct(">4xIBHx").unpack
 _UNPACK_12 = _struct.Struct(">4xIIIx").unpack
 _UNPACK_13 = _struct.Struct(">4xIIIIIBx").unpack
 _MEMBERS_6 = _TABLES.members(IrRunMode, 8)
-_RUNS_0 = _runs.StuffedRuns(
+_RUNS_0 = _fast.Runs(
     start=b"\x1b\x02",
     end=b"\x1b\x03",
     greatest=780,
@@ -1258,7 +1257,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
@@ -1426,7 +1425,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     size = len(data)
     if not _TABLES.are_filled:
         _TABLES.fill()
-    if size - at > _runs.LONG:
+    if size - at > 2048:
         at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []

@@ -36,6 +36,7 @@ __all__ = [
     "Packers",
     "PairLists",
     "Pairs",
+    "Runs",
     "SevenBitFloat",
     "Tables",
     "Unclear",
@@ -79,6 +80,24 @@ def checked(wire: bytes, cut: Cutter) -> bytes:
     if cut(wire, 0, 0, events) != len(wire) or len(events) != 1:
         raise Unclear
     return wire
+
+
+class Runs:
+    """Runs of frames of one message, which are taken by `runs.py`: imported with the first."""
+
+    def __init__(self, **given: Any) -> None:
+        self.given = given
+        """What `StuffedRuns` is given."""
+
+    def take(
+        self, data: bytes, at: int, base: int, events: list[Any], cut: Cutter, heads: Heads
+    ) -> int:
+        """Add the events of runs from `at` on; the place of the first byte that is in none."""
+        from protogen.runtime.runs import StuffedRuns
+
+        runs = StuffedRuns(**self.given)
+        self.take = runs.take  # type: ignore[method-assign]
+        return runs.take(data, at, base, events, cut, heads)
 
 
 # --- named values -------------------------------------------------------------------------------

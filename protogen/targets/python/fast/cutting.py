@@ -6,6 +6,7 @@ from contextlib import nullcontext
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
+from protogen.runtime.runs import LONG
 from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.frames import FastFrame, Kin
 from protogen.targets.python.fast.lines import Constants, Lines
@@ -177,8 +178,8 @@ class _Cutter(FrameFunction):
             "xor_from": first,
         }
         arguments = ", ".join(f"{name}={value}" for name, value in given.items())
-        runs = self.lines.constants.named("RUNS", f"_runs.StuffedRuns({arguments})")
-        with self.lines.block("if size - at > _runs.LONG:"):
+        runs = self.lines.constants.named("RUNS", f"_fast.Runs({arguments})")
+        with self.lines.block(f"if size - at > {LONG}:"):
             of_sender = f"_cut_{self.name}, _{self.name.upper()}_HEADS"
             self.lines.add(f"at = {runs}.take(data, at, base, events, {of_sender})")
 

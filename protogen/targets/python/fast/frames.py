@@ -23,6 +23,7 @@ from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.model.wire import fixed_size
+from protogen.runtime.runs import LONG
 from protogen.runtime.transparency import replacing_order
 from protogen.targets.python.literals import octets_in_class
 
@@ -31,9 +32,6 @@ EndedBy = Literal["end", "start", "length", "kind"]
 identity."""
 
 _MOST_SPECIALS = 4
-
-_LONG = 2048
-"""Frames of so many bytes are not taken several at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +265,7 @@ class FastFrame:
             and self.remembered is not None
             and len(self.checksums) == 1
             and self.tail == self.checksums
-            and self.framing.greatest < _LONG
+            and self.framing.greatest < LONG
         )
 
     @property

@@ -59,8 +59,6 @@ class Fast:
     """Whether readers look values up in tables that have to be filled first."""
     codes: bool
     """Whether writers do."""
-    runs: bool
-    """Whether runs of frames of one message are taken at once."""
 
 
 def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
@@ -94,7 +92,6 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
         modules=tuple(name for name in ("re", "struct", "zlib") if _USES[name] in joined),
         tables=constants.use("_TABLES."),
         codes=constants.use("_CODES."),
-        runs=constants.use("_runs."),
     )
 
 
