@@ -136,6 +136,31 @@ def test_a_nan_that_json_does_not_tell_has_its_bytes(bits: str) -> None:
     assert (b'"raw"' in line) == (bits not in ("7fc00000", "7f800000"))
 
 
+@pytest.mark.parametrize("name", ["hdlc", "hdlc_lenient", "slip", "slip_end_only"])
+def test_unknown_frames_have_their_bytes_where_an_encoder_makes_others(name: str) -> None:
+    path = ROOT / "tests" / "framings" / f"{name}.yaml"
+    spec = module_at(path).PROTOCOL.sender("station")
+    dice = Random(name)
+    known = {message.IDENTITY for message in spec.messages}
+    frames = [
+        encode_frame(spec, (number,), dice.randbytes(dice.randrange(12)), {}, strict=False)
+        for number in range(256)
+        if (number,) not in known
+    ]
+    escaped = [frame[:2] + bytes([0x7D, frame[2] ^ 0x20]) + frame[3:] for frame in frames]
+    for data in (
+        b"".join(frames),
+        frames[0] + b"".join(frame[1:] for frame in frames[1:]),
+        b"".join(escaped),
+        b"".join(2 * frame[:1] + frame[1:] + frame[-1:] for frame in frames),
+    ):
+        lines = lines_of(batches_of(path, "station", data, "events"))
+        assert lines_of(batches_of(path, "station", data, None)) == lines
+    plain = lines_of(batches_of(path, "station", b"".join(frames), None))
+    assert sum(b'"unknown"' in line for line in plain) > 200
+    assert not any(b'"raw"' in line for line in plain)
+
+
 def csv_files(batches: list[Any], folder: Path) -> dict[str, bytes]:
     writer = CsvWriter("run", pending := Pending(folder))
     write_all(writer, batches, Tally())
