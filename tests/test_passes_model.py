@@ -553,3 +553,20 @@ class TestProtocol:
             protocol.message("nothing")
         with pytest.raises(KeyError, match="none"):
             protocol.sender("robot").frame.part("none")
+
+
+def test_a_switch_in_a_type_that_nobody_uses_may_yet_end_anything() -> None:
+    """`pair` has it at its end and elsewhere, which matters only where a payload ends with it."""
+    protocol_of(
+        """\
+protocol: demo
+endpoints: {host: Host, robot: Robot}
+frame: {id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}
+transparency: slip
+types:
+  tagged: {fields: {kind: uint8, value: {switch: kind, cases: {1: uint8}}}}
+  pair: {fields: {first: tagged, second: tagged}}
+messages:
+  alone: {id: 1, from: robot, fields: {a: uint8}}
+"""
+    )

@@ -85,6 +85,8 @@ class SwitchBuilder:
     def _same_everywhere(self, ends: bool, item: Effective) -> None:
         """A declared type is one type: its switch has a rest wherever it is used, or nowhere."""
         loc = item.at("switch")
+        if item.setting.elsewhere:
+            return  # Where no message uses it, nobody knows what it ends.
         if self._ends.setdefault((loc, item.setting.owner), ends) == ends:
             return
         types = self._context.syntax.types
