@@ -138,6 +138,36 @@ def test_memory_that_somebody_looks_at_is_kept_however_python_counts(
     assert memory.rows(dtype, 1 << 18).ctypes.data == place
 
 
+class Scarce(Memory):
+    """Memory that is all used, but for one table's."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.left = 1 << 30
+
+    def rows(self, dtype, count: int):
+        self.left -= 1
+        if self.left < 0:
+            raise MemoryError
+        return super().rows(dtype, count)
+
+
+def test_nothing_stays_lent_where_memory_ends() -> None:
+    """Else the next rows would be written to where something else is by then."""
+    frames = material_of(RN1, "brain").frames
+    data = b"".join(frame for frame in frames if len(frame) < 20) * 200
+    memory = Scarce()
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    engine = NativeEngine(library, memory=memory)
+    assert list(engine.feed(data))
+    memory.left = 1
+    with pytest.raises(MemoryError):
+        engine.step(data)
+    assert memory.left == -1
+    words = engine._decoder._tables.tolist()
+    assert not any(words[3::7])  # The addresses of what is lent.
+
+
 class Watched(NativeEngine):
     """A decoder that tells how far off the numbers were that it began with."""
 

@@ -138,9 +138,13 @@ class NativeEngine:
 
     def step(self, data: bytes | memoryview) -> tuple[int, Tables]:
         """Take some of the next bytes, until a table is full: how many, and what came of them."""
-        lent = self._lend(len(data)) if len(data) > _FEW else {}
-        taken = self._decoder.feed(address_of(data), len(data))
-        return taken, self._tables(lent, taken)
+        try:
+            lent = self._lend(len(data)) if len(data) > _FEW else {}
+            taken = self._decoder.feed(address_of(data), len(data))
+            return taken, self._tables(lent, taken)
+        except BaseException:
+            self._decoder.clear()  # Nobody keeps what was lent any more.
+            raise
 
     def flush(self) -> Iterator[Tables]:
         """Take the end of the stream."""
