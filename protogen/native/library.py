@@ -24,7 +24,7 @@ _FEW = 1 << 12
 
 
 class State(ctypes.Structure):
-    """What stands in `struct protogen_capture` behind the tables."""
+    """What stands in `struct protogen_capture` in front of the tables."""
 
     _fields_ = (
         ("offset", ctypes.c_uint64),
@@ -47,7 +47,7 @@ class Library:
         except OSError as error:
             raise NativeError(f"{path} can't be loaded: {error}") from None
         self.schema = driver.schema
-        expected = driver.layout
+        expected = (ctypes.sizeof(State), *driver.layout)
         found = (ctypes.c_size_t * len(expected)).in_dll(library, "protogen_layout")
         if tuple(found) != expected:
             raise NativeError("the compiler lays structs out in a way of its own")
@@ -108,10 +108,10 @@ class Decoder:
         if not self._pointer:
             raise MemoryError
         finalize(self, library.free, self._pointer)
-        size = library.tables * _WORDS * ctypes.sizeof(ctypes.c_size_t)
-        memory = (ctypes.c_size_t * (library.tables * _WORDS)).from_address(self._pointer)
+        self._state = State.from_address(self._pointer)
+        words = ctypes.c_size_t * (library.tables * _WORDS)
+        memory = words.from_address(self._pointer + ctypes.sizeof(State))
         self._tables = memoryview(memory).cast("B").cast("P")
-        self._state = State.from_address(self._pointer + size)
 
     def start(self, offset: int, sequence: int) -> None:
         """Begin a stream: offset of its first byte, number of its first event."""

@@ -66,7 +66,7 @@ class Driver:
     text: str
     schema: CaptureSchema
     layout: tuple[int, ...]
-    """What the library's `protogen_layout` has to say."""
+    """What the library's `protogen_layout` has to say of rows."""
     spells: bool
     """Whether the library has `protogen_spell`."""
 
