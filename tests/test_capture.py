@@ -17,6 +17,7 @@ from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from corpus import material_of, stream_of
 
 from protogen.capture import CaptureError, InvalidReason, batches, columns
+from protogen.capture.arrays import numpy
 from protogen.capture.gather import gathered
 from protogen.capture.layout import capture_schema
 from protogen.capture.schema import Number, TableSchema
@@ -147,12 +148,30 @@ def test_a_protocol_is_a_name_a_path_or_a_model(
         ({"source": "/no/such/file"}, "/no/such/file: No such file"),
         ({"source": io.StringIO("text")}, "opened as text"),
         ({"source": 5}, "a path, bytes or a binary file, not int"),
+        ({"source": memoryview(b"abcd")[::2]}, "do not lie side by side"),
+        ({"workers": 0}, "workers has to be at least 1, not 0"),
     ],
 )
 def test_what_can_not_be_read_is_said(given: dict[str, Any], problem: str) -> None:
     usual: dict[str, Any] = {"source": b"", "sender": "brain", "engine": "python"}
     with pytest.raises(CaptureError, match=problem):
         columns(protocol=RN1, **{**usual, **given})
+
+
+@pytest.mark.parametrize("chunk", [0, -1])
+def test_a_chunk_of_no_bytes_is_not_an_empty_capture(chunk: int) -> None:
+    with pytest.raises(CaptureError, match="chunk has to be at least 1"):
+        next(batches(b"abc", RN1, "brain", chunk=chunk, engine="python"))
+
+
+def test_memory_of_any_items_is_read_as_its_bytes(capture: Path) -> None:
+    data = capture.read_bytes()
+    data = data[: len(data) // 8 * 8]
+    expected = columns(data, RN1, "brain", engine="python")
+    for source in (memoryview(data).cast("I"), memoryview(data).cast("B", (len(data) // 8, 8))):
+        assert_same_tables(columns(source, RN1, "brain", engine="python"), expected)
+    nothing = memoryview(numpy().zeros((0, 3)))
+    assert columns(nothing, RN1, "brain", engine="python").events == 0
 
 
 def test_without_numpy_it_says_how_to_get_it() -> None:

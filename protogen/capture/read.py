@@ -10,6 +10,7 @@ from typing import BinaryIO
 
 from protogen.capture.arrays import numpy
 from protogen.capture.engines import Engine, EngineName, Maker, makers
+from protogen.capture.errors import CaptureError
 from protogen.capture.gather import gathered
 from protogen.capture.parallel import Parts
 from protogen.capture.protocols import protocol_of, sender_of
@@ -39,6 +40,7 @@ def columns(
 
     Raises CaptureError, SchemaError, and MissingPackageError where NumPy is not installed.
     """
+    _check(workers=workers)
     with _reading(source, protocol, sender, engine) as reading:
         return gathered(reading.tables(None, workers), reading.total, workers)
 
@@ -58,8 +60,16 @@ def batches(
     on. Memory stays bounded, whatever the capture; a stretch is kept only as long as the caller
     keeps it.
     """
+    _check(chunk=CHUNK if chunk is None else chunk, workers=workers)
     with _reading(source, protocol, sender, engine) as reading:
         yield from reading.tables(chunk, workers)
+
+
+def _check(**counts: int) -> None:
+    """Raise CaptureError unless there is one at least of what is counted."""
+    for name, count in counts.items():
+        if count < 1:
+            raise CaptureError(f"{name} has to be at least 1, not {count}")
 
 
 @contextmanager

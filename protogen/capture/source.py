@@ -25,12 +25,19 @@ def opened(source: Source) -> Iterator[memoryview | BinaryIO]:
     elif isinstance(source, io.BufferedReader | io.FileIO):
         yield _mapped(source)
     elif isinstance(source, bytes | bytearray | memoryview | mmap.mmap):
-        yield memoryview(source).cast("B")
+        yield _octets(memoryview(source))
     elif hasattr(source, "read"):
         yield source
     else:
         kind = type(source).__name__
         raise CaptureError(f"a capture is a path, bytes or a binary file, not {kind}")
+
+
+def _octets(view: memoryview) -> memoryview:
+    """The bytes of a memoryview, whatever its items are."""
+    if not view.c_contiguous:
+        raise CaptureError("the bytes of this memoryview do not lie side by side")
+    return view.cast("B") if view.nbytes else memoryview(b"")
 
 
 def pieces(source: memoryview | BinaryIO, size: int) -> Iterator[bytes | memoryview]:
