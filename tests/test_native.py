@@ -207,6 +207,83 @@ def test_the_usual_names_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None
         compiler.compiler()
 
 
+# --- stuffed frames, sixteen bytes at a time ------------------------------------------------------
+
+SHAPES = [
+    (path, sender.name)
+    for path in sorted((ROOT / "tests" / "stuffed_schemas").glob("*.yaml"))
+    for sender in protocol_of(path).senders
+]
+
+
+def stuffed_stream(path: Path, sender: str, dice: Random, count: int) -> bytes:
+    """Noise, and frames into which bytes were put that mean something."""
+    material, marks = material_of(path, sender, greatest=20_000), marks_of(path, sender)
+    found = bytearray(stream_of(material, dice, count).data)
+    for _ in range(count):
+        frame = bytearray(dice.choice(material.frames))
+        if dice.random() < 0.5:
+            place = dice.randrange(len(frame))
+            frame[place : place + dice.randrange(2)] = bytes([dice.choice(marks)])
+        found += frame
+    return bytes(found)
+
+
+@pytest.mark.parametrize(("path", "sender"), SHAPES, ids=name_of)
+def test_stuffed_frames_of_many_shapes_are_read_alike(path: Path, sender: str) -> None:
+    protocol = protocol_of(path)
+    assert "protogen_take_stuffed(capture," in driver_of(protocol, protocol.sender(sender)).text
+    dice = Random(f"{path.stem} {sender}")
+    data = stuffed_stream(path, sender, dice, 100)
+    expected = python_tables(path, sender, data)
+    assert sum(map(len, expected.messages.values())) > 20
+    for chunk in (5, 1000, len(data)):
+        each = batches(data, protocol, sender, chunk=chunk, engine="native")
+        assert_same_tables(gathered(each, None, 1), expected)
+
+
+BEHIND = """
+import ctypes, mmap, sys
+from pathlib import Path
+import protogen
+from protogen.capture.native import library_of
+from protogen.native.library import Decoder
+
+schema, sender, file = sys.argv[1:]
+protocol = protogen.load(schema)
+decoder = Decoder(library_of(protocol, protocol.sender(sender)), 1 << 20)
+data = Path(file).read_bytes()
+most = -(-len(data) // mmap.PAGESIZE) * mmap.PAGESIZE
+memory = mmap.mmap(-1, most + mmap.PAGESIZE)
+start = ctypes.addressof(ctypes.c_char.from_buffer(memory))
+forbid = ctypes.CDLL(None, use_errno=True).mprotect
+forbid.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
+assert forbid(start + most, mmap.PAGESIZE, 0) == 0
+for cut in range(min(1500, len(data))):
+    size = len(data) - cut
+    ctypes.memmove(start + most - size, data, size)
+    decoder.start(0, 0)
+    taken = 0
+    while taken < size:
+        taken += decoder.feed(start + most - size + taken, size - taken)
+        decoder.clear()
+print("read", flush=True)
+"""
+"""Reads captures that end, byte by byte, where memory does: what reads on is killed."""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs mprotect")
+@pytest.mark.parametrize(("path", "sender"), [*STUFFED, *SHAPES, (RN1, "brain")], ids=name_of)
+def test_no_byte_behind_the_last_is_read(path: Path, sender: str, tmp_path: Path) -> None:
+    material = material_of(path, sender, greatest=700)
+    file = tmp_path / "capture"
+    file.write_bytes(b"".join((material.frames * 3000)[:3000])[-6000:])
+    library_of(protocol_of(path), protocol_of(path).sender(sender))
+    command = [sys.executable, "-c", BEHIND, str(path), sender, str(file)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "read\n"), done.stderr
+
+
 # --- the cache ------------------------------------------------------------------------------------
 
 
