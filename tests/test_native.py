@@ -199,6 +199,17 @@ def test_a_compiler_that_does_not_run_is_named(
         building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
 
 
+def test_a_compiler_that_speaks_another_encoding_is_understood_in_part(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    foreign = tmp_path / "foreign-cc"
+    foreign.write_bytes(b"#!/bin/sh\nprintf 'g\\377nzlich kaputt' >&2\nexit 1\n")
+    foreign.chmod(0o755)
+    monkeypatch.setenv("CC", str(foreign))
+    with pytest.raises(NativeError, match=r"foreign-cc does not compile the decoder: g.*kaputt"):
+        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+
+
 def test_the_usual_names_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CC", raising=False)
     assert compiler.compiler().command[0].startswith("/")

@@ -36,7 +36,12 @@ class Compiler:
         command = [*self.command, *FLAGS, "-o", str(library), str(source)]
         try:
             done = subprocess.run(
-                command, capture_output=True, text=True, check=False, timeout=_SECONDS
+                command,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                check=False,
+                timeout=_SECONDS,
             )
         except (OSError, subprocess.TimeoutExpired) as error:
             raise NativeError(f"{self.command[0]} does not run: {error}") from None
