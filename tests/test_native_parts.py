@@ -7,6 +7,8 @@ import runpy
 import sys
 from pathlib import Path
 from random import Random
+from threading import Event
+from time import sleep
 
 import handwritten_streams
 import pytest
@@ -19,7 +21,7 @@ from hypothesis import strategies as st
 from test_recovery import drawn_pieces
 from tooling import require_tool
 
-from protogen.capture import batches, columns, native
+from protogen.capture import batches, columns, gather, native
 from protogen.capture.gather import gathered
 from protogen.capture.native import Memory, NativeEngine, library_of
 from protogen.capture.parallel import ROOM, Parts
@@ -166,6 +168,25 @@ def test_nothing_stays_lent_where_memory_ends() -> None:
     assert memory.left == -1
     words = engine._decoder._tables.tolist()
     assert not any(words[3::7])  # The addresses of what is lent.
+
+
+def test_rows_that_could_not_be_copied_are_no_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    failed = Event()
+
+    def copy(*_: object) -> None:
+        failed.set()
+        raise MemoryError
+
+    def each():
+        yield from batches(data, protocol_of(RN1), "brain", chunk=len(data))
+        assert failed.wait(10)
+        sleep(0.1)  # Until the copy is over, which says so before.
+        yield from batches(b"", protocol_of(RN1), "brain")
+
+    data = min(material_of(RN1, "brain").frames, key=len) * 100_000
+    monkeypatch.setattr(gather, "_copy", copy)
+    with pytest.raises(MemoryError):
+        gathered(each(), None, 1)
 
 
 class Watched(NativeEngine):

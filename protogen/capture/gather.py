@@ -74,7 +74,7 @@ def gathered(pieces: Iterable[Tables], total: int | None, workers: int) -> Table
                 columns = [_Column(rows.dtype) for rows in _all(piece)]
             size += piece.size
             events += piece.events
-            copies = [copy for copy in copies if not copy.done()]
+            copies = [copy for copy in copies if not _is_done(copy)]
             copies += _add(piece, columns, (total or 2 * size) / max(1, size), pool)
         for copy in copies:
             copy.result()
@@ -89,6 +89,14 @@ def gathered(pieces: Iterable[Tables], total: int | None, workers: int) -> Table
         size=size,
         events=events,
     )
+
+
+def _is_done(copy: Future[None]) -> bool:
+    """Whether it is; raises what it raised."""
+    if not copy.done():
+        return False
+    copy.result()
+    return True
 
 
 def _all(tables: Tables) -> tuple[Rows, ...]:
