@@ -117,6 +117,13 @@ class TestLogs:
         assert not list(log_pieces([line], "pc", (), complaints.append))
         assert complaints[0].startswith("line 1: not `(SECONDS) [NAME] HEX`")
 
+    def test_a_time_that_no_table_has_a_place_for_is_complained_of(self) -> None:
+        complaints: list[str] = []
+        lines = ["(9223372036.854775807) 01", "(9223372036.854775808) 02", "(17000000000) 03"]
+        found = list(log_pieces(lines, "pc", (), complaints.append))
+        assert found == [(b"\x01", (1 << 63) - 1)]
+        assert [text.partition(":")[0] for text in complaints] == ["line 2", "line 3"]
+
     def test_a_frame_without_bytes_is_none(self) -> None:
         assert list(log_pieces(["(1) can0 123#"], "pc", (), pytest.fail)) == [(b"", 10**9)]
 

@@ -27,6 +27,9 @@ _SPLIT = re.compile(
     r"\s*(?P<hex>(?:[0-9A-Fa-f]{2}\s*)*)(?:\s[RT]x?)?"
 )
 
+_LATEST = (1 << 63) - 1
+"""The last time that tables have a place for: nanoseconds in an `int64`."""
+
 
 def log_pieces(
     lines: Iterable[str], sender: str, senders: Collection[str], complain: Complain
@@ -43,5 +46,8 @@ def log_pieces(
         if found is None or not (found["hex"] or "#" in text):
             complain(f"line {number}: not `(SECONDS) [NAME] HEX`: {text[:40]!r}")
         elif found["name"] not in senders or found["name"] == sender:
-            fraction = (found["fraction"] or "").ljust(9, "0")
-            yield bytes.fromhex(found["hex"]), int(found["seconds"]) * 10**9 + int(fraction)
+            when = int(found["seconds"]) * 10**9 + int((found["fraction"] or "").ljust(9, "0"))
+            if when > _LATEST:
+                complain(f"line {number}: a time behind the year 2262: {text[:40]!r}")
+            else:
+                yield bytes.fromhex(found["hex"]), when
