@@ -213,6 +213,17 @@ class TestCommand:
             messages = [item for _, _, item in reader.make_reader(file).iter_messages()]
         assert [item.log_time for item in messages] == [200, 300]
 
+    def test_times_before_1970_are_the_start_of_the_log_in_mcap(self, schema: Path) -> None:
+        reader = pytest.importorskip("mcap.reader")
+        with Recorder(schema.parent / "run.rec") as recorder:
+            recorder.write(FRAME, t_ns=-5)
+        done = run("convert", str(schema), str(schema.parent / "run.rec"), "--sender", "pc",
+                   "--to", "mcap", "-o", str(schema.parent / "out"))  # fmt: skip
+        assert done.exit_code == 0, done.output
+        with (schema.parent / "out" / "run.mcap").open("rb") as file:
+            ((_, _, message),) = reader.make_reader(file).iter_messages()
+        assert (message.log_time, json.loads(message.data)["t_ns"]) == (0, -5)
+
     def test_standard_input(self, schema: Path) -> None:
         data = packed(FRAME)
         done = start("convert", str(schema), "-", *self.options(schema), input=data)

@@ -63,7 +63,8 @@ class McapWriter:
         for row in zip(*columns, strict=True):
             offset, size, when = row[:3]
             data = _message(names, row, known=known)
-            time = self._time_of(offset + size) if when is None else when
+            # The log knows no time before 1970; `t_ns` says what a recording has.
+            time = self._time_of(offset + size) if when is None else max(0, when)
             messages.append((offset, time, channel, data))
         return messages
 
