@@ -277,9 +277,11 @@ class TestCommand:
         assert [first["event"], second["event"]] == ["message", "message"]
         assert second["offset"] == len(FRAME)
 
-    def test_empty_members_and_padding_are_nothing(self, tmp_path: Path) -> None:
-        (tmp_path / "run.gz").write_bytes(packed(b"") + packed(FRAME) + bytes(512))
-        assert read(tmp_path / "run.gz")[:2] == ("raw bytes, gzip", FRAME)
+    @pytest.mark.parametrize("padding", [512, 100_000], ids=["some", "more_than_is_read_at_once"])
+    def test_empty_members_and_padding_are_nothing(self, tmp_path: Path, padding: int) -> None:
+        first, last = packed(b"") + packed(FRAME) + bytes(padding), packed(SECOND) + bytes(padding)
+        (tmp_path / "run.gz").write_bytes(first + last)
+        assert read(tmp_path / "run.gz")[:2] == ("raw bytes, gzip", FRAME + SECOND)
         (tmp_path / "run.zst").write_bytes(zstd(b"") + zstd(FRAME) + zstd(b""))
         assert read(tmp_path / "run.zst")[:2] == ("raw bytes, zstd", FRAME)
 

@@ -46,7 +46,7 @@ def unpacking(stream: BufferedReader, packing: Packing, complain: Complain) -> B
     """The bytes that a stream has compressed. Reading raises `zlib.error` or zstd's `ZstdError`."""
     match packing:
         case Packing.GZIP:
-            return cast(BinaryIO, _Unpacked(stream, _Gzip, complain))
+            return cast(BinaryIO, _Unpacked(stream, _Gzip, complain, padding=b"\0"))
         case Packing.ZSTD:
             zstandard = needed("zstandard", "a capture that zstd has compressed")
             decompressor = zstandard.ZstdDecompressor()
@@ -75,9 +75,7 @@ class _Gzip:
 
     def feed(self, data: bytes) -> tuple[bytes, bytes]:
         unpacked = self._machine.decompress(data, _MOST)
-        if self.is_whole:
-            return unpacked, self._machine.unused_data.lstrip(b"\0")  # A tape's padding.
-        return unpacked, self._machine.unconsumed_tail
+        return unpacked, self._machine.unused_data or self._machine.unconsumed_tail
 
     @property
     def is_whole(self) -> bool:
@@ -111,9 +109,15 @@ class _Unpacked(RawIOBase):
     """The bytes of all members, one behind the other."""
 
     def __init__(
-        self, stream: BufferedReader, member: Callable[[], _Member], complain: Complain
+        self,
+        stream: BufferedReader,
+        member: Callable[[], _Member],
+        complain: Complain,
+        padding: bytes = b"",
     ) -> None:
+        """`padding`: bytes that say nothing behind a member, as tapes have them."""
         self._stream = stream
+        self._padding = padding
         self._new = member
         self._complain = complain
         self._member: _Member | None = None
@@ -139,6 +143,9 @@ class _Unpacked(RawIOBase):
         if not self._packed:
             return self._end()
         if self._member is None:
+            self._packed = self._packed.lstrip(self._padding)
+            if not self._packed:
+                return True
             self._member = self._new()
         unpacked, self._packed = self._member.feed(self._packed)
         self._ready = memoryview(unpacked)
