@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import math
 from pathlib import Path
@@ -14,7 +15,8 @@ from compiled import DOCUMENTS, module_at, name_of, protocol_of
 from test_json_lines import capture_of
 
 from protogen.convert.errors import ConvertError, needed
-from protogen.convert.mcap_writer import json_schema
+from protogen.convert.mcap_writer import McapWriter, json_schema
+from protogen.convert.outputs import Pending
 from protogen.convert.tables import tables_of
 from protogen.convert.values import json_of_each
 
@@ -480,6 +482,21 @@ class TestErrors:
         assert done.exit_code == 2
         assert f"error: {folder}: " in done.output.replace("\n", "")
         assert list(folder.rglob("*")) == []
+
+    def test_mcap_is_closed_where_its_end_has_no_room(
+        self, sink: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Else it is closed some day, and Python complains of it then."""
+
+        def fail() -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        protocol = protocol_of(sink)
+        writer = McapWriter("x", Pending(tmp_path), tables_of(protocol, protocol.sender("pc")))
+        monkeypatch.setattr(writer._writer, "finish", fail)
+        with pytest.raises(OSError, match="No space"):
+            writer.close()
+        assert writer._file.closed
 
     def test_without_a_compiler_the_command_says_what_is_slow(
         self, sink: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -50,8 +50,8 @@ class McapWriter:
 
     def close(self) -> None:
         """Write what is left, and the index."""
-        self._writer.finish()
-        self._file.close()
+        with self._file:
+            self._writer.finish()
 
     def _messages(self, rows: Rows) -> list[tuple[int, int, int, bytes]]:
         table = rows.table
