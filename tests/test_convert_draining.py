@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
 from random import Random
@@ -23,7 +24,10 @@ def test_all_that_was_written_is_there(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.skipif(not hasattr(os, "posix_fadvise"), reason="the system takes no advice")
-def test_every_stretch_is_told_of_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("size", [500, 1000, 7000], ids=["half", "one", "seven"])
+def test_every_stretch_is_told_of_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
     told: list[tuple[int, int]] = []
 
     def note(descriptor: int, start: int, size: int, advice: int) -> None:
@@ -33,11 +37,25 @@ def test_every_stretch_is_told_of_again(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(draining, "_STRETCH", 1000)
     monkeypatch.setattr(os, "posix_fadvise", note)
     with DrainedFile(tmp_path / "file") as file:
-        file.writelines(bytes(500) for _ in range(20))
+        file.writelines(bytes(size) for _ in range(20))
     ends = [end for _, end in told]
-    assert ends == list(range(1000, 10001, 1000))
-    for place in range(500, 7000, 1000):
-        assert sum(start <= place < end for start, end in told) > 1
+    assert ends == list(range(max(size, 1000), 20 * size + 1, max(size, 1000)))
+    for place in range(500, ends[-4] + 1, 1000):
+        assert sum(start <= place < end for start, end in told) == 4
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fadvise"), reason="the system takes no advice")
+def test_files_are_written_where_advice_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSYS, "Function not implemented")
+
+    monkeypatch.setattr(os, "posix_fadvise", refuse)
+    monkeypatch.setattr(draining, "_STRETCH", 10)
+    with DrainedFile(tmp_path / "file") as file:
+        file.write(bytes(100))
+    assert (tmp_path / "file").read_bytes() == bytes(100)
 
 
 def test_files_are_written_where_no_advice_is_taken(

@@ -8,14 +8,16 @@ copying into used ones does. Few read a large file at once that has just been wr
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 _STRETCH = 4 << 20
-"""Bytes after which the system is told. It begins to write a stretch when it is told the first
-time, and forgets what was written when it is told again."""
+"""Bytes, or some more, after which the system is told. It begins to write a stretch when it is told
+the first time, and forgets what was written when it is told again."""
 _TOLD = 4
 """How often it is told of a stretch, unless the file ends before."""
 
@@ -24,16 +26,19 @@ class Drain:
     """Tells the system how far a file has been written."""
 
     def __init__(self) -> None:
-        self._told = 0
+        self._told = deque([0], maxlen=_TOLD)
+        """How far it was told at the last times."""
 
     def reach(self, descriptor: int, written: int) -> None:
         """So many bytes are written; the system may drop them from its cache."""
-        if written - self._told < _STRETCH:
+        if written - self._told[-1] < _STRETCH:
             return
-        self._told = written
+        start = self._told[0]
+        self._told.append(written)
         if hasattr(os, "posix_fadvise"):  # Linux and most others have it, macOS and Windows not.
-            start = max(0, written - _TOLD * _STRETCH)
-            os.posix_fadvise(descriptor, start, written - start, os.POSIX_FADV_DONTNEED)
+            # It is no more than advice: where a kernel or a file system takes none, all is well.
+            with suppress(OSError):
+                os.posix_fadvise(descriptor, start, written - start, os.POSIX_FADV_DONTNEED)
 
 
 class DrainedFile:
