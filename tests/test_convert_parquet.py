@@ -129,6 +129,26 @@ def test_a_table_with_many_groups_goes_on_in_another_file(
     assert [path.name for path in (tmp_path / "parts" / "numbers").iterdir()] == ["run.parquet"]
 
 
+def test_a_capture_may_have_the_name_of_another_ones_part(
+    capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Then neither takes the place of the other."""
+    monkeypatch.setattr(arrow_writers, "_MOST_ROWS", 100)
+    monkeypatch.setattr(arrow_writers, "_MOST_PIECES", 20)
+    convert(capture, tmp_path / "out")
+    part = tmp_path / "out" / "numbers" / "run.part-0001.parquet"
+    before = part.read_bytes()
+    (tmp_path / "run.part-0001.bin").write_bytes(capture.read_bytes()[:20_000])
+    for more in ([], ["--force"]):
+        done = run("convert", str(capture.with_name("sink.yaml")), "--sender", "pc",
+                   str(tmp_path / "run.part-0001.bin"), "--to", "parquet",
+                   "-o", str(tmp_path / "out"), *more)  # fmt: skip
+        assert done.exit_code == 2
+        assert "made of another capture" in done.output.replace("\n", " ")
+        assert part.read_bytes() == before
+    assert not list((tmp_path / "out").rglob("*.partial"))
+
+
 def test_rare_rows_wait_in_few_batches(
     capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

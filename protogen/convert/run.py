@@ -151,6 +151,13 @@ def check_room(job: Job, state: State, files: Iterable[str]) -> None:
 def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
     """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
     check_room(job, state, files)
+    for file in files:
+        # As `x.part-0001`, when the tables of `x` go on in files of that name.
+        if state.is_of_another(key, file):
+            raise ConvertError(
+                f"{job.folder / file} is there already, made of another capture",
+                "name another folder with --output for one of them",
+            )
     stale = [file for file in state.files(key) if file not in files]
     state.expect(key, files)
     remove(job.folder, stale)
