@@ -287,8 +287,19 @@ def test_messages_are_sent_without_the_reference(
         assert module.encode(message, sender, **parts) == frame
 
 
+LIKE_BYTES = [
+    bytes,
+    bytearray,
+    memoryview,
+    lambda data: array("B", data),
+    lambda data: memoryview(bytes(byte for byte in data for _ in "12"))[::2],
+    lambda data: numpy.frombuffer(data, "u1"),
+    lambda data: numpy.array([data], f"S{len(data)}"),  # Which adds itself to bytes as text.
+]
+
+
 @pytest.mark.parametrize("engine", ["fast", "construct"])
-@pytest.mark.parametrize("like", [bytes, bytearray, memoryview, lambda data: array("B", data)])
+@pytest.mark.parametrize("like", LIKE_BYTES)
 def test_anything_like_bytes_is_taken(engine: Any, like: Any) -> None:
     matty = module_at(MATTY)
     due = matty.Gps(nmea="$GPRMC")

@@ -83,14 +83,13 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
         Raises TypeError for what is not like bytes.
         """
+        if type(data) is not bytes:
+            data = octets(data)  # Of what is like bytes, some have a sum of their own with them.
         lane = self._lane
         if lane is None or (self._data and (not self._is_waiting or len(self._data) > _LOOKED)):
             return self._feed(data)
         # All in front is delivered, and a frame may start at the first of these bytes.
-        try:
-            whole = self._data + data
-        except TypeError:
-            whole = self._data + octets(data)
+        whole = self._data + data
         events: list[Event[MessageT_co, PartsT_co]] = []
         end = lane(whole, 0, self._offset, events)
         if end == len(whole):
@@ -107,20 +106,16 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return self._deliver()
         return events
 
-    def _feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
+    def _feed(self, data: bytes) -> list[Event[MessageT_co, PartsT_co]]:
         """The same in any state."""
         if len(self._data) > _LOOKED:
-            data = octets(data)
             if self._is_little(data):
                 if self._candidate is not None:
                     return self._feed_little(self._candidate, data)
                 if self._is_waiting:
                     self._open_candidate()
             self._join()
-        try:
-            self._data += data
-        except TypeError:
-            self._data += octets(data)
+        self._data += data
         if self._is_waiting:
             if self._still_waits(self._scan):
                 return []
