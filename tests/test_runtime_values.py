@@ -165,6 +165,7 @@ def test_whatever_python_takes_for_an_integer_is_one(one: Any) -> None:
     message, plain = of_ones(one), of_ones(1)
     assert message.violations() == plain.violations()
     assert message.to_payload() == plain.to_payload()
+    assert message.to_dict() == plain.to_dict()
     frame = matty.encode(matty.Go(speed=one, steer=one), counter=one)
     assert frame == matty.encode(matty.Go(speed=1, steer=1), counter=1)
 
@@ -186,11 +187,14 @@ def test_numbers_of_numpy_are_in_range_or_refused() -> None:
         ({"colour": None}, "colour", "must be an integer, not None"),
         ({"shade": 3}, "shade", "RED = 1, GREEN = 2"),
         ({"on": 2}, "on", "false or true"),
+        ({"on": numpy.array([0, 1])}, "on", "false or true"),
         ({"fixed": 8}, "fixed", "must be 7"),
         ({"near": 9}, "near", "9 is not in 10..100"),
         ({"ratio": -11.0}, "ratio", "not in -10.."),
         ({"ratio": math.nan}, "ratio", "not in -10.."),
         ({"ratio": 1e39}, "ratio", "too large for 32 bits"),
+        ({"ratio": 10**400}, "ratio", "an integer that is too large"),
+        ({"wide": -(10**400)}, "wide", "an integer that is too large"),
         ({"ratio": "1"}, "ratio", "must be a number"),
         ({"name": "abcd"}, "name", "at most 3"),
         ({"name": "a\0"}, "name", "NUL"),
@@ -199,6 +203,7 @@ def test_numbers_of_numpy_are_in_range_or_refused() -> None:
         ({"name": "a\xe9"}, "name", "characters up to U+007F; 'é', character 2 of 2, is none"),
         ({"name": "\x80"}, "name", "must be ASCII"),
         ({"code": b"a"}, "code", "exactly 2 bytes"),
+        ({"code": memoryview(b"abcd").cast("H")}, "code", "exactly 2 bytes, not 4"),
         ({"code": "ab"}, "code", "must be bytes"),
         ({"point": {"x": 1}}, "point", "must be a Point"),
         ({"point": Point(x=200)}, "point.x", "not in -128..127"),
@@ -402,6 +407,7 @@ def test_fields_with_a_default_may_be_left_out() -> None:
         ({"colour": 1.5}, "colour", "integer"),
         ({"ratio": "x"}, "ratio", "nan, inf or -inf"),
         ({"ratio": True}, "ratio", "number"),
+        ({"wide": 10**400}, "wide", "too large"),
         ({"name": 5}, "name", "text"),
         ({"code": "xy"}, "code", "hexadecimal"),
         ({"code": 5}, "code", "hexadecimal"),

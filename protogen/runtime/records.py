@@ -65,9 +65,7 @@ def record_to_json(record: Record, scope: Scope) -> dict[str, Any]:
     inner = scope.new_child()
     shown = {}
     for name, rule in record.RULES:
-        value = getattr(record, name)
-        shown[name] = rule.to_json(value, inner)
-        inner[name] = value
+        shown[name] = inner[name] = rule.to_json(getattr(record, name), inner)
     return shown
 
 

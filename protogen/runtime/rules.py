@@ -245,11 +245,12 @@ class FloatRule(Rule):
         """The number, if it is not too large for its bits."""
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise EncodeError("", f"must be a number, not {value!r}")
-        if math.isfinite(value) and abs(value) > _GREATEST_FLOAT[self.bits]:
+        number = _float(value)
+        if math.isfinite(number) and abs(value) > _GREATEST_FLOAT[self.bits]:
             raise EncodeError("", f"{value} is too large for {self.bits} bits")
         if strict:
             refuse(self.violations(value, scope))
-        return float(value)
+        return number
 
     def violations(self, value: float, scope: Scope) -> list[Violation]:
         """A constant or range that does not hold."""
@@ -269,7 +270,7 @@ class FloatRule(Rule):
             return float(data)
         if not isinstance(data, int | float) or isinstance(data, bool):
             raise EncodeError("", f"must be a number, nan, inf or -inf, not {data!r}")
-        return float(data)
+        return _float(data)
 
     def physical(self, raw: float) -> float:
         """The physical value in `unit`."""
@@ -283,6 +284,13 @@ class FloatRule(Rule):
         if self.least is not None and not value >= self.least:
             return False
         return self.greatest is None or value <= self.greatest
+
+
+def _float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise EncodeError("", "is an integer that is too large for a float") from None
 
 
 _GREATEST_FLOAT = {32: (2 - 2**-23) * 2.0**127, 64: math.inf}
@@ -309,7 +317,7 @@ class BoolRule(Rule):
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bool:
         """False or true; 0 and 1 are taken as well."""
-        if value not in (0, 1):
+        if not _is_bit(value):
             raise EncodeError("", f"must be false or true, not {value!r}")
         if strict:
             refuse(self.violations(value, scope))
@@ -324,6 +332,13 @@ class BoolRule(Rule):
     def to_json(self, value: bool, scope: Scope) -> bool:
         """False or true, also where the attribute is 0 or 1."""
         return bool(value)
+
+
+def _is_bit(value: Any) -> bool:
+    try:
+        return value in (0, 1)
+    except ValueError:  # Whether an array of numbers equals one is no single question.
+        return False
 
 
 # --- bytes and text -----------------------------------------------------------------------------
@@ -341,10 +356,11 @@ class OctetsRule(Rule):
         """The bytes."""
         if not isinstance(value, bytes | bytearray | memoryview):
             raise EncodeError("", f"must be bytes, not {value!r}")
-        _check_count(len(value), _exactly(self.size, scope), self.greatest, "bytes")
-        if self.const is not None and value != self.const:
+        data = bytes(value)  # What a view counts may have several bytes.
+        _check_count(len(data), _exactly(self.size, scope), self.greatest, "bytes")
+        if self.const is not None and data != self.const:
             raise EncodeError("", f"must be {self.const.hex(' ')}")
-        return bytes(value)
+        return data
 
     def to_json(self, value: bytes, scope: Scope) -> str:
         """Two hexadecimal digits a byte."""
