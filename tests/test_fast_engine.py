@@ -444,6 +444,17 @@ def test_records_are_written_without_the_reference(monkeypatch: pytest.MonkeyPat
     assert module.encode(item) == due
 
 
+def test_not_all_numbers_of_records_are_kept() -> None:
+    packers = fast.Packers("<B", "BH")
+    for count in range(1000):
+        assert packers[count](7, *[1, 2] * count) == b"\7" + b"\1\2\0" * count
+        assert 2 * sum(packers) <= 1 << 16
+    few = fast.Packers("<B", "BH")
+    for count in range(100):
+        assert few[count] is few[count]
+    assert len(few) == 100
+
+
 def test_tables_are_full_for_each_thread() -> None:
     """Whoever is told that they are filled finds all values, whatever another thread is doing."""
     tables = fast.Tables()

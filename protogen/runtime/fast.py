@@ -195,15 +195,29 @@ def closed(named: type[OpenEnum]) -> dict[int, Any]:
 # --- records in bulk ----------------------------------------------------------------------------
 
 
+_PACKED = 1 << 16
+"""A `struct` takes 32 bytes for each value: those of so many values are kept."""
+
+
 class Packers(dict[int, Callable[..., bytes]]):
-    """What packs some values, and behind them so many records, by the number of records."""
+    """What packs some values, and behind them so many records, by the number of records.
+
+    Where records come in very many numbers, not all are kept: together they would take memory that
+    grows with the square of the greatest number.
+    """
 
     def __init__(self, front: str, record: str) -> None:
         """`front` begins with the order of bytes; both are codes of `struct`."""
         super().__init__()
         self._front, self._record = front, record
+        self._left = _PACKED
 
     def __missing__(self, count: int) -> Callable[..., bytes]:
+        values = len(self._front) + len(self._record) * count
+        if values > self._left:
+            self.clear()
+            self._left = _PACKED
+        self._left -= values
         self[count] = pack = struct.Struct(self._front + self._record * count).pack
         return pack
 
