@@ -209,6 +209,21 @@ def test_the_time_for_a_frame_grows_with_its_size(
     assert all(count < 64 * 64 * 2 + 20 * size for count, size in reference), reference
 
 
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+def test_nothing_fed_leaves_nothing_behind(tmp_path: Path, engine: str) -> None:
+    """As from a port that is read with a timeout, in the middle of a large frame."""
+    path = tmp_path / "large.yaml"
+    path.write_text(LARGE, encoding="utf-8")
+    module = module_at(path)
+    frame = module.encode(module.List(a=bytes(9000)), "station")
+    decoder = module.Decoder("station", engine)
+    assert decoder.feed(frame[:6000]) == []
+    before = decoder._is_waiting, len(decoder._behind), decoder.pending
+    assert [decoder.feed(b"") for _ in range(5)] == [[]] * 5
+    assert (decoder._is_waiting, len(decoder._behind), decoder.pending) == before
+    assert [event.raw for event in decoder.feed(frame[6000:])] == [frame]
+
+
 def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:
     """How many bytes are looked at until a frame is whole that comes byte by byte, and its size."""
     module = module_at(path)

@@ -109,6 +109,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def _feed(self, data: bytes) -> list[Event[MessageT_co, PartsT_co]]:
         """The same in any state."""
         if len(self._data) > _LOOKED:
+            if not data:
+                return []
             if self._is_little(data):
                 if self._candidate is not None:
                     return self._feed_little(self._candidate, data)
