@@ -158,6 +158,26 @@ class TestChecksumsOfManyFrames:
         assert sum(item[0] == "message" for item in due) == 700 - len(wrong)
 
 
+@pytest.mark.parametrize("wrong", [0, 10, 100, 600])
+def test_few_events_of_unknown_frames_are_taken_back(wrong: int) -> None:
+    """Else the time for a damaged capture of them would grow with the square of its size."""
+    made: list[Any] = []
+
+    class Counted(list[Any]):
+        def append(self, event: Any) -> None:
+            made.append(event)
+            super().append(event)
+
+    sender = module_at(RFLEX).PROTOCOL.sender("flex")
+    frame = late.encode_frame(sender, (0x77, 1), b"unknown", {"number": 5}, strict=False)
+    spoilt = frame[:-3] + bytes((frame[-3] ^ 1,)) + frame[-2:]
+    events = Counted()
+    assert sender.cut is not None
+    end = sender.cut(frame * wrong + spoilt + frame * 900, 0, 0, events)
+    assert (len(events), end) == (wrong, wrong * len(frame))
+    assert len(made) - wrong <= 64
+
+
 def damaged(frames: list[bytes], random: Random) -> list[bytes]:
     """Streams of the frames: as they are, and each with something wrong, or another, somewhere."""
     place = random.randrange(len(frames) // 4, len(frames))

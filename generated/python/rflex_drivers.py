@@ -1295,6 +1295,11 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 at = end
                 if are_many:
                     unchecked.append(content)
+                    if len(unchecked) >= together:
+                        if not _checksum.are_sound(unchecked, 0):
+                            break
+                        unchecked.clear()
+                        together = min(2 * together, 64)
                 continue
             event: _typing.Any = _MessageEvent()
             event.message = read(content)
@@ -1463,6 +1468,11 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 at = end
                 if are_many:
                     unchecked.append(content)
+                    if len(unchecked) >= together:
+                        if not _checksum.are_sound(unchecked, 0):
+                            break
+                        unchecked.clear()
+                        together = min(2 * together, 64)
                 continue
             event: _typing.Any = _MessageEvent()
             event.message = read(content)

@@ -574,17 +574,15 @@ class _Cutter(FrameFunction):
             self.lines.add(f"event.{name} = {name}")
         self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
         self.lines.add("add(event)")
-        self._taken(is_known=True)
+        self._taken()
 
-    def _taken(self, *, is_known: bool) -> None:
+    def _taken(self) -> None:
         """Go on behind a frame."""
         self.lines.add("at = end")
         if self._deferred is None:
             return
         with self.lines.block("if are_many:"):
             self.lines.add(f"unchecked.append({self.content})")
-            if not is_known:
-                return
             with self.lines.block("if len(unchecked) >= together:"):
                 self._stop_if(f"not _checksum.are_sound(unchecked, {self._deferred})")
                 self.lines.add("unchecked.clear()")
@@ -637,7 +635,7 @@ class _Cutter(FrameFunction):
         spec = f"{self.name.upper()}_SENDER"
         payload = self._payload_slice if self.frame.gives_content else "payload"
         self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, {payload}))")
-        self._taken(is_known=False)
+        self._taken()
         self.lines.add("continue")
 
 
