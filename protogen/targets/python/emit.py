@@ -10,6 +10,7 @@ from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
 from protogen.targets.printing import environment
 from protogen.targets.python.fast.view import fast_view
+from protogen.targets.python.kept import Kept
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring
 
@@ -35,26 +36,6 @@ def _file(protocol: Protocol) -> File:
     return File(path, kept_source(protocol), banner(PYTHON, [protocol]))
 
 
-_PRINTED: dict[int, tuple[Protocol, str]] = {}
-"""What was printed last, by the protocol's address; a protocol that is kept keeps its own."""
-_KEPT = 64
-
-
-def kept_source(protocol: Protocol) -> str:
-    """The text of a protocol's module, which is printed once for whoever asks again.
-
-    To verify a schema's examples takes the module that is then written.
-    """
-    found = _PRINTED.get(id(protocol))
-    if found is not None and found[0] is protocol:
-        return found[1]
-    text = source(protocol)
-    while len(_PRINTED) >= _KEPT:
-        del _PRINTED[next(iter(_PRINTED))]
-    _PRINTED[id(protocol)] = (protocol, text)
-    return text
-
-
 def source(protocol: Protocol, runtime: str = RUNTIME) -> str:
     """The text of a protocol's module; `runtime` is where it imports the runtime from."""
     module = view(protocol)
@@ -69,6 +50,10 @@ def source(protocol: Protocol, runtime: str = RUNTIME) -> str:
             encoder_doc=docstring(_encoder_doc(module), 8),
         )
     )
+
+
+kept_source = Kept(source, most=64)
+"""The text of a protocol's module, printed once: examples are verified by what is then written."""
 
 
 def _encode_doc(module: Module) -> list[str]:

@@ -9,23 +9,9 @@ from types import ModuleType
 
 from protogen.model.protocol import Protocol
 from protogen.targets.python.emit import kept_source
+from protogen.targets.python.kept import Kept
 
 _NUMBERS = itertools.count()
-_IMPORTED: dict[int, tuple[Protocol, ModuleType]] = {}
-"""What was imported last, by the protocol's address; a protocol that is kept keeps its own."""
-_KEPT = 8
-
-
-def kept_module(protocol: Protocol) -> ModuleType:
-    """The module of a protocol, which is imported once for whoever asks again soon."""
-    found = _IMPORTED.get(id(protocol))
-    if found is not None and found[0] is protocol:
-        return found[1]
-    module = module_of(protocol)
-    while len(_IMPORTED) >= _KEPT:
-        del _IMPORTED[next(iter(_IMPORTED))]
-    _IMPORTED[id(protocol)] = (protocol, module)
-    return module
 
 
 def module_of(protocol: Protocol) -> ModuleType:
@@ -43,3 +29,7 @@ def module_of(protocol: Protocol) -> ModuleType:
         del sys.modules[name]
         raise
     return module
+
+
+kept_module = Kept(module_of, most=8)
+"""The module of a protocol, imported once for whoever asks again soon."""
