@@ -97,10 +97,11 @@ def _hex(value: Any) -> str:
 def _message(names: list[str], row: tuple[Any, ...], *, known: bool) -> bytes:
     """A row without the columns that have no value. `known`: what lists hold is all there."""
     values = {name: value for name, value in zip(names, row, strict=True) if value is not None}
-    data = json.dumps(values if known else _present(values), default=_hex).encode()
-    if b"NaN" in data or b"Infinity" in data:
-        return json.dumps(_present(values), default=_hex).encode()
-    return data
+    if known:
+        data = json.dumps(values, default=_hex).encode()
+        if b"NaN" not in data and b"Infinity" not in data:
+            return data
+    return json.dumps(_present(values), default=_hex).encode()
 
 
 def _present(value: Any) -> Any:

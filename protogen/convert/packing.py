@@ -154,7 +154,7 @@ class _Unpacked(RawIOBase):
         return True
 
     def _end(self) -> bool:
-        """The file is over; what is still inside the member was complained of before."""
+        """The file is over: what its member still holds, then a complaint if its end is missing."""
         if self._member is not None:
             unpacked, _ = self._member.feed(b"")
             self._ready = memoryview(unpacked)

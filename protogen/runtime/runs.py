@@ -14,12 +14,9 @@ from zlib import adler32
 from protogen.runtime.checksum import are_sound
 from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.events import MessageEvent
-from protogen.runtime.fast import BYTES
+from protogen.runtime.fast import ANYTHING, BYTES
 from protogen.runtime.pairs import Unclear
 from protogen.runtime.sender import Cutter
-
-ANYTHING = Exception
-"""What is raised where frames are no run; whatever it is, the cutter decides."""
 
 LONG = 2048
 """In so many bytes it is worth looking for runs."""
