@@ -157,9 +157,9 @@ def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> 
     remove(job.folder, stale)
     sweep(job.folder, [f"{part.name}.{job.format}" for part in capture.parts], files)
     state.record(key, Done(capture.stamp, files, tally, capture.format, lost))
-    for part in capture.parts:
-        marker_of(job.folder, part.name).unlink(missing_ok=True)
-    _begun(job, capture).unlink(missing_ok=True)
+    # A worker that was killed may have left a marker that is not whole.
+    markers = [marker_of(job.folder, part.name) for part in capture.parts]
+    sweep(job.folder, [path.name for path in (*markers, _begun(job, capture))], within=MARKERS)
     return Result(capture.source.place, capture.format, tally, files, lost_lines=lost)
 
 

@@ -75,13 +75,13 @@ def remove(folder: Path, relatives: Iterable[str]) -> None:
         _remove_empty((folder / relative).parent, folder)
 
 
-def sweep(folder: Path, names: Iterable[str], keep: Iterable[str]) -> None:
+def sweep(folder: Path, names: Iterable[str], keep: Iterable[str] = (), within: str = "*") -> None:
     """Remove what attempts at files of these names left in the folder's folders, but for `keep`.
 
-    Those go along in which such files go on.
+    Those go along in which such files go on. With `within`, only that folder's are removed.
     """
     ours, kept = set(names), set(keep)
-    for path in list(folder.glob("*/*")):
+    for path in list(folder.glob(f"{within}/*")):
         name, is_partial = path.name, path.name.endswith(_PARTIAL)
         if is_partial:
             name = name[1:].removesuffix(_PARTIAL).rpartition(".")[0]
