@@ -27,7 +27,7 @@ from hypothesis import strategies as st
 
 from protogen.runtime import fast, late, runs
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
-from protogen.runtime.machine import Candidate
+from protogen.runtime.machine import Candidate, Cut, verdict_on
 from protogen.runtime.number import Number
 from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_tables
 
@@ -120,6 +120,56 @@ def test_the_payload_of_an_event_is_that_of_its_message(path: Path, sender: str)
             if event.kind == "message":
                 again = type(event.message).from_payload(event.payload)
                 assert repr(again) == repr(event.message)
+                assert event.payload == byte_by_byte(event.codec, event.raw)
+
+
+def byte_by_byte(sender: Any, raw: bytes) -> bytes:
+    """The payload of a frame as the reference finds it."""
+    layout = sender.layout
+    begins_inside = layout.shares_delimiter and not raw.startswith(layout.start)
+    cut, _ = verdict_on(sender, raw, shares_start=begins_inside)
+    assert isinstance(cut, Cut)
+    return cut.payload
+
+
+STUFFED_IN_PART = """
+protocol: parts
+endpoints: {robot: Robot, host: Host}
+frame:
+  start: {literal: {hex: C0}, unprotected: start_in_checksum}
+  sort: {type: uint8, id: true}
+  length: {type: uint8, counts: payload, range: [0, 8]}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: [sort, payload]MORE}
+transparency: {covers: COVERS, preset: slip}
+decisions:
+  start_in_checksum:
+    question: What keeps the start out of the checksum?
+    document: Nothing does.
+    choice: The length says where a frame ends.
+    because: Nothing else would.
+messages:
+  note: {id: 1, from: robot, fields: {text: {type: bytes, size: {fill: true, max: 8}}}}
+"""
+
+
+@pytest.mark.parametrize("more", ["", ", when: payload"])
+@pytest.mark.parametrize("covers", ["sort..length", "sort..payload"])
+def test_the_payload_of_a_frame_that_is_stuffed_in_part(
+    covers: str, more: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "parts.yaml"
+    text = STUFFED_IN_PART.replace("COVERS", covers).replace("MORE", more)
+    path.write_text(text, encoding="utf-8")
+    stuffed = "DB DC" if covers.endswith("payload") else "C0"
+    (event,) = (
+        module_at(path)
+        .Decoder("robot")
+        .feed(
+            bytes.fromhex(f"C0 01 02 {stuffed} 05 C6")  # 01 + C0 + 05 = C6
+        )
+    )
+    assert event.payload == b"\xc0\x05"
 
 
 class TestChecksumsOfManyFrames:
