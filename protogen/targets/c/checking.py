@@ -28,9 +28,9 @@ from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.loading import loaded
+from protogen.targets.c.placed import times
 from protogen.targets.c.spelling import free_name, hexadecimal, integer_type, unsigned
 from protogen.targets.c.storage import Number, Scope, needed_by
-from protogen.targets.c.storing import times
 from protogen.targets.c.walk import Value, Walk
 
 _RESERVED = frozenset(

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 from protogen.model.fields import Field
 from protogen.model.types import Array, Fill, Float, Integer, Octets, Switch, Text
 from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.lines import Lines
-from protogen.targets.c.places import Place
+from protogen.targets.c.placed import PlacedWalk, times
 from protogen.targets.c.spelling import counting_type, integer_type, unsigned
 from protogen.targets.c.storage import Scope, holds_values
-from protogen.targets.c.storing import is_bytes, times
-from protogen.targets.c.walk import Value, Walk
+from protogen.targets.c.storing import is_bytes
+from protogen.targets.c.walk import Value
 
 
 def loaded(helpers: Helpers, type_: Integer | Float, byte: str, address: str) -> str:
@@ -31,12 +30,11 @@ def loaded(helpers: Helpers, type_: Integer | Float, byte: str, address: str) ->
     return f"{helpers.load(type_)}({address})"
 
 
-class Load(Walk):
+class Load(PlacedWalk):
     """Out of memory. Where the size varies, there is a variable `size`."""
 
     def __init__(self, helpers: Helpers, lines: Lines) -> None:
-        super().__init__(helpers, lines)
-        self._place = Place(lines, "const uint8_t *")
+        super().__init__(helpers, lines, "const uint8_t *")
         self.uses_size = False
 
     def pointed(self, fields: Sequence[Field], base: str) -> None:
@@ -93,26 +91,15 @@ class Load(Walk):
             self._copy(value.expression, count)
             return
         size = type_.element.sizes.fixed
-        if size is None:
-            self._place.settle()
-            with self.loop(count) as index:
-                self.value(self.element(value, type_, index), scope)
-                self._place.settle()
-            return
-        if not holds_values(type_.element):
+        if size is not None and not holds_values(type_.element):
             self._place.skip(times(count, size))
-            return
-        if self.helpers.loads_runs(type_.element) and isinstance(type_.element, Integer):
+        elif self.helpers.loads_runs(type_.element) and isinstance(type_.element, Integer):
             run = self.helpers.load_run(type_.element)
             amount = unsigned(count) if isinstance(count, int) else count
             self.lines.add(f"{run}({value.expression}, {self._place.address()}, {amount});")
-            self._place.skip(times(count, size))
-            return
-        several = not isinstance(type_.element, Integer | Float)
-        self._place.catch_up()
-        with self.loop(count) as index, self._place.element(size, index, several=several):
-            self.value(self.element(value, type_, index), scope)
-        self._place.skip(times(count, size))
+            self._place.skip(times(count, type_.element.size))
+        else:
+            self.elements(value, type_, count, scope)
 
     def _filling(self, value: Value, type_: Array, extent: Fill, scope: Scope) -> None:
         if is_bytes(type_.element) or extent.greatest == 0:
@@ -128,33 +115,6 @@ class Load(Walk):
                 self.value(self.element(value, type_, "0"), scope)
             self._place.settle()
             self.lines.add(f"{value.count}++;")
-
-    def switch(self, value: Value, type_: Switch, scope: Scope) -> None:
-        """One of several cases; behind it, `at` stands where the case has ended."""
-        if value.last or isinstance(scope[type_.selector], int):
-            self._place.catch_up()
-            super().switch(value, type_, scope)
-            return
-        size = type_.sizes.fixed
-        if size is None:
-            self._place.settle()
-        self._place.catch_up()
-        super().switch(value, type_, scope)
-        if size is None:
-            self._place.settled()
-        else:
-            self._place.skip(size)
-
-    @contextmanager
-    def branch(self) -> Iterator[None]:
-        """Every case begins where the switch does."""
-        with self._place.branch():
-            yield
-
-    def end_case(self, value: Value) -> None:
-        """Where something follows, it has to be clear where the case has ended."""
-        if not value.last and value.type.sizes.fixed is None:
-            self._place.settle()
 
     def rest(self, value: Value, type_: Switch) -> None:
         """The bytes of a value without a case."""

@@ -6,8 +6,8 @@ from protogen.model.types import Array, Float, Integer, Octets, Switch, Text
 from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.placed import times
 from protogen.targets.c.storage import Scope
-from protogen.targets.c.storing import times
 from protogen.targets.c.walk import Value, Walk
 
 

@@ -16,7 +16,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import total
 from protogen.passes.capacity import is_delimited
-from protogen.targets.c import comments
+from protogen.targets import descriptions
 from protogen.targets.c.accessors import Accessors, is_readable
 from protogen.targets.c.checking import Check, field_can_be_wrong, has_wrong_values
 from protogen.targets.c.helpers import Helpers
@@ -130,7 +130,7 @@ class MessagePrinter:
             needs=codec.needs,
             validates=codec.validates,
             heading=item.name,
-            definition=self._records.definition(tag, comments.of_message(item), item.fields),
+            definition=self._records.definition(tag, descriptions.of_message(item), item.fields),
             constants=(
                 *self._identity(item),
                 *_sizes(item, names),

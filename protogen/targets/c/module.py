@@ -9,6 +9,7 @@ from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Enum, Flags, Integer, Struct, Switch, Type
+from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.messages import MessagePrinter, MessageView
@@ -108,7 +109,7 @@ def view(protocol: Protocol, options: COptions) -> Module:
 def _struct(item: Struct, tag: str, records: Records, names: Names) -> StructView:
     return StructView(
         item.name,
-        records.definition(tag, comments.of_named(item.name, item.about), item.fields),
+        records.definition(tag, descriptions.of_named(item.name, item.about), item.fields),
         meaning(item.name, item.fields, names),
         tuple(bits for field in item.fields for bits in bits_views(item.name, field, names)),
     )

@@ -9,6 +9,7 @@ from fractions import Fraction
 from protogen.model.fields import Field
 from protogen.model.origin import About
 from protogen.model.types import BitField, Enum, Flags, Float, Integer
+from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT
 from protogen.targets.c.spelling import (
@@ -58,7 +59,7 @@ def enum_view(item: Enum, names: Names) -> EnumView:
     )
     tag = names.claim(item.name)
     return EnumView(
-        tag, comments.comment(comments.of_named(item.name, item.about)), values, not fits
+        tag, comments.comment(descriptions.of_named(item.name, item.about)), values, not fits
     )
 
 
@@ -72,14 +73,14 @@ def flags_view(item: Flags, names: Names) -> EnumView:
         )
         for entry in item.bits
     )
-    doc = comments.comment(comments.of_named(item.name, item.about))
+    doc = comments.comment(descriptions.of_named(item.name, item.about))
     return EnumView(item.name, doc, values, True)
 
 
 def _remark(item: About, indent: int = 0) -> tuple[str, ...]:
     """What is said of a name; nothing where nothing is."""
     texts = list(paragraphs(item.doc))
-    return comments.comment([comments.sentence(texts[0]), *texts[1:]], indent) if texts else ()
+    return comments.comment([descriptions.sentence(texts[0]), *texts[1:]], indent) if texts else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +97,7 @@ class BitsView:
 
 def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
     """The runs of bits of a field's integer."""
-    type_ = comments.element_of(field.type)
+    type_ = descriptions.element_of(field.type)
     if not isinstance(type_, Integer):
         return ()
     return tuple(_bits(record, field, type_, item, names) for item in type_.bit_fields)
@@ -104,7 +105,7 @@ def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
 
 def _bits(record: str, field: Field, type_: Integer, item: BitField, names: Names) -> BitsView:
     words = (record, field.name, item.name)
-    first = next(iter(paragraphs(item.about.doc)), comments.words(item.name))
+    first = next(iter(paragraphs(item.about.doc)), descriptions.words(item.name))
     run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
     return BitsView(
         comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
@@ -134,7 +135,7 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield from _fraction(macro, "offset", field.offset)
     if field.unit:
         yield macro("unit", string(field.unit))
-    type_ = comments.element_of(field.type)
+    type_ = descriptions.element_of(field.type)
     if isinstance(type_, Integer):
         for item in field.special:
             yield macro(item.name, constant(item.value, type_), _remark(item.about))

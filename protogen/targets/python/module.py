@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from protogen.model.frame import CounterPart, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
+from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
@@ -150,7 +151,7 @@ def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:
     attributes = []
     for part in _shown(sender):
         first = next(iter(paragraphs(part.about.doc)), _role(part))
-        texts = describing.escaped([describing.sentence(first)])
+        texts = describing.escaped([descriptions.sentence(first)])
         attributes.append(Attribute(f"{part.name}: int", remark(texts, _INDENT)))
     return tuple(attributes)
 

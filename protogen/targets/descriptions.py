@@ -1,0 +1,108 @@
+"""What the schema says of a thing, and where that is written, as plain paragraphs.
+
+Each language makes its comments or docstrings of them.
+"""
+
+from __future__ import annotations
+
+from protogen.model.fields import Field
+from protogen.model.messages import Message
+from protogen.model.origin import About, Source
+from protogen.model.protocol import Link, Protocol
+from protogen.model.types import Array, Integer, Type
+from protogen.targets.escape import paragraphs
+
+
+def sentence(text: str) -> str:
+    """The text with a full stop at its end."""
+    return text if text.endswith((".", "!", "?", ":")) else f"{text}."
+
+
+def words(name: str) -> str:
+    """A name as words."""
+    return name.replace("_", " ").capitalize()
+
+
+def of_message(item: Message) -> list[str]:
+    """What a message is."""
+    first, *rest = paragraphs(item.summary or item.title or item.name) or ("",)
+    return [_placed(first, item.about), *rest, *paragraphs(item.about.doc)]
+
+
+def of_named(name: str, item: About) -> list[str]:
+    """What an enum, a set of flags or a struct is."""
+    first, *rest = paragraphs(item.doc) or (words(name),)
+    return [_placed(first, item), *rest]
+
+
+def of_field(item: Field, facts: list[str]) -> list[str]:
+    """What a field means, with facts such as its unit and bounds; empty ones are left out."""
+    plain = "Not said by the document" if item.unknown else words(item.name)
+    first, *rest = paragraphs(item.about.doc) or (plain,)
+    lead = ", ".join(fact for fact in (sentence(first).rstrip("."), *facts) if fact)
+    return [sentence(lead + _place(item.about.source)), *rest]
+
+
+def of_protocol(protocol: Protocol) -> list[str]:
+    """What the protocol is."""
+    title = sentence(paragraphs(protocol.title)[0] if protocol.title else protocol.name)
+    return [title, *paragraphs(protocol.about.doc)]
+
+
+def of_link(link: Link) -> str:
+    """The line's settings, without a full stop; nothing where the schema does not say."""
+    if link.baud is None:
+        return ""
+    parity = "no parity" if link.parity == "none" else f"{link.parity} parity"
+    stop = "1 stop bit" if link.stop_bits == 1 else f"{link.stop_bits} stop bits"
+    return f"{link.baud} baud, {link.data_bits} data bits, {parity}, {stop}"
+
+
+def step_of(item: Field) -> str:
+    """The step of a raw value, such as `1/16 deg`; the unit alone where it is not scaled."""
+    if not item.scaled:
+        return item.unit or ""
+    step = "" if item.scale == 1 else f"{item.scale} "
+    offset = f" from {item.offset}" if item.offset else ""
+    return f"{step}{item.unit or 'units'}{offset}"
+
+
+def extent_of(item: Field) -> list[str]:
+    """How many elements an array has."""
+    return [f"{item.type.extent.counts} elements"] if isinstance(item.type, Array) else []
+
+
+def specials_of(item: Field) -> list[str]:
+    """The special values of a field."""
+    return [f"{value.value} = {value.name}" for value in item.special]
+
+
+def element_of(type_: Type) -> Type:
+    """The type of an array's elements, or the type itself."""
+    return element_of(type_.element) if isinstance(type_, Array) else type_
+
+
+def names_values(type_: Type) -> bool:
+    """Whether the values of a number, or its bits, have names that say what they are."""
+    return isinstance(type_, Integer) and bool(
+        type_.enum or type_.flags or type_.bit_fields or type_.role == "bool"
+    )
+
+
+def _placed(first: str, item: About) -> str:
+    return sentence(first.rstrip(".") + _place(item.source))
+
+
+def _place(source: Source | None) -> str:
+    """Where something is written, as ` (line 18)`; nothing where the schema does not say."""
+    if source is None:
+        return ""
+    said = [source.document or "", _lines(source.lines), source.section or ""]
+    shown = ", ".join(word for word in said if word)
+    return f" ({shown})" if shown else ""
+
+
+def _lines(lines: str | None) -> str:
+    if lines is None:
+        return ""
+    return f"line {lines}" if lines.isdigit() else f"lines {lines}"
