@@ -28,7 +28,7 @@ WARNINGS = (
     "-Werror",
 )
 C99 = {
-    "gcc": ("-std=c99", "-Os"),
+    "gcc": ("-std=c99", "-O3"),
     "clang": ("-std=c99", "-Os"),
     "avr-gcc": ("-std=c99", "-Os", "-mmcu=atmega328p"),
     "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),

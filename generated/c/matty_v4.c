@@ -52,8 +52,9 @@ static bool matty_v4_is_seven_bit(const void *at, size_t size) {
 static void matty_v4_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    for (size_t i = 0; i < size; i++) {
-        target[i] = source[i];
+    while (size > 0) {
+        size--;
+        target[size] = source[size];
     }
 }
 

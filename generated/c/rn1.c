@@ -56,8 +56,9 @@ static void rn1_store_u16le(uint8_t *at, uint16_t value) {
 static void rn1_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    for (size_t i = 0; i < size; i++) {
-        target[i] = source[i];
+    while (size > 0) {
+        size--;
+        target[size] = source[size];
     }
 }
 

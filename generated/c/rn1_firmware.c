@@ -50,8 +50,9 @@ static int16_t rn1_firmware_load_s14be(const uint8_t *at) {
 static void rn1_firmware_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    for (size_t i = 0; i < size; i++) {
-        target[i] = source[i];
+    while (size > 0) {
+        size--;
+        target[size] = source[size];
     }
 }
 
