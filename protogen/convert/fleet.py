@@ -171,7 +171,7 @@ def _client(fleet: Fleet) -> Iterator[Any]:
     distributed = needed("distributed", "--dask")
     if fleet.address is not None:
         try:
-            client = distributed.Client(fleet.address, timeout=10)
+            client = distributed.Client(fleet.address)  # Waits as long as Dask's settings say.
         except (OSError, ValueError) as error:
             raise ConvertError(f"no scheduler answers at {fleet.address}: {error}") from None
         with client:
