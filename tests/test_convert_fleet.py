@@ -209,6 +209,7 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
 ) -> None:
     distributed = pytest.importorskip("distributed")
     killed = []
+    is_over = threading.Event()
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None
     ) as cluster:
@@ -217,9 +218,11 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
             """End a worker's process when some parts are done, twice."""
             for parts in (3, 8):
                 while len(list((tmp_path / MARKERS).glob("large.*.json"))) < parts:
-                    time.sleep(0.005)
-                with distributed.Client(cluster) as client:
-                    process = next(iter(client.run(os.getpid).values()))
+                    if is_over.wait(0.005):
+                        return
+                # The nanny knows it: a worker that starts just now would not answer.
+                nannies = cluster.workers.values()
+                process = next(filter(None, (nanny.pid for nanny in nannies)))
                 os.kill(process, signal.SIGKILL)
                 killed.append(process)
 
@@ -227,6 +230,7 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
         killer.start()
         fleet = ["--dask", cluster.scheduler_address, "--part-size", "1"]
         done = run(*arguments(captures, tmp_path, "large.bin"), *fleet)
+        is_over.set()
         killer.join(timeout=PATIENCE)
     assert done.exit_code == 0, done.output
     assert len(killed) == 2
@@ -254,6 +258,7 @@ def test_a_fleet_goes_on_where_another_was_ended(
     )
     deadline = time.monotonic() + PATIENCE
     while len(list((tmp_path / MARKERS).glob("large.*.json"))) < 3:
+        assert process.poll() is None, "it ended before"
         assert time.monotonic() < deadline
         time.sleep(0.005)
     os.killpg(process.pid, signal.SIGKILL)
