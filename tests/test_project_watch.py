@@ -80,6 +80,13 @@ class Watch:
         return self.process.wait(PATIENCE)
 
 
+def put(path: Path, text: str) -> None:
+    """Write a file that is whole at once: whoever looks while this waits finds no half of it."""
+    fresh = path.with_name(f".{path.name}.new")
+    fresh.write_text(text)
+    fresh.replace(path)
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "base").mkdir()
@@ -104,20 +111,20 @@ def test_generates_after_each_change(folder: Path, watch: Watch) -> None:
     assert "wrote generated/python/dialect.py" in first
     assert "watching 3 files, Ctrl-C ends it" in first
 
-    (folder / "dialect.yaml").write_text(DIALECT.replace("Other", "Another"))
+    put(folder / "dialect.yaml", DIALECT.replace("Other", "Another"))
     assert watch.until("wrote") == ("changed: dialect.yaml\nwrote generated/python/dialect.py\n")
     watch.until("unchanged")
 
-    (folder / "base" / "sink.yaml").write_text(SINK.replace("id: E", "id: X"))
+    put(folder / "base" / "sink.yaml", SINK.replace("id: E", "id: X"))
     assert "changed: base/sink.yaml" in watch.until("wrote generated/python/dialect.py")
 
-    (folder / "fresh.yaml").write_text(DIALECT.replace("dialect", "fresh"))
+    put(folder / "fresh.yaml", DIALECT.replace("dialect", "fresh"))
     assert "changed: fresh.yaml" in watch.until("wrote generated/python/fresh.py")
 
     (folder / "fresh.yaml").unlink()
     assert "changed: fresh.yaml" in watch.until("removed generated/python/fresh.py")
 
-    (folder / "protogen.toml").write_text('schemas = ["*.yaml"]\ntargets = ["markdown"]\n')
+    put(folder / "protogen.toml", 'schemas = ["*.yaml"]\ntargets = ["markdown"]\n')
     assert "changed: protogen.toml" in watch.until("wrote generated/markdown/dialect.md")
 
     assert watch.interrupt() == 0
@@ -128,7 +135,7 @@ def test_bases_are_watched_where_nothing_had_to_be_compiled(folder: Path) -> Non
     watch = Watch(folder)
     try:
         assert "watching 3 files" in watch.until("watching")
-        (folder / "base" / "sink.yaml").write_text(SINK.replace("id: E", "id: X"))
+        put(folder / "base" / "sink.yaml", SINK.replace("id: E", "id: X"))
         assert "changed: base/sink.yaml" in watch.until("wrote generated/python/dialect.py")
         assert watch.interrupt() == 0
     finally:
@@ -138,35 +145,35 @@ def test_bases_are_watched_where_nothing_had_to_be_compiled(folder: Path) -> Non
 
 def test_problems_do_not_end_it(folder: Path, watch: Watch) -> None:
     watch.until("watching")
-    (folder / "dialect.yaml").write_text(DIALECT.replace("sink.yaml", "more.yaml"))
+    put(folder / "dialect.yaml", DIALECT.replace("sink.yaml", "more.yaml"))
     watch.until("error[PG022]")
 
-    (folder / "base" / "more.yaml").write_text(SINK)  # The base that was missing.
+    put(folder / "base" / "more.yaml", SINK)  # The base that was missing.
     assert "changed: base/more.yaml" in watch.until("unchanged")
 
-    (folder / "protogen.toml").write_text("schmas = 1\n")
+    put(folder / "protogen.toml", "schmas = 1\n")
     watch.until("error[PG031]")
-    (folder / "protogen.toml").write_text('schemas = ["*.yaml"]\n[c]\nonly = ["none"]\n')
+    put(folder / "protogen.toml", 'schemas = ["*.yaml"]\n[c]\nonly = ["none"]\n')
     watch.until("has no message `none`")
-    (folder / "protogen.toml").write_text('schemas = ["*.yaml"]\ntargets = ["c"]\n')
+    put(folder / "protogen.toml", 'schemas = ["*.yaml"]\ntargets = ["c"]\n')
     watch.until("wrote generated/c/dialect.h")
     (folder / "dialect.yaml").unlink()
     watch.until("error[PG033]")
-    (folder / "dialect.yaml").write_text(DIALECT)
+    put(folder / "dialect.yaml", DIALECT)
     watch.until("unchanged")
     assert watch.interrupt() == 0
 
 
 def test_filled_pages_are_no_change(folder: Path) -> None:
-    (folder / "a.md").write_text("<!-- protogen:dialect.lists -->\n<!-- /protogen -->\n")
+    put(folder / "a.md", "<!-- protogen:dialect.lists -->\n<!-- /protogen -->\n")
     with (folder / "protogen.toml").open("a") as stream:
         stream.write('blocks = ["*.md"]\n')
     watch = Watch(folder)
     try:
         assert "wrote a.md" in watch.until("watching")
-        (folder / "dialect.yaml").write_text(DIALECT.replace("Other", "Another"))
+        put(folder / "dialect.yaml", DIALECT.replace("Other", "Another"))
         assert "changed: dialect.yaml\n" in watch.until("unchanged")
-        (folder / "a.md").write_text("<!-- protogen:dialect.empty -->\n<!-- /protogen -->\n")
+        put(folder / "a.md", "<!-- protogen:dialect.empty -->\n<!-- /protogen -->\n")
         assert "changed: a.md" in watch.until("wrote a.md")
         assert watch.interrupt() == 0
     finally:
