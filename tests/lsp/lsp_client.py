@@ -54,7 +54,8 @@ class LspClient:
         self.notify("textDocument/didOpen", textDocument=document)
         while True:
             message = self._next()
-            if message.get("method") == "textDocument/publishDiagnostics":
+            told = message.get("method") == "textDocument/publishDiagnostics"
+            if told and message["params"]["uri"] == uri:  # Not those of one opened before.
                 return list(message["params"]["diagnostics"])
 
     def completions(self, uri: str, position: Position) -> list[str]:
