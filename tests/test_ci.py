@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import yaml
-from cli_support import ROOT, run, start
+from cli_support import PATIENCE, ROOT, run, start
 from tooling import require_module, require_tool
 
 HOOKS = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
@@ -112,7 +112,7 @@ class Scratch:
             env=self._environment,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=PATIENCE,
             check=False,
         )
         assert not check or done.returncode == 0, done.stderr

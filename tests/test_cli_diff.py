@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from cli_support import start
+from cli_support import PATIENCE, start
 from tooling import require_tool
 
 from protogen.evolution.rules import RULES
@@ -282,7 +282,7 @@ def git(folder: Path, *arguments: str) -> None:
     names |= {"GIT_COMMITTER_NAME": "T", "GIT_COMMITTER_EMAIL": "t@example.org"}
     nowhere = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
     environment = {**os.environ, **names, **nowhere}
-    subprocess.run(["git", *arguments], cwd=folder, env=environment, check=True, timeout=60)
+    subprocess.run(["git", *arguments], cwd=folder, env=environment, check=True, timeout=PATIENCE)
 
 
 class TestGit:

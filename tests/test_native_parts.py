@@ -13,6 +13,7 @@ from time import sleep
 import handwritten_streams
 import pytest
 from capture_support import assert_same_tables
+from cli_support import PATIENCE
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
 from corpus import joined as pieces_joined
 from corpus import marks_of, material_of, stream_of
@@ -179,7 +180,7 @@ def test_rows_that_could_not_be_copied_are_no_rows(monkeypatch: pytest.MonkeyPat
 
     def each():
         yield from batches(data, protocol_of(RN1), "brain", chunk=len(data))
-        assert failed.wait(10)
+        assert failed.wait(PATIENCE)
         sleep(0.1)  # Until the copy is over, which says so before.
         yield from batches(b"", protocol_of(RN1), "brain")
 

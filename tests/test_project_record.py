@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -186,7 +186,7 @@ def test_checks_leave_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_hundred_schemas_take_no_time(tmp_path: Path) -> None:
-    """The aim is half a second; a machine that is busy gets several times that."""
+    """The aim is half a second, of the processor's time: the machine may be busy with others."""
     (tmp_path / "schemas").mkdir()
     for number in range(100):
         text = SINK.replace("protocol: sink", f"protocol: sink{number}")
@@ -195,7 +195,13 @@ def test_a_hundred_schemas_take_no_time(tmp_path: Path) -> None:
     assert start("generate", "-q", cwd=tmp_path).returncode == 0
     times = []
     for _ in range(3):
-        begin = time.perf_counter()
+        before = os.times()
         assert start("generate", "-q", cwd=tmp_path).returncode == 0
-        times.append(time.perf_counter() - begin)
+        after = os.times()
+        times.append(
+            after.children_user
+            - before.children_user
+            + after.children_system
+            - before.children_system
+        )
     assert min(times) < 2

@@ -35,7 +35,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from cli_support import start
+from cli_support import PATIENCE, start
 from tooling import require_tool
 
 from protogen.compiler import compile_file
@@ -150,7 +150,7 @@ def run(command: Sequence[str], workspace: Path) -> subprocess.CompletedProcess[
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        timeout=120,
+        timeout=PATIENCE,
         check=False,
     )
 
@@ -361,7 +361,12 @@ class TestC:
         # 03 + 07 + 01 + 01 = 0C -> F4, 03 + 08 + 01 + 00 = 0C -> F4.
         line = bytes.fromhex("AA 55 03 07 01 01 F4 55 03 08 01 00 F4")
         answer = subprocess.run(
-            ["./sketch"], cwd=workspace, input=line, stdout=subprocess.PIPE, timeout=60, check=True
+            ["./sketch"],
+            cwd=workspace,
+            input=line,
+            stdout=subprocess.PIPE,
+            timeout=PATIENCE,
+            check=True,
         ).stdout
         # Two acks: 03 + 07 + 02 + 01 = 0D -> F3, 03 + 08 + 02 + 00 = 0D -> F3.
         assert answer == bytes.fromhex("55 03 07 02 01 F3 55 03 08 02 00 F3")
