@@ -38,12 +38,8 @@ SEEDS = range(max(8, EXAMPLES // 10))
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _kept_apart(tmp_path_factory: pytest.TempPathFactory):
-    """A cache of the tests' own."""
+def _has_compiler() -> None:
     require_tool("cc")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 def check(
