@@ -247,8 +247,8 @@ def _are_events(expected: Any) -> Callable[[Any], bool]:
 # --- machines -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
 @pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
 def test_every_machine_gives_the_same(name: str, path: Path, tmp_path: Path) -> None:
     machine = ALL[name]
     only = selection(path, machine.greatest)
