@@ -92,7 +92,8 @@ class Fuzzer:
 
     def run(self, *options: str) -> str:
         """Try inputs; returns what it prints. Raises AssertionError where one fails."""
-        limits = (f"-max_len={self.longest}", "-timeout=10", "-print_final_stats=1")
+        # No input takes longer than a millisecond, but the machine may be busy.
+        limits = (f"-max_len={self.longest}", "-timeout=120", "-print_final_stats=1")
         command = [str(self.program), *limits, *options, str(self.corpus)]
         done = subprocess.run(
             command, capture_output=True, text=True, check=False, cwd=self.program.parent
