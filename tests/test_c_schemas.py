@@ -32,7 +32,7 @@ from protogen.targets.python.live import module_of
 
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
 RUNS = 200 if THOROUGH else 12
-DRAWS = 26
+DRAWS = 26 if THOROUGH else 20
 """Few in one run, because what is drawn from one seed grows alike."""
 SAMPLES = 12
 STREAMS = 6

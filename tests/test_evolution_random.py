@@ -25,10 +25,10 @@ _INDEX = re.compile(r"\[\d+\]")
 NAMES = ("enum-value-added", "enum-value-renamed", "flag-added", "flag-renamed", "field-kind")
 """Changes of nothing but words."""
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
-RUNS = 40 if THOROUGH else 18
+RUNS = 40 if THOROUGH else 12
 SCHEMAS = 25
 EDITS = 12
-"""Of each schema; less than half of them compile and change something: some 2,300 in all."""
+"""Of each schema; less than half of them compile and change something: some 1,500 in all."""
 
 
 @pytest.mark.usefixtures("fixed_draws")
