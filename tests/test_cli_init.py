@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 from tooling import require_tool
 
 from protogen.compiler import compile_file
@@ -167,5 +167,5 @@ def on_a_terminal(typed: str, *arguments: str) -> str:
     except OSError:
         pass  # Linux says that the other end is closed in this way.
     os.close(ours)
-    assert process.wait(60) == 0, shown
+    assert process.wait(PATIENCE) == 0, shown
     return shown.decode()
