@@ -8,10 +8,12 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cli_support import PATIENCE, ROOT, SINK, run, start
 
+from protogen.cli import watching
 from protogen.project.watch import changes, states, wait_for_change
 
 DIALECT = "protocol: dialect\nextends: base/sink.yaml\ntitle: Other\n"
@@ -50,6 +52,28 @@ class TestStates:
             states(found[0]), lambda: next(looks, found[1]), lambda seconds: None
         )
         assert changed == (tmp_path / "b",)
+
+
+def test_what_changes_while_it_is_read_for_the_first_time_is_a_change(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs: list[int] = []
+    original = watching.generate_once
+
+    def generate_once(*given: Any) -> int:
+        code = original(*given)
+        runs.append(code)
+        if len(runs) == 1:
+            put(folder / "base" / "sink.yaml", SINK.replace("id: E", "id: X"))
+        if len(runs) == 2:
+            raise KeyboardInterrupt
+        return code
+
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(watching, "generate_once", generate_once)
+    output = run("generate", "--watch").output
+    assert runs == [0, 0]
+    assert "changed: base/sink.yaml\nwrote generated/python/" in output
 
 
 class Watch:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -60,12 +61,13 @@ class _Watch:
         """Generate. What changes meanwhile is a change for the next look."""
         from protogen.project.watch import states
 
+        begin = time.time_ns()
         before = states(self.files())
         reads = Reads()
         try:
             generate_once(self.given, self.mode, reads)
         finally:
-            self._remember(before, reads)
+            self._remember(before, reads, begin)
 
     def run_again(self) -> None:
         """Generate after a change, whatever is wrong."""
@@ -76,8 +78,8 @@ class _Watch:
         except (UsageError, OSError) as error:
             explain(error)
 
-    def _remember(self, before: States, reads: Reads) -> None:
-        from protogen.project.watch import states
+    def _remember(self, before: States, reads: Reads, begin: int) -> None:
+        from protogen.project.watch import settled, states
 
         if reads.plan is None:  # Nothing was read but the settings: the rest is as it was.
             reads.files |= self.reads.files
@@ -85,7 +87,9 @@ class _Watch:
             reads.plan = self.reads.plan
         self.reads = reads
         schemas = set() if reads.plan is None else set(reads.plan.schemas)
-        # What was read for the first time, or written, is known as it is now.
-        fresh = states((reads.files - before.keys()) | reads.written)
+        # What was read for the first time is known as it is now, unless it changed meanwhile; and
+        # so is what was written.
+        first = settled(states(reads.files - before.keys() - reads.written), begin)
+        fresh = {**first, **states(reads.written)}
         watched = self.files() | schemas
         self.before = {path: {**before, **fresh}.get(path) for path in watched}

@@ -27,6 +27,11 @@ def states(paths: Iterable[Path]) -> States:
     return {path: _state(path) for path in paths}
 
 
+def settled(now: States, begin: int) -> States:
+    """The states without those that may have come after `begin`, in nanoseconds of the clock."""
+    return {path: state for path, state in now.items() if state is None or state[0] < begin}
+
+
 def wait_for_change(
     before: States,
     paths: Callable[[], Iterable[Path]],
