@@ -21,6 +21,36 @@ settings.register_profile(
 settings.register_profile("thorough", settings.get_profile("default"), max_examples=5000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
+SLOW = (
+    "test_c_lint.py",
+    "test_evolution_random.py",
+    "test_c_proof.py",
+    "test_c_schemas.py",
+    "test_lower_bounds.py",
+    "test_c_machines.py",
+    "test_schema_fuzzing.py",
+    "test_native.py",
+    "test_native_parts.py",
+    "test_convert_fleet.py",
+    "test_c_decoder.py",
+    "test_c_feed.py",
+    "test_c_fuzz.py",
+    "test_c_codecs.py",
+    "test_readme.py",
+)
+"""The files that take longest, most of it in single tests."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes long.
+
+    Workers that have nothing left take over what stands last in another's list. Where those are
+    short tests, all workers end together.
+    """
+    ranks = {name: rank for rank, name in enumerate(SLOW)}
+    items.sort(key=lambda item: ranks.get(item.path.name, len(SLOW)))
+
+
 # Jobs in a shell's background ignore Ctrl-C, and so would the processes that tests interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
