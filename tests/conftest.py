@@ -76,6 +76,10 @@ def cache_of_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
         if "PIP_CACHE_DIR" not in os.environ:
             patch.setenv("PIP_CACHE_DIR", str(Path(users, "pip")))
+        if os.environ.get("PYTHONDONTWRITEBYTECODE"):
+            # A third of the time that hundreds of commands take would be to compile their modules.
+            patch.delenv("PYTHONDONTWRITEBYTECODE")
+            patch.setenv("PYTHONPYCACHEPREFIX", str(folder / "cache" / "bytecode"))
         yield folder / "cache"
 
 
