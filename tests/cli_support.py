@@ -93,9 +93,9 @@ def compiled(text: str) -> Protocol:
 testing._get_command = cache(get_command)
 
 
-def run(*arguments: str, input: str | bytes | None = None) -> Result:
+def run(*arguments: str, input: str | bytes | None = None, **environment: str) -> Result:
     """Run a command inside of this process."""
-    return CliRunner().invoke(app, list(arguments), input=input)
+    return CliRunner().invoke(app, list(arguments), input=input, env=environment)
 
 
 def start(

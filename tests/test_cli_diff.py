@@ -1,4 +1,4 @@
-"""`diff`, `breaking` and `rules` as processes: versions, formats, what counts, what goes wrong."""
+"""`diff`, `breaking` and `rules`, as commands: versions, formats, what counts, what goes wrong."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import os
 import shutil
 import subprocess
 import tempfile
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
-from cli_support import PATIENCE, start
+from cli_support import PATIENCE, run, start
 from tooling import require_tool
+from typer.testing import Result
 
 from protogen.evolution.rules import RULES
 
@@ -51,23 +53,24 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def protogen(folder: Path, *arguments: str) -> subprocess.CompletedProcess[bytes]:
+def protogen(folder: Path, *arguments: str) -> Result:
     # What the tests run in may be a git repository; only a scratch one counts.
-    return start(*arguments, cwd=folder, NO_COLOR="1", GIT_CEILING_DIRECTORIES=str(TEMPORARY))
+    with chdir(folder):
+        return run(*arguments, NO_COLOR="1", GIT_CEILING_DIRECTORIES=str(TEMPORARY))
 
 
 def answer(folder: Path, *arguments: str, code: int) -> str:
     done = protogen(folder, *arguments)
-    output = done.stdout.decode()
-    assert done.returncode == code, f"{output}\n{done.stderr.decode()}"
+    output = done.stdout
+    assert done.exit_code == code, f"{output}\n{done.stderr}"
     return output
 
 
 def complaint(folder: Path, *arguments: str, code: int = 2) -> str:
     done = protogen(folder, *arguments)
-    assert done.returncode == code, done.stdout.decode()
-    assert b"Traceback" not in done.stderr
-    return done.stderr.decode()
+    assert done.exit_code == code, done.stdout
+    assert "Traceback" not in done.stderr
+    return done.stderr
 
 
 def rules_in(output: str) -> list[str]:
@@ -395,8 +398,8 @@ class TestMistakes:
         (folder / "bad.yaml").write_text(OLD.replace("number: uint8", "number: unit8"))
         for files in (("old.yaml", "bad.yaml"), ("bad.yaml", "old.yaml")):
             done = protogen(folder, command, *files)
-            words = (done.stdout + done.stderr).decode()
-            assert done.returncode == 1
+            words = done.stdout + done.stderr
+            assert done.exit_code == 1
             assert "bad.yaml:14:47: error[PG104]: there is no type `unit8`" in words
             assert "did you mean `uint8`?" in words
             assert "Traceback" not in words
