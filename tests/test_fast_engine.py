@@ -32,8 +32,9 @@ from protogen.runtime.number import Number
 from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_tables
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
-DAGNY, MATTY, RFLEX = (
-    next(path for path in DOCUMENTS if path.stem == name) for name in ("dagny", "matty", "rflex")
+DAGNY, MATTY, RFLEX, RN1 = (
+    next(path for path in DOCUMENTS if path.stem == name)
+    for name in ("dagny", "matty", "rflex", "rn1")
 )
 SEEDS = range(max(6, settings().max_examples // 10))
 
@@ -469,6 +470,47 @@ def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
                 given = {**parts, name: value}
                 due = outcome(module.encode, event.message, sender, engine="construct", **given)
                 assert outcome(module.encode, event.message, sender, **given) == due
+
+
+@pytest.mark.parametrize("bits", [7, 14])
+@pytest.mark.parametrize("place", [-4, -3, -2, -1, 0, 1, 2, 3, 4])
+def test_what_lists_wrap_around_is_out_of_range(bits: int, place: int) -> None:
+    """A list of `1 << bits` values has one at each index down to the negative of its length."""
+    module = module_at(RN1)
+    made = {
+        7: module.MoveManual(speed=0, arc=0),
+        14: module.Gyro(status=1, int_x=0, int_y=0, int_z=0),
+    }
+    name = {7: "speed", 14: "int_x"}[bits]
+    border = place * (1 << bits - 1)
+    for value in range(border - 2, border + 3):
+        item = replace(made[bits], **{name: value})
+        due = outcome(module.encode, item, engine="construct")
+        assert outcome(module.encode, item) == due
+        assert (due[0] == "frame") == (-(1 << bits - 1) <= value < 1 << bits - 1)
+
+
+def test_messages_of_others_have_the_same_outcome(tmp_path: Path) -> None:
+    """Neither a class of one's own is a message of a module, nor one that another module has."""
+    module = module_at(MATTY)
+    copied = tmp_path / MATTY.name
+    copied.write_bytes(MATTY.read_bytes())
+    twin = module_at(copied)
+
+    class Own(module.Gps):  # type: ignore[name-defined,misc]
+        """Not a module's."""
+
+    class Odd:
+        def _encode(self, *_: Any) -> bytes:
+            raise AssertionError("it is no message")
+
+    gps = {"nmea": "$GPRMC"}
+    gyro = module_at(RN1).Gyro(status=1, int_x=0, int_y=0, int_z=0)
+    for other in (Own(**gps), twin.Gps(**gps), gyro, Odd(), None, module.Gps):
+        due = outcome(module.encode, other, engine="construct")
+        assert due[0] != "frame"
+        assert outcome(module.encode, other) == due
+    assert outcome(twin.encode, twin.Gps(**gps)) == outcome(module.encode, module.Gps(**gps))
 
 
 @pytest.mark.parametrize(

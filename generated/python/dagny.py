@@ -865,8 +865,8 @@ def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -886,8 +886,8 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_gps(item: Gps, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -907,8 +907,8 @@ def _encode_gps(item: Gps, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_bump(item: Bump, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_bump(item: Bump, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -928,8 +928,8 @@ def _encode_bump(item: Bump, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_odometry(item: Odometry, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -949,8 +949,8 @@ def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_speed(item: Speed, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_speed(item: Speed, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -970,8 +970,8 @@ def _encode_speed(item: Speed, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_wheel_slip(item: WheelSlip, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -991,8 +991,8 @@ def _encode_wheel_slip(item: WheelSlip, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_battery(item: Battery, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -1012,8 +1012,8 @@ def _encode_battery(item: Battery, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_reflex_settings(item: ReflexSettings, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -1033,8 +1033,8 @@ def _encode_reflex_settings(item: ReflexSettings, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_hardware_status(item: HardwareStatus, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -1054,8 +1054,8 @@ def _encode_hardware_status(item: HardwareStatus, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_robot)
 
 
-def _encode_motor(item: Motor, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.s
     payload = _PACK_0(v1)
@@ -1069,8 +1069,8 @@ def _encode_motor(item: Motor, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_host)
 
 
-def _encode_steering(item: Steering, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_steering(item: Steering, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.s
     payload = _PACK_0(v1)
@@ -1084,8 +1084,8 @@ def _encode_steering(item: Steering, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_host)
 
 
-def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_reflex(item: Reflex, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.reflex
     payload = _PACK_0(v1)
@@ -1099,8 +1099,8 @@ def _encode_reflex(item: Reflex, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_host)
 
 
-def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_power_down(item: PowerDown, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.code
     if v1 != 3:
@@ -1116,8 +1116,8 @@ def _encode_power_down(item: PowerDown, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_host)
 
 
-def _encode_power(item: Power, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.code
     payload = _PACK_0(v1)
@@ -1131,7 +1131,9 @@ def _encode_power(item: Power, sender: str | None) -> bytes:
     return _fast.checked(wire, _cut_host)
 
 
-def _encode_laser(item: Laser, sender: str | None) -> bytes:
+def _encode_laser(item: Laser, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS:
+        raise _fast.Unclear
     v1 = item.readings
     if type(v1) is not list:
         raise _fast.Unclear
@@ -1145,7 +1147,9 @@ def _encode_laser(item: Laser, sender: str | None) -> bytes:
     raise _fast.Unclear
 
 
-def _encode_command(item: Command, sender: str | None) -> bytes:
+def _encode_command(item: Command, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS:
+        raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
         raise _fast.Unclear
@@ -1179,6 +1183,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Laser: _encode_laser,
     Command: _encode_command,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | RobotMessage],
@@ -1284,7 +1289,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender)
+            return message._encode(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

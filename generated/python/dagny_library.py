@@ -878,8 +878,8 @@ def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.distances
     if type(v1) is not list:
@@ -893,8 +893,8 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_gps(item: Gps, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.nmea
     v2 = v1.encode("ascii")
@@ -910,8 +910,8 @@ def _encode_gps(item: Gps, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_odometry(item: Odometry, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.right_count
     v2 = item.left_count
@@ -927,8 +927,8 @@ def _encode_odometry(item: Odometry, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_battery(item: Battery, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.main_battery
     v2 = item.motor_battery
@@ -940,8 +940,8 @@ def _encode_battery(item: Battery, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_compass(item: Compass, sender: str | None) -> bytes:
-    if sender is not None and sender != "robot":
+def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "robot"):
         raise _fast.Unclear
     v1 = item.x
     v2 = item.y
@@ -952,8 +952,8 @@ def _encode_compass(item: Compass, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_motor(item: Motor, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.speed
     content = _PACK_5(77, v1)
@@ -963,8 +963,8 @@ def _encode_motor(item: Motor, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_drive(item: Drive, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_drive(item: Drive, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.speed
     v2 = item.steer
@@ -975,8 +975,8 @@ def _encode_drive(item: Drive, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_steering(item: Steering, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_steering(item: Steering, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.position
     content = _PACK_7(83, v1)
@@ -986,8 +986,8 @@ def _encode_steering(item: Steering, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_power(item: Power, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.code
     content = _PACK_7(80, v1)
@@ -997,8 +997,8 @@ def _encode_power(item: Power, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_gps_position(item: GpsPosition, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_gps_position(item: GpsPosition, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.latitude
     v2 = item.longitude
@@ -1009,7 +1009,9 @@ def _encode_gps_position(item: GpsPosition, sender: str | None) -> bytes:
     return content + b"\x0d"
 
 
-def _encode_laser(item: Laser, sender: str | None) -> bytes:
+def _encode_laser(item: Laser, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS:
+        raise _fast.Unclear
     v1 = item.readings
     if type(v1) is not list:
         raise _fast.Unclear
@@ -1023,7 +1025,9 @@ def _encode_laser(item: Laser, sender: str | None) -> bytes:
     raise _fast.Unclear
 
 
-def _encode_shutdown(item: Shutdown, sender: str | None) -> bytes:
+def _encode_shutdown(item: Shutdown, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS:
+        raise _fast.Unclear
     v1 = item.confirmation
     v2 = v1.encode("ascii")
     if len(v2) > 7 or v2.endswith(b"\0"):
@@ -1052,6 +1056,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Laser: _encode_laser,
     Shutdown: _encode_shutdown,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | RobotMessage],
@@ -1128,7 +1133,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender)
+            return message._encode(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

@@ -790,8 +790,8 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 83)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -801,8 +801,8 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -812,8 +812,8 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
     return b"\x55" + content
 
 
-def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.mode
     content = _PACK_1(3, counter_, 77, v1)
@@ -824,8 +824,8 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_go(item: Go, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.speed
     v2 = item.steer
@@ -837,8 +837,8 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_limits(item: Limits, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.max_speed
     v2 = item.max_steer
@@ -850,8 +850,8 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_timing(item: Timing, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.period
     v2 = item.timeout
@@ -863,8 +863,10 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_gps_mode(
+    item: GpsMode, module: object, sender: str | None, counter_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.mode
     content = _PACK_1(3, counter_, 80, v1)
@@ -875,8 +877,8 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
     return b"\x55" + content
 
 
-def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -886,8 +888,8 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -897,8 +899,8 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_status(item: Status, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_status(item: Status, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     v1 = item.status
     v2 = item.mode
@@ -918,8 +920,8 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_gps(item: Gps, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     v1 = item.nmea
     v2 = v1.encode("ascii")
@@ -949,6 +951,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Status: _encode_status,
     Gps: _encode_gps,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], PcMessage | EspMessage],
@@ -1026,7 +1029,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender, counter)
+            return message._encode(_ENCODERS, sender, counter)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, counter=counter)

@@ -938,8 +938,8 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.mode
     content = _PACK_1(3, counter_, 83, v1)
@@ -950,8 +950,8 @@ def _encode_stop(item: Stop, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -961,8 +961,8 @@ def _encode_reset(item: Reset, sender: str | None, counter_: int | None) -> byte
     return b"\x55" + content
 
 
-def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.mode
     content = _PACK_1(3, counter_, 77, v1)
@@ -973,8 +973,8 @@ def _encode_mode(item: Mode, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_go(item: Go, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.speed
     v2 = item.steer
@@ -986,8 +986,8 @@ def _encode_go(item: Go, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_limits(item: Limits, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.max_speed
     v2 = item.max_steer
@@ -999,8 +999,8 @@ def _encode_limits(item: Limits, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_timing(item: Timing, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.period
     v2 = item.timeout
@@ -1012,8 +1012,10 @@ def _encode_timing(item: Timing, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_gps_mode(
+    item: GpsMode, module: object, sender: str | None, counter_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.mode
     content = _PACK_1(3, counter_, 80, v1)
@@ -1024,8 +1026,10 @@ def _encode_gps_mode(item: GpsMode, sender: str | None, counter_: int | None) ->
     return b"\x55" + content
 
 
-def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_version_query(
+    item: VersionQuery, module: object, sender: str | None, counter_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 86)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1035,8 +1039,8 @@ def _encode_version_query(item: VersionQuery, sender: str | None, counter_: int 
     return b"\x55" + content
 
 
-def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "pc":
+def _encode_led(item: Led, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "pc"):
         raise _fast.Unclear
     v1 = item.index
     v2 = item.rgb
@@ -1050,8 +1054,8 @@ def _encode_led(item: Led, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1061,8 +1065,8 @@ def _encode_ack(item: Ack, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -1072,8 +1076,8 @@ def _encode_nack(item: Nack, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_status(item: Status, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_status(item: Status, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     v1 = item.status
     v2 = item.mode
@@ -1096,8 +1100,8 @@ def _encode_status(item: Status, sender: str | None, counter_: int | None) -> by
     return b"\x55" + content
 
 
-def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_gps(item: Gps, module: object, sender: str | None, counter_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     v1 = item.nmea
     v2 = v1.encode("ascii")
@@ -1114,8 +1118,10 @@ def _encode_gps(item: Gps, sender: str | None, counter_: int | None) -> bytes:
     return b"\x55" + content
 
 
-def _encode_version(item: Version, sender: str | None, counter_: int | None) -> bytes:
-    if sender is not None and sender != "esp":
+def _encode_version(
+    item: Version, module: object, sender: str | None, counter_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "esp"):
         raise _fast.Unclear
     v1 = item.serial_number
     v2 = item.version
@@ -1143,6 +1149,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Gps: _encode_gps,
     Version: _encode_version,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], PcMessage | EspMessage],
@@ -1223,7 +1230,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender, counter)
+            return message._encode(_ENCODERS, sender, counter)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, counter=counter)

@@ -1435,9 +1435,9 @@ def _frame_flex(
 
 
 def _encode_request_system_status(
-    item: RequestSystemStatus, sender: str | None, number_: int | None
+    item: RequestSystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1450,8 +1450,10 @@ def _encode_request_system_status(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_system_status(item: SystemStatus, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_system_status(
+    item: SystemStatus, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1470,8 +1472,10 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_motor_00(
+    item: Motor00, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1485,8 +1489,10 @@ def _encode_motor_00(item: Motor00, sender: str | None, number_: int | None) -> 
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_motor_command(
+    item: MotorCommand, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1508,9 +1514,9 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
 
 
 def _encode_confirm_motor_command(
-    item: ConfirmMotorCommand, sender: str | None, number_: int | None
+    item: ConfirmMotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1529,8 +1535,10 @@ def _encode_confirm_motor_command(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_motor_0a(
+    item: Motor0a, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1543,8 +1551,10 @@ def _encode_motor_0a(item: Motor0a, sender: str | None, number_: int | None) -> 
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_motor_0c(
+    item: Motor0c, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1557,8 +1567,10 @@ def _encode_motor_0c(item: Motor0c, sender: str | None, number_: int | None) -> 
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_motor_0c_answer(
+    item: Motor0cAnswer, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1575,8 +1587,10 @@ def _encode_motor_0c_answer(item: Motor0cAnswer, sender: str | None, number_: in
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_read_motor(
+    item: ReadMotor, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1601,9 +1615,9 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
 
 
 def _encode_start_stop_motor_packets(
-    item: StartStopMotorPackets, sender: str | None, number_: int | None
+    item: StartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1621,9 +1635,9 @@ def _encode_start_stop_motor_packets(
 
 
 def _encode_confirm_start_stop_motor_packets(
-    item: ConfirmStartStopMotorPackets, sender: str | None, number_: int | None
+    item: ConfirmStartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1641,9 +1655,9 @@ def _encode_confirm_start_stop_motor_packets(
 
 
 def _encode_request_joystick_data(
-    item: RequestJoystickData, sender: str | None, number_: int | None
+    item: RequestJoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1656,8 +1670,10 @@ def _encode_request_joystick_data(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_joystick_data(
+    item: JoystickData, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1678,9 +1694,9 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
 
 
 def _encode_start_stop_sonar_packets(
-    item: StartStopSonarPackets, sender: str | None, number_: int | None
+    item: StartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1701,9 +1717,9 @@ def _encode_start_stop_sonar_packets(
 
 
 def _encode_confirm_start_stop_sonar_packets(
-    item: ConfirmStartStopSonarPackets, sender: str | None, number_: int | None
+    item: ConfirmStartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1720,8 +1736,10 @@ def _encode_confirm_start_stop_sonar_packets(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_sonar_data(
+    item: SonarData, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     v1 = item.unknown
     v2 = item.timestamp
@@ -1756,9 +1774,9 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
 
 
 def _encode_initialize_digital_io(
-    item: InitializeDigitalIo, sender: str | None, number_: int | None
+    item: InitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1774,9 +1792,9 @@ def _encode_initialize_digital_io(
 
 
 def _encode_confirm_initialize_digital_io(
-    item: ConfirmInitializeDigitalIo, sender: str | None, number_: int | None
+    item: ConfirmInitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1793,8 +1811,10 @@ def _encode_confirm_initialize_digital_io(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_changed_bumpers(
+    item: ChangedBumpers, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1813,9 +1833,9 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
 
 
 def _encode_check_io_changed(
-    item: CheckIoChanged, sender: str | None, number_: int | None
+    item: CheckIoChanged, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1831,9 +1851,9 @@ def _encode_check_io_changed(
 
 
 def _encode_check_io_changed_answer(
-    item: CheckIoChangedAnswer, sender: str | None, number_: int | None
+    item: CheckIoChangedAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1852,8 +1872,10 @@ def _encode_check_io_changed_answer(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_changed_byte(
+    item: ChangedByte, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 255
@@ -1895,6 +1917,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     CheckIoChangedAnswer: _encode_check_io_changed_answer,
     ChangedByte: _encode_changed_byte,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], LinuxMessage | FlexMessage],
@@ -2031,7 +2054,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender, number)
+            return message._encode(_ENCODERS, sender, number)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, number=number)

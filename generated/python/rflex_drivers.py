@@ -1602,9 +1602,9 @@ def _frame_flex(
 
 
 def _encode_request_system_status(
-    item: RequestSystemStatus, sender: str | None, number_: int | None
+    item: RequestSystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1616,8 +1616,10 @@ def _encode_request_system_status(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_system_status(item: SystemStatus, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_system_status(
+    item: SystemStatus, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1632,8 +1634,10 @@ def _encode_system_status(item: SystemStatus, sender: str | None, number_: int |
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_lcd_dump(item: LcdDump, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_lcd_dump(
+    item: LcdDump, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     v1 = item.timestamp
     v2 = item.row
@@ -1656,8 +1660,10 @@ def _encode_lcd_dump(item: LcdDump, sender: str | None, number_: int | None) -> 
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_axis_get_system(item: AxisGetSystem, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_axis_get_system(
+    item: AxisGetSystem, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1670,8 +1676,10 @@ def _encode_axis_get_system(item: AxisGetSystem, sender: str | None, number_: in
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_motor_command(
+    item: MotorCommand, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1689,9 +1697,9 @@ def _encode_motor_command(item: MotorCommand, sender: str | None, number_: int |
 
 
 def _encode_confirm_motor_command(
-    item: ConfirmMotorCommand, sender: str | None, number_: int | None
+    item: ConfirmMotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1706,8 +1714,10 @@ def _encode_confirm_motor_command(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_set_defaults(item: SetDefaults, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_set_defaults(
+    item: SetDefaults, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1719,8 +1729,10 @@ def _encode_set_defaults(item: SetDefaults, sender: str | None, number_: int | N
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_brake_set(item: BrakeSet, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_brake_set(
+    item: BrakeSet, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1732,8 +1744,10 @@ def _encode_brake_set(item: BrakeSet, sender: str | None, number_: int | None) -
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_brake_release(item: BrakeRelease, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_brake_release(
+    item: BrakeRelease, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1746,9 +1760,9 @@ def _encode_brake_release(item: BrakeRelease, sender: str | None, number_: int |
 
 
 def _encode_brake_release_answer(
-    item: BrakeReleaseAnswer, sender: str | None, number_: int | None
+    item: BrakeReleaseAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1762,8 +1776,10 @@ def _encode_brake_release_answer(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_read_motor(
+    item: ReadMotor, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1783,9 +1799,9 @@ def _encode_read_motor(item: ReadMotor, sender: str | None, number_: int | None)
 
 
 def _encode_start_stop_motor_packets(
-    item: StartStopMotorPackets, sender: str | None, number_: int | None
+    item: StartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1800,9 +1816,9 @@ def _encode_start_stop_motor_packets(
 
 
 def _encode_confirm_start_stop_motor_packets(
-    item: ConfirmStartStopMotorPackets, sender: str | None, number_: int | None
+    item: ConfirmStartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1817,9 +1833,9 @@ def _encode_confirm_start_stop_motor_packets(
 
 
 def _encode_request_joystick_data(
-    item: RequestJoystickData, sender: str | None, number_: int | None
+    item: RequestJoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1831,8 +1847,10 @@ def _encode_request_joystick_data(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_joystick_data(
+    item: JoystickData, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1849,9 +1867,9 @@ def _encode_joystick_data(item: JoystickData, sender: str | None, number_: int |
 
 
 def _encode_start_stop_sonar_packets(
-    item: StartStopSonarPackets, sender: str | None, number_: int | None
+    item: StartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1868,9 +1886,9 @@ def _encode_start_stop_sonar_packets(
 
 
 def _encode_confirm_start_stop_sonar_packets(
-    item: ConfirmStartStopSonarPackets, sender: str | None, number_: int | None
+    item: ConfirmStartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1884,8 +1902,10 @@ def _encode_confirm_start_stop_sonar_packets(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_sonar_data(
+    item: SonarData, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     v1 = item.retval
     v2 = item.timestamp
@@ -1911,9 +1931,9 @@ def _encode_sonar_data(item: SonarData, sender: str | None, number_: int | None)
 
 
 def _encode_initialize_digital_io(
-    item: InitializeDigitalIo, sender: str | None, number_: int | None
+    item: InitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1927,9 +1947,9 @@ def _encode_initialize_digital_io(
 
 
 def _encode_confirm_initialize_digital_io(
-    item: ConfirmInitializeDigitalIo, sender: str | None, number_: int | None
+    item: ConfirmInitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1943,8 +1963,10 @@ def _encode_confirm_initialize_digital_io(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_changed_bumpers(
+    item: ChangedBumpers, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1960,9 +1982,9 @@ def _encode_changed_bumpers(item: ChangedBumpers, sender: str | None, number_: i
 
 
 def _encode_check_io_changed(
-    item: CheckIoChanged, sender: str | None, number_: int | None
+    item: CheckIoChanged, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "linux":
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1976,9 +1998,9 @@ def _encode_check_io_changed(
 
 
 def _encode_check_io_changed_answer(
-    item: CheckIoChangedAnswer, sender: str | None, number_: int | None
+    item: CheckIoChangedAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
-    if sender is not None and sender != "flex":
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -1993,8 +2015,10 @@ def _encode_check_io_changed_answer(
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_changed_byte(
+    item: ChangedByte, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -2009,8 +2033,8 @@ def _encode_changed_byte(item: ChangedByte, sender: str | None, number_: int | N
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_ir_run(item: IrRun, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "linux":
+def _encode_ir_run(item: IrRun, module: object, sender: str | None, number_: int | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "linux"):
         raise _fast.Unclear
     if number_ is None:
         number_ = 0
@@ -2028,8 +2052,10 @@ def _encode_ir_run(item: IrRun, sender: str | None, number_: int | None) -> byte
     return b"\x1b\x02" + content + b"\x1b\x03"
 
 
-def _encode_ir_report(item: IrReport, sender: str | None, number_: int | None) -> bytes:
-    if sender is not None and sender != "flex":
+def _encode_ir_report(
+    item: IrReport, module: object, sender: str | None, number_: int | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "flex"):
         raise _fast.Unclear
     v1 = item.data
     if type(v1) is not bytes:
@@ -2077,6 +2103,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     IrRun: _encode_ir_run,
     IrReport: _encode_ir_report,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], LinuxMessage | FlexMessage],
@@ -2225,7 +2252,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender, number)
+            return message._encode(_ENCODERS, sender, number)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, number=number)

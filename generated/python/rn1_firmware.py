@@ -648,16 +648,15 @@ _PAIRS_1 = _TABLES.pairs(14, False)
 _UNPACK_8 = _struct.Struct("<5s5s5s5s").unpack
 _NUMBER_0 = _rt.Number(32, True, "big", True)
 _PACK_1 = _struct.Struct("<B").pack
-_BYTE_CODES_0 = _CODES.narrow(7, True)
+_BYTE_CODES_0 = _CODES.narrow(7)
 _PACK_2 = _struct.Struct("<BBB").pack
-_BYTE_CODES_1 = _CODES.codes(14, True)
+_BYTE_CODES_1 = _CODES.codes(14)
 _PACK_3 = _struct.Struct(">BHH").pack
 _PACK_4 = _struct.Struct("<Bb").pack
 _PACK_5 = _struct.Struct("<BbHHH").pack
 _PAIR_LIST_1 = _fast.PairLists(14, False, "little").encode
 _PACK_6 = _struct.Struct("<BbHH").pack
 _PACK_7 = _struct.Struct(">BbHH").pack
-_BYTE_CODES_2 = _CODES.codes(14, False)
 _PACK_8 = _struct.Struct(">BH").pack
 _PACK_9 = _struct.Struct("<B5s5s5s5s").pack
 
@@ -1022,30 +1021,38 @@ def _frame_brain(payload: bytes, start_: int | None) -> bytes:
     return content
 
 
-def _encode_move_manual(item: MoveManual, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_move_manual(item: MoveManual, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.speed
+    if v1 < -64 or v1 > 63:
+        raise _fast.Unclear
     v2 = item.arc
-    if not (type(v1) is type(v2) is int):
+    if v2 < -64 or v2 > 63:
         raise _fast.Unclear
     content = _PACK_2(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
 
-def _encode_move_relative_twostep(item: MoveRelativeTwostep, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_move_relative_twostep(
+    item: MoveRelativeTwostep, module: object, sender: str | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.angle
+    if v1 < -8192 or v1 > 8191:
+        raise _fast.Unclear
     v2 = item.forward
-    if not (type(v1) is type(v2) is int):
+    if v2 < -8192 or v2 > 8191:
         raise _fast.Unclear
     content = _PACK_3(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
-def _encode_decrease_phase_angle(item: DecreasePhaseAngle, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_decrease_phase_angle(
+    item: DecreasePhaseAngle, module: object, sender: str | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.ignored
     if v1 < 0:
@@ -1054,8 +1061,10 @@ def _encode_decrease_phase_angle(item: DecreasePhaseAngle, sender: str | None) -
     return content + b"\xff"
 
 
-def _encode_increase_phase_angle(item: IncreasePhaseAngle, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_increase_phase_angle(
+    item: IncreasePhaseAngle, module: object, sender: str | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.ignored
     if v1 < 0:
@@ -1064,8 +1073,8 @@ def _encode_increase_phase_angle(item: IncreasePhaseAngle, sender: str | None) -
     return content + b"\xff"
 
 
-def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
-    if sender is not None and sender != "host":
+def _encode_maintenance(item: Maintenance, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "host"):
         raise _fast.Unclear
     v1 = item.magic
     if type(v1) is not list:
@@ -1111,53 +1120,65 @@ def _encode_maintenance(item: Maintenance, sender: str | None) -> bytes:
     return content + b"\xff"
 
 
-def _encode_gyro(item: Gyro, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_gyro(item: Gyro, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
+    if v2 < -8192 or v2 > 8191:
+        raise _fast.Unclear
     v3 = item.int_y
+    if v3 < -8192 or v3 > 8191:
+        raise _fast.Unclear
     v4 = item.int_z
-    if not (type(v2) is type(v3) is type(v4) is int):
+    if v4 < -8192 or v4 > 8191:
         raise _fast.Unclear
     content = _PACK_5(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
-def _encode_xcel(item: Xcel, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_xcel(item: Xcel, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
+    if v2 < -8192 or v2 > 8191:
+        raise _fast.Unclear
     v3 = item.int_y
+    if v3 < -8192 or v3 > 8191:
+        raise _fast.Unclear
     v4 = item.int_z
-    if not (type(v2) is type(v3) is type(v4) is int):
+    if v4 < -8192 or v4 > 8191:
         raise _fast.Unclear
     content = _PACK_5(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
-def _encode_compass(item: Compass, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
         raise _fast.Unclear
     v2 = item.avg_x
+    if v2 < -8192 or v2 > 8191:
+        raise _fast.Unclear
     v3 = item.avg_y
+    if v3 < -8192 or v3 > 8191:
+        raise _fast.Unclear
     v4 = item.avg_z
-    if not (type(v2) is type(v3) is type(v4) is int):
+    if v4 < -8192 or v4 > 8191:
         raise _fast.Unclear
     content = _PACK_5(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
-def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_lidar(item: Lidar, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
@@ -1171,8 +1192,8 @@ def _encode_lidar(item: Lidar, sender: str | None) -> bytes:
     return content
 
 
-def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
@@ -1186,46 +1207,52 @@ def _encode_sonar(item: Sonar, sender: str | None) -> bytes:
     return content
 
 
-def _encode_facing(item: Facing, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_facing(item: Facing, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
         raise _fast.Unclear
     v2 = item.heading
+    if v2 < -8192 or v2 > 8191:
+        raise _fast.Unclear
     v3 = item.speed
-    if not (type(v2) is type(v3) is int):
+    if v3 < -8192 or v3 > 8191:
         raise _fast.Unclear
     content = _PACK_6(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
-def _encode_optflow_integral(item: OptflowIntegral, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_optflow_integral(item: OptflowIntegral, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.status
     if v1 < 0:
         raise _fast.Unclear
     v2 = item.int_x
+    if v2 < -8192 or v2 > 8191:
+        raise _fast.Unclear
     v3 = item.int_y
-    if not (type(v2) is type(v3) is int):
+    if v3 < -8192 or v3 > 8191:
         raise _fast.Unclear
     content = _PACK_7(161, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
-def _encode_motor_controller_message(item: MotorControllerMessage, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_motor_controller_message(
+    item: MotorControllerMessage, module: object, sender: str | None
+) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.last_msg
-    if type(v1) is not int:
+    if v1 < 0 or v1 > 16383:
         raise _fast.Unclear
-    content = _PACK_8(209, _BYTE_CODES_2[v1])
+    content = _PACK_8(209, _BYTE_CODES_1[v1])
     return content
 
 
-def _encode_debug_numbers(item: DebugNumbers, sender: str | None) -> bytes:
-    if sender is not None and sender != "brain":
+def _encode_debug_numbers(item: DebugNumbers, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "brain"):
         raise _fast.Unclear
     v1 = item.dbg1
     v2 = item.dbg2
@@ -1259,6 +1286,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     MotorControllerMessage: _encode_motor_controller_message,
     DebugNumbers: _encode_debug_numbers,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | BrainMessage],
@@ -1359,7 +1387,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender)
+            return message._encode(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             if not _CODES.are_filled:  # Nothing is: its tables were empty.
                 _CODES.fill()

@@ -517,8 +517,8 @@ def _frame_board(payload: bytes, type_: int | None) -> bytes:
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> bytes:
-    if sender is not None and sender != "daemon":
+def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "daemon"):
         raise _fast.Unclear
     v1 = item.motor_1
     v2 = item.motor_2
@@ -532,8 +532,8 @@ def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> by
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _encode_motors_two_servos(item: MotorsTwoServos, sender: str | None) -> bytes:
-    if sender is not None and sender != "daemon":
+def _encode_motors_two_servos(item: MotorsTwoServos, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "daemon"):
         raise _fast.Unclear
     v1 = item.motor_1
     v2 = item.motor_2
@@ -546,8 +546,8 @@ def _encode_motors_two_servos(item: MotorsTwoServos, sender: str | None) -> byte
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _encode_motor_test(item: MotorTest, sender: str | None) -> bytes:
-    if sender is not None and sender != "daemon":
+def _encode_motor_test(item: MotorTest, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "daemon"):
         raise _fast.Unclear
     v1 = item.motor_1
     v2 = item.motor_2
@@ -555,8 +555,8 @@ def _encode_motor_test(item: MotorTest, sender: str | None) -> bytes:
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
-def _encode_status(item: Status, sender: str | None) -> bytes:
-    if sender is not None and sender != "board":
+def _encode_status(item: Status, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "board"):
         raise _fast.Unclear
     v1 = item.voltage
     v2 = item.current
@@ -571,6 +571,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     MotorTest: _encode_motor_test,
     Status: _encode_status,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage],
@@ -643,7 +644,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender)
+            return message._encode(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

@@ -481,8 +481,8 @@ def _frame_board(payload: bytes, type_: int | None) -> bytes:
     return b"\x62" + _STUFFING_0.encode(content) + b"\x0d\x0a"
 
 
-def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> bytes:
-    if sender is not None and sender != "daemon":
+def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "daemon"):
         raise _fast.Unclear
     v1 = item.right_motor
     if not -3200 <= v1 <= 3200:
@@ -502,8 +502,8 @@ def _encode_motors_servos_leds(item: MotorsServosLeds, sender: str | None) -> by
     return b"\x62" + _STUFFING_0.encode(content) + b"\x0a"
 
 
-def _encode_status(item: Status, sender: str | None) -> bytes:
-    if sender is not None and sender != "board":
+def _encode_status(item: Status, module: object, sender: str | None) -> bytes:
+    if module is not _ENCODERS or (sender is not None and sender != "board"):
         raise _fast.Unclear
     v1 = item.reserved
     v2 = item.pcb_temperature
@@ -519,6 +519,7 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     MotorsServosLeds: _encode_motors_servos_leds,
     Status: _encode_status,
 }
+_fast.add_encoders(_ENCODERS)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage],
@@ -589,7 +590,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return _ENCODERS[type(message)](message, sender)
+            return message._encode(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

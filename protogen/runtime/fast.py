@@ -7,7 +7,7 @@ reference (construct, and the machine of `machine.py`) decides and says what is 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.dataclass import dataclass
@@ -15,12 +15,13 @@ from protogen.runtime.decoder import octets
 from protogen.runtime.enums import KEPT, Flags, OpenEnum
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.late import frame_formats
+from protogen.runtime.message import Message
 from protogen.runtime.number import ByteOrder, Number
 from protogen.runtime.pairs import (
     PairLists,
     Pairs,
     Unclear,
-    pair_tables,
+    pair_codes,
     pair_values,
 )
 from protogen.runtime.sender import Cutter, SenderSpec
@@ -40,6 +41,7 @@ __all__ = [
     "SevenBitFloat",
     "Tables",
     "Unclear",
+    "add_encoders",
     "checked",
     "closed",
     "frame_formats",
@@ -80,6 +82,12 @@ def checked(wire: bytes, cut: Cutter) -> bytes:
     if cut(wire, 0, 0, events) != len(wire) or len(events) != 1:
         raise Unclear
     return wire
+
+
+def add_encoders(encoders: Mapping[type[Message], Callable[..., bytes]]) -> None:
+    """Give each message of a module its encoder as a method: the shortest way from one to it."""
+    for message, encoder in encoders.items():
+        message._encode = encoder  # type: ignore[method-assign]
 
 
 class Runs:
@@ -141,19 +149,19 @@ class Tables:
         """
         return self._list(lambda: pair_values(bits, signed))
 
-    def narrow(self, bits: int, signed: bool) -> dict[int, int]:
-        """The byte of each integer of fewer than 8 bits."""
-        table: dict[int, int] = {}
-        least = -(1 << bits - 1) if signed else 0
-        values = range(least, least + (1 << bits))
-        self._fillings.append(lambda: table.update((v, v & (1 << bits) - 1) for v in values))
-        return table
+    def narrow(self, bits: int) -> list[Any]:
+        """The byte of each integer of fewer than 8 bits.
 
-    def codes(self, bits: int, signed: bool) -> dict[int, int]:
-        """The other way: the 16 bits that `struct` writes, by the integer."""
-        table: dict[int, int] = {}
-        self._fillings.append(lambda: table.update(pair_tables(bits, signed)[1]))
-        return table
+        Negative ones are at the end, where Python looks for them.
+        """
+        return self._list(lambda: range(1 << bits))
+
+    def codes(self, bits: int) -> list[Any]:
+        """The 16 bits that `struct` writes for each integer of two bytes of 7 bits.
+
+        Negative ones are at the end, where Python looks for them.
+        """
+        return self._list(lambda: pair_codes(bits))
 
 
 class Heads(dict[bytes, tuple[Any, ...]]):

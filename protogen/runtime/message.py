@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from protogen.runtime import late
 from protogen.runtime.dataclass import dataclass
 from protogen.runtime.errors import DecodeError, EncodeError
+from protogen.runtime.pairs import Unclear
 
 if TYPE_CHECKING:
     from protogen.runtime.constructs import Construct
@@ -89,6 +90,17 @@ class Message(Record):
     """SHA-256, in hex, of its identity, its layout and what its values mean."""
     SIZES: ClassVar[Sizes]
     """The sizes that its payload can have."""
+
+    def __init_subclass__(cls) -> None:
+        """No class encodes as its base does: only a module's own classes are its messages."""
+        cls._encode = Message._encode  # type: ignore[method-assign]
+
+    def _encode(self, module: object, sender: str | None, *parts: int | None) -> bytes:
+        """The frame, as the fast engine of this module makes it. Raises where it can't.
+
+        A module gives each of its messages its own.
+        """
+        raise Unclear
 
     def to_payload(self, strict: bool = True) -> bytes:
         """The payload's bytes.

@@ -42,10 +42,16 @@ def pair_values(bits: int, signed: bool) -> tuple[int | None, ...]:
 
 
 @lru_cache(16)
+def pair_codes(bits: int) -> tuple[int, ...]:
+    """The 16 bits of two bytes of 7 bits for each number of so many, as they are on the wire."""
+    return tuple(raw + (raw & 0x3F80) for raw in range(1 << bits))
+
+
+@lru_cache(16)
 def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]]:
     """The integer of each code that `Pairs` reads, and the code of each integer."""
     great = 1 << bits
-    codes = [raw + (raw & 0x3F80) for raw in range(great)]
+    codes = pair_codes(bits)
     values = [*range(great // 2), *range(-great // 2, 0)] if signed else range(great)
     return dict(zip(codes, values, strict=True)), dict(zip(values, codes, strict=True))
 

@@ -49,13 +49,19 @@ def _of_caller(frame: FastFrame, names: tuple[str, ...]) -> list[str]:
 def encoder(
     message: Message, frames: Sequence[FastFrame], of_caller: tuple[str, ...], constants: Constants
 ) -> tuple[str, ...]:
-    """The body of `_encode_NAME(item, sender, VALUES...)`, for the frames of its senders."""
+    """The body of `_encode_NAME(item, module, sender, VALUES...)`, for the frames of its senders.
+
+    `module` is the module's own table: other modules' messages have a method of the same name.
+    """
     lines = Lines(constants)
     if len(frames) == 1:
         name = text(frames[0].sender.name)
-        lines.refuse_if(f"sender is not None and sender != {name}")
+        is_other = f"(sender is not None and sender != {name})"
+        lines.refuse_if(f"module is not _ENCODERS or {is_other}")
         if message.sizes.fixed is not None and _goes_together(frames[0]):
             return _Framer(frames[0], of_caller, lines, message).whole(message)
+    if len(frames) > 1:
+        lines.refuse_if("module is not _ENCODERS")
     payload_writer(message, lines)
     if len(frames) == 1:
         return _Framer(frames[0], of_caller, lines, message).body()

@@ -141,7 +141,7 @@ def _encoder(
     if not all(frame.can_frame for frame in own):
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
-    parameters = f"item: {class_name(message.name)}, sender: str | None{given}"
+    parameters = f"item: {class_name(message.name)}, module: object, sender: str | None{given}"
     body = framing.encoder(message, own, of_caller, constants)
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 

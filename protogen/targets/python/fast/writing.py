@@ -102,6 +102,17 @@ def _is_narrow(type_: Integer) -> bool:
     return type_.size == 1 and not type_.signed and not is_native(type_) and type_.role != "bool"
 
 
+def _is_looked_up(type_: Integer) -> bool:
+    """Whether a list has the bytes of each value."""
+    is_byte = type_.size == 1 and not is_native(type_) and not _is_narrow(type_)
+    return type_.role != "bool" and (is_pair(type_) or is_byte)
+
+
+def _is_bounded(item: Field) -> bool:
+    """Whether being in the declared range is being in the type's."""
+    return item.ranged and None not in (item.least, item.greatest) and not item.special
+
+
 _SEVEN = 7
 _TYPES_IN_LINE = 6
 
@@ -228,16 +239,19 @@ class _Writer:
     def _integer(self, value: str, type_: Integer, item: Field | None) -> None:
         if type_.role == "bool":
             self.lines.refuse_if(f"type({value}) is not bool")
-        elif not is_native(type_) and not _is_narrow(type_):
-            self._looked_up(value, type_)
+        elif not is_native(type_) and not _is_narrow(type_) and not _is_looked_up(type_):
+            self._unseen(value, type_)
         if type_.enum is not None and type_.enum.closed:
             members = f"frozenset(map(int, {class_name(type_.enum.name)}))"
             self.lines.refuse_if(f"{value} not in {self.lines.constants.named('VALUES', members)}")
         self._in_range(value, item)
+        if _is_looked_up(type_) and (item is None or not _is_bounded(item)):
+            # Nothing but an integer is an index of a list, but -1 is that of the last element.
+            self.lines.refuse_if(f"{value} < {type_.least} or {value} > {type_.greatest}")
         self._put(type_, self._coded(value, type_))
 
-    def _looked_up(self, value: str, type_: Integer) -> None:
-        """See to it that a value is an integer. In tables 1.0 is found where 1 is."""
+    def _unseen(self, value: str, type_: Integer) -> None:
+        """See to it that a value is an integer where neither `struct` nor a list does."""
         named = type_.enum or type_.flags
         if named is None:
             self._bytes.integers.append(value)
@@ -258,8 +272,9 @@ class _Writer:
         """What `struct` is given for an integer."""
         if is_native(type_) or type_.role == "bool":
             return value
-        if is_pair(type_):
-            codes = f"_CODES.codes({type_.bits}, {type_.signed})"
+        if _is_looked_up(type_):
+            kind = "codes" if is_pair(type_) else "narrow"
+            codes = f"_CODES.{kind}({type_.bits})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         code = code_of(type_)
         assert code is not None
@@ -268,9 +283,6 @@ class _Writer:
         if _is_narrow(type_):
             self._in_narrow(value, type_)
             return value
-        if type_.size == 1:
-            codes = f"_CODES.narrow({type_.bits}, {type_.signed})"
-            return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
         return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
 
