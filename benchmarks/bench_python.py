@@ -296,7 +296,10 @@ CPU time of this process, medians of {rounds} rounds. In each round every conten
 every second round in the reverse order, so that whatever else the machine does befalls them alike;
 factors are medians of the rounds' factors. Before anything is timed, the values that each contender
 reads and the frames that it writes are compared with those of the reference; those of the code by
-hand in noise as well, by the tests. The garbage collector stays on.
+hand in noise as well, by the tests. The garbage collector stays on, but what there was before a
+measurement is kept out of its sight (`gc.freeze`), as if each contender had a process of its own:
+else a full collection goes through the modules of all contenders, takes some 100 ms, and whoever
+makes objects when it is due pays for the others.
 
 The messages have random values over all of their ranges; sonars are the 17 of an ATRV-Jr. A stream
 has about {kilobytes} kB of one message, and is given as a whole.
