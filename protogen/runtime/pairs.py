@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import struct
+import sys
+from array import array
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -56,10 +58,21 @@ def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]
     return dict(zip(codes, values, strict=True)), dict(zip(values, codes, strict=True))
 
 
-@lru_cache(256)
-def _lanes(pattern: int, count: int) -> int:
-    """A pattern of 16 bits, `count` times."""
-    return int.from_bytes(pattern.to_bytes(2, "little") * count, "little")
+@lru_cache(64)
+def _lanes(bits: int, count: int) -> tuple[int, int, int, int]:
+    """Bits of a great integer that has `count` numbers of so many, each in 16 bits.
+
+    The lower 7 of each number, the upper 7, those above a number's own, and that of its sign.
+    """
+    above = 0xFFFF >> bits << bits
+    patterns = (0x007F, 0x3F80, above, 1 << bits - 1)
+    low, high, above, sign = (
+        int.from_bytes(pattern.to_bytes(2, "little") * count, "little") for pattern in patterns
+    )
+    return low, high, above, sign
+
+
+_IS_SWAPPED = sys.byteorder == "big"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,33 +85,39 @@ class PairLists:
 
     def decode(self, data: bytes) -> list[int]:
         """The integers of an even number of bytes. Raises Unclear."""
+        if not data.isascii():
+            raise Unclear
         count = len(data) // 2
+        low, high, above, sign = _lanes(self.bits, count)
         great = self._in_order(data)
-        lanes = great & _lanes(0x007F, count) | great >> 1 & _lanes(0x3F80, count)
-        if great & _lanes(0x8080, count) or lanes & _lanes(0x3FFF >> self.bits << self.bits, count):
+        lanes = great & low | great >> 1 & high
+        if lanes & above:
             raise Unclear
         if self.signed:
             # The sign bit is copied into all bits above it.
-            sign = 1 << self.bits - 1
-            lanes += (lanes & _lanes(sign, count)) * ((0x10000 >> self.bits - 1) - 2)
+            lanes += (lanes & sign) * ((0x10000 >> self.bits - 1) - 2)
         plain = lanes.to_bytes(2 * count, "little")
-        return list(struct.unpack(f"<{count}{'h' if self.signed else 'H'}", plain))
+        # An array makes a list at once, `struct` a tuple first.
+        values = array("h" if self.signed else "H", plain)
+        if _IS_SWAPPED:
+            values.byteswap()
+        return values.tolist()
 
     def encode(self, values: Sequence[int]) -> bytes:
         """The bytes of integers. Raises Unclear, or struct.error."""
         count = len(values)
         plain = struct.pack(f"<{count}{'h' if self.signed else 'H'}", *values)
+        low, high, above, _ = _lanes(self.bits, count)
         lanes = int.from_bytes(plain, "little")
-        above = 0xFFFF >> self.bits << self.bits
         if self.signed:
             # All bits from the sign bit on are alike.
-            beside = (lanes ^ lanes << 1) & _lanes(above, count)
-            lanes &= _lanes(0xFFFF ^ above, count)
+            beside = (lanes ^ lanes << 1) & above
+            lanes &= ~above
         else:
-            beside = lanes & _lanes(above, count)
+            beside = lanes & above
         if beside:
             raise Unclear
-        great = lanes & _lanes(0x007F, count) | (lanes & _lanes(0x3F80, count)) << 1
+        great = lanes & low | (lanes & high) << 1
         return self._in_order(great.to_bytes(2 * count, "little")).to_bytes(2 * count, "little")
 
     def _in_order(self, data: bytes) -> int:
