@@ -7,6 +7,7 @@ it has to decide alike; and on what is in order it has to decide, or it would no
 from __future__ import annotations
 
 import struct
+import sys
 from array import array
 from dataclasses import fields, replace
 from decimal import Decimal
@@ -25,7 +26,7 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import fast, late, runs
+from protogen.runtime import fast, late, pairs, runs
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate, Cut, verdict_on
 from protogen.runtime.number import Number
@@ -703,6 +704,12 @@ def test_lists_of_pairs_are_read_as_their_numbers_are(
         return
     assert lists.decode(data) == due
     assert [one[code] for code in unpack(("<" if order == "little" else ">"), data)] == due
+
+
+def test_lists_of_pairs_on_a_machine_of_the_other_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here an array reads as that machine's would, so the numbers come out swapped."""
+    monkeypatch.setattr(pairs, "_IS_SWAPPED", sys.byteorder == "little")
+    assert PairLists(14, False, "little").decode(b"\x02\x00\x01\x02") == [0x0200, 0x0101]
 
 
 def unpack(order: str, data: bytes) -> tuple[int, ...]:
