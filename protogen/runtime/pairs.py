@@ -75,6 +75,13 @@ def _lanes(bits: int, count: int) -> tuple[int, int, int, int]:
 _IS_SWAPPED = sys.byteorder == "big"
 
 
+def _exchanged(data: bytes) -> bytes:
+    """The bytes of numbers of 16 bits in the other order."""
+    exchanged = bytearray(data)
+    exchanged[0::2], exchanged[1::2] = data[1::2], data[0::2]
+    return bytes(exchanged)
+
+
 @dataclass(frozen=True, slots=True)
 class PairLists:
     """Lists of such integers, all of them at once: each has 16 bits of one great integer."""
@@ -88,10 +95,10 @@ class PairLists:
         if not data.isascii():
             raise Unclear
         count = len(data) // 2
-        low, high, above, sign = _lanes(self.bits, count)
-        great = self._in_order(data)
-        lanes = great & low | great >> 1 & high
-        if lanes & above:
+        low, _, above, sign = _lanes(self.bits, count)
+        great = int.from_bytes(data if self.order == "little" else _exchanged(data), "little")
+        lanes = great + (great & low) >> 1  # Twice the lower 7 bits, and 256 times the upper.
+        if self.bits < 14 and lanes & above:
             raise Unclear
         if self.signed:
             # The sign bit is copied into all bits above it.
@@ -107,23 +114,16 @@ class PairLists:
         """The bytes of integers. Raises Unclear, or struct.error."""
         count = len(values)
         plain = struct.pack(f"<{count}{'h' if self.signed else 'H'}", *values)
-        low, high, above, _ = _lanes(self.bits, count)
+        _, high, above, _ = _lanes(self.bits, count)
         lanes = int.from_bytes(plain, "little")
         if self.signed:
             # All bits from the sign bit on are alike.
             beside = (lanes ^ lanes << 1) & above
-            lanes &= ~above
+            lanes -= lanes & above
         else:
             beside = lanes & above
         if beside:
             raise Unclear
-        great = lanes & low | (lanes & high) << 1
-        return self._in_order(great.to_bytes(2 * count, "little")).to_bytes(2 * count, "little")
-
-    def _in_order(self, data: bytes) -> int:
-        """The great integer whose lanes have the lower 7 bits in their lower byte; and back."""
-        if self.order == "little":
-            return int.from_bytes(data, "little")
-        swapped = bytearray(data)
-        swapped[0::2], swapped[1::2] = data[1::2], data[0::2]
-        return int.from_bytes(swapped, "little")
+        great = lanes + (lanes & high)  # The upper 7 bits once more.
+        data = great.to_bytes(2 * count, "little")
+        return data if self.order == "little" else _exchanged(data)
