@@ -299,7 +299,8 @@ reads and the frames that it writes are compared with those of the reference; th
 hand in noise as well, by the tests. The garbage collector stays on, but what there was before a
 measurement is kept out of its sight (`gc.freeze`), as if each contender had a process of its own:
 else a full collection goes through the modules of all contenders, takes some 100 ms, and whoever
-makes objects when it is due pays for the others.
+makes objects when it is due pays for the others. Each turn begins with a run that is not counted:
+the processor's caches hold what the contender before has left.
 
 The messages have random values over all of their ranges; sonars are the 17 of an ATRV-Jr. A stream
 has about {kilobytes} kB of one message, and is given as a whole.

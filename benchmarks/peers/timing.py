@@ -36,6 +36,7 @@ def _by_turns(runs: Mapping[KeyT, Callable[[], object]], rounds: int) -> dict[Ke
     for number in range(rounds):
         order = list(runs) if number % 2 == 0 else [*reversed(list(runs))]
         for key in order:
+            runs[key]()  # In the processor's caches is what the one before had.
             gc.collect()
             found[key].append(_timed(runs[key], times[key]) / times[key])
     return found
