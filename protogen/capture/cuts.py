@@ -5,13 +5,16 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import numpy
 from protogen.capture.tables import Tables, payload_column
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows
+
+_FEW = 1 << 6
+"""Rows that are looked at at once."""
 
 Frame = tuple[int, int]
 """Offset and size of a valid frame."""
@@ -31,13 +34,14 @@ def frames_of(tables: Tables, low: int, high: int | None = None) -> dict[Frame, 
 
 def until(tables: Tables, number: int, end: int) -> Tables:
     """The events up to that one, which ends in front of the byte `end`."""
-    found = _cut(tables, lambda rows: rows[: _behind(rows, number)])
+    cut = _cut(tables, lambda rows: rows[: _behind(rows, number)])
     kept = 0
-    if len(found.unknown):
+    if len(unknown := cut["unknown"]):
         column = payload_column(tables.schema)
-        kept = int(found.unknown[-1][column]) + int(found.unknown[-1]["payload_size"])
+        kept = int(unknown[-1][column]) + int(unknown[-1]["payload_size"])
     return replace(
-        found,
+        tables,
+        **cut,
         payloads=tables.payloads[:kept],
         size=end - tables.offset,
         events=number + 1 - tables.sequence,
@@ -46,14 +50,15 @@ def until(tables: Tables, number: int, end: int) -> Tables:
 
 def behind(tables: Tables, number: int, end: int) -> Tables:
     """The events behind that one, which ends in front of the byte `end`."""
-    found = _cut(tables, lambda rows: rows[_behind(rows, number) :])
+    cut = _cut(tables, lambda rows: rows[_behind(rows, number) :])
     start = len(tables.payloads)
-    if len(found.unknown):
+    if len(unknown := cut["unknown"]):
         column = payload_column(tables.schema)
-        start = int(found.unknown[0][column])
-        found.unknown[column] -= start
+        start = int(unknown[0][column])
+        unknown[column] -= start
     return replace(
-        found,
+        tables,
+        **cut,
         payloads=tables.payloads[start:],
         offset=end,
         size=tables.offset + tables.size - end,
@@ -82,15 +87,26 @@ def _behind(rows: Rows, number: int) -> int:
 
 
 def _place(rows: Rows, column: str, least: int) -> int:
-    """The first row whose value is so great. Looks at a few, where NumPy would copy the column."""
+    """The first row whose value is so great.
+
+    It is mostly one of the first or last. Looks at a few, where NumPy would copy the column.
+    """
     values = rows[column]
+    few: list[int] = values[:_FEW].tolist()
+    if len(rows) <= _FEW or few[-1] >= least:
+        return bisect_left(few, least)
+    few = values[-_FEW:].tolist()
+    if few[0] < least:
+        return len(rows) - len(few) + bisect_left(few, least)
     return bisect_left(range(len(rows)), least, key=lambda place: int(values[place]))
 
 
-def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> Tables:
-    return replace(
-        tables,
-        messages={name: cut(rows) if len(rows) else rows for name, rows in tables.messages.items()},
-        invalid=cut(tables.invalid),
-        unknown=cut(tables.unknown),
-    )
+def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> dict[str, Any]:
+    """What becomes of the tables of events, by their names."""
+    return {
+        "messages": {
+            name: cut(rows) if len(rows) else rows for name, rows in tables.messages.items()
+        },
+        "invalid": cut(tables.invalid),
+        "unknown": cut(tables.unknown),
+    }

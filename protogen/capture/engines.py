@@ -42,12 +42,12 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
     if name != "python":
-        from protogen.capture.native import Memory, NativeEngine, library_of
+        from protogen.capture.native import KEPT, Memory, NativeEngine, library_of
         from protogen.native.errors import NativeError
 
         try:
             library = library_of(protocol, sender)
-            return partial(NativeEngine, library, memory=Memory()), True
+            return partial(NativeEngine, library, memory=Memory(KEPT)), True
         except NativeError as error:
             if name == "native":
                 raise CaptureError(f"no native engine: {error}") from None

@@ -6,8 +6,9 @@ import ctypes
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import TYPE_CHECKING, Any
+from weakref import finalize
 
 from protogen.capture.arrays import dtype_of, numpy
 from protogen.capture.schema import CaptureSchema
@@ -50,26 +51,33 @@ class Dtypes:
         self.empty: list[Rows] = [numpy().zeros(0, dtype) for dtype in self.each]
 
 
-class Memory:
-    """Memory for rows. What nobody looks at any more is used again.
+class Blocks:
+    """Blocks of memory. What nobody looks at any more is used again.
 
     Fresh pages cost more than decoding into them does.
     """
 
     def __init__(self) -> None:
-        self.rates: list[float] = []
-        """Rows of each table for a byte of the capture, as far as is known."""
         self._blocks: list[Rows] = []
-        self._lock = Lock()
+        self._lock = RLock()  # Python may come upon a reading that is over at any time, and trim.
 
     def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
         """Rows of any content."""
         size = count * dtype.itemsize
-        if size < _LITTLE:
-            return numpy().empty(count, dtype)  # type: ignore[no-any-return]
         with self._lock:
             found: Rows = self._block(size)[:size].view(dtype)
         return found
+
+    def trim(self, most: int) -> None:
+        """Give memory back, but for so many bytes. What somebody looks at is not counted."""
+        with self._lock:
+            counts = _references(self._blocks)
+            kept = []
+            for block, count in zip(self._blocks, counts, strict=True):
+                most -= block.nbytes if count == _UNUSED else 0
+                if count > _UNUSED or most >= 0:
+                    kept.append(block)
+            self._blocks = kept
 
     def _block(self, size: int) -> Rows:
         counts = _references(self._blocks)
@@ -81,6 +89,28 @@ class Memory:
         fresh: Rows = numpy().empty(size + size // 4, "u1")
         self._blocks.append(fresh)
         return fresh
+
+
+KEPT = Blocks()
+"""What readings of this process use one after another."""
+MOST_KEPT = 64 << 20
+"""Bytes that are kept for the next reading."""
+
+
+class Memory:
+    """Memory for the rows of a capture."""
+
+    def __init__(self, blocks: Blocks | None = None) -> None:
+        self.rates: list[float] = []
+        """Rows of each table for a byte of the capture, as far as is known."""
+        self._blocks = blocks or Blocks()
+        finalize(self, self._blocks.trim, MOST_KEPT)
+
+    def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
+        """Rows of any content."""
+        if count * dtype.itemsize < _LITTLE:
+            return numpy().empty(count, dtype)  # type: ignore[no-any-return]
+        return self._blocks.rows(dtype, count)
 
 
 def _references(blocks: list[Any]) -> list[int]:

@@ -11,16 +11,18 @@ such sign: where they begin and end depends on what was before.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from itertools import pairwise
+from threading import Condition, Lock
 from typing import Protocol
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
-ROWS = 8 << 20
+ROWS = 14 << 20
 """Bytes of rows that a part should have: many for what a part costs by itself, and so few that
 those of all parts at hand stay in the processor's cache."""
 PARTS = range(1 << 20, (8 << 20) + 1)
@@ -28,10 +30,11 @@ PARTS = range(1 << 20, (8 << 20) + 1)
 ROOM = 64 << 20
 """Bytes of rows that a part may have before its turn has come."""
 _WINDOW = 1 << 6
-"""Bytes at least that a decoder runs on at a time to find a frame of the next part."""
+"""Bytes at least in which a frame is looked for that the next part has, too."""
 _EVENTS = 4
 """As many events should be in them."""
-
+_REACH = 1 << 11
+"""Bytes at least that a part is decoded to beyond its end: a frame of the next one is in them."""
 _SAMPLE = 1 << 16
 """Bytes that tell how many rows there will be."""
 
@@ -54,11 +57,22 @@ class Engine(Protocol):
 
 @dataclass(slots=True)
 class _Run:
-    """A decoder, how far it has come, and what it found that is not delivered yet."""
+    """A part of the capture: its decoder, and what that found."""
 
     engine: Engine
+    end: int
     position: int
+    """How far the decoder has come."""
     found: deque[Tables] = field(default_factory=deque)
+    """What is not delivered yet."""
+    is_decoded: bool = False
+    """As far as that is possible ahead."""
+    is_placed: bool = False
+    """Whether all that was found counts, under the right numbers."""
+    is_whole: bool = False
+    """Whether the next part goes on where what was found ends."""
+    is_stuck: bool = False
+    """Whether it has to be decoded on to find that place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +93,11 @@ class _Meeting:
 
 
 class Parts:
-    """Reads a capture in parts, some of them ahead."""
+    """Reads a capture in parts, some of them ahead.
+
+    The threads that decode also fit the parts together, each whenever it has decoded one: whoever
+    takes the tables waits for them, and does little else.
+    """
 
     def __init__(
         self,
@@ -88,37 +106,41 @@ class Parts:
         part: int | None = None,
         room: int = ROOM,
     ) -> None:
-        """`engines`: one for each part that is decoded at a time, and one more at least.
+        """`engines`: one for each part that is at hand, which are two at least.
 
         `part`: bytes of a part; None: what suits the rows. A part whose rows take more than `room`
         bytes is decoded on only when its turn has come.
         """
         self._data = data
-        self._free = list(engines)
         self._given = part
         self._part = part or PARTS[0]
         self._room = room
         self._known = _Known(0, 0)
         self._rate = (0, 1)  # Events, and the bytes that they cover.
+        lock = Lock()  # For what follows, and for what runs say of themselves.
+        self._ready = Condition(lock)  # What is awaited has come.
+        self._spare = Condition(lock)  # There is a decoder again, or nothing to do.
+        self._free = list(engines)
+        self._starts: Iterator[int] = iter(())
+        self._runs: deque[_Run] = deque()  # Those that were begun, until all is delivered.
+        self._awaited: Callable[[], bool] = lambda: False
+        self._is_joining = False
+        self._is_over = False
+        self._error: BaseException | None = None
 
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
         self._sample()
-        starts = iter(range(0, max(1, len(self._data)), self._part))
-        ahead: deque[Future[_Run]] = deque()
+        self._starts = iter(range(0, max(1, len(self._data)), self._part))
         with ThreadPoolExecutor(workers, "protogen-capture") as pool:
             try:
-                self._decode_ahead(pool, starts, ahead)
-                run = ahead.popleft().result()
-                yield from self._deliver(run)
-                while ahead:
-                    run = yield from self._seam(run, ahead.popleft().result())
-                    self._decode_ahead(pool, starts, ahead)
-                    yield from self._deliver(run)
-                yield from run.engine.flush()
+                for _ in range(workers):
+                    pool.submit(self._work)
+                yield from self._in_order()
             finally:
-                for future in ahead:
-                    future.cancel()
+                with self._spare:
+                    self._is_over = True
+                    self._spare.notify_all()
 
     def _sample(self) -> None:
         """Let a decoder see how many rows there will be, before memory is got for all."""
@@ -131,106 +153,222 @@ class Parts:
                 wanted = ROWS * taken // max(1, tables.nbytes)
                 self._part = min(max(wanted, PARTS[0]), PARTS[-1])
 
-    def _decode_ahead(
-        self, pool: ThreadPoolExecutor, starts: Iterator[int], ahead: deque[Future[_Run]]
-    ) -> None:
-        while self._free and (start := next(starts, None)) is not None:
-            engine = self._free.pop()
-            engine.start(start, self._foreseen(start))
-            ahead.append(pool.submit(self._decode, engine, start))
+    # --- whoever takes the tables ----------------------------------------------------------------
+
+    def _in_order(self) -> Iterator[Tables]:
+        is_last = False
+        while not is_last:
+            self._await(self._is_due)
+            run = self._runs[0]
+            while run.found:
+                yield run.found.popleft()
+            forget(self._data, max(0, run.position - self._part), run.position)
+            if run.is_whole:
+                self._leave(0)
+                continue
+            yield from self._go_on(run)
+            is_last = run.end == len(self._data)
+            if is_last:
+                yield from run.engine.flush()
+            self._leave(0)
+            self._join()
+
+    def _is_due(self) -> bool:
+        """Whether the first part can be delivered: all that was found, at least."""
+        run = self._runs[0] if self._runs else None
+        return (
+            run is not None
+            and run.is_placed
+            and run.is_decoded
+            and (run.is_whole or run.is_stuck or run.end == len(self._data))
+        )
+
+    def _is_next_decoded(self) -> bool:
+        return len(self._runs) > 1 and self._runs[1].is_decoded
+
+    def _await(self, awaited: Callable[[], bool]) -> None:
+        """Wait until it is so. Raises what went wrong in a thread."""
+        with self._ready:
+            self._awaited = awaited
+            while self._error is None and not awaited():
+                self._ready.wait()
+            if self._error is not None:
+                raise self._error
+
+    def _leave(self, place: int) -> None:
+        """Let go of a part."""
+        with self._spare:
+            self._free.append(self._runs[place].engine)
+            del self._runs[place]
+            self._spare.notify()
+
+    def _go_on(self, run: _Run) -> Iterator[Tables]:
+        """The rest of a part, and what its decoder finds until it agrees with a part behind it."""
+        while run.position < run.end:
+            yield self._step(run, run.end)
+        while run.end < len(self._data) and not run.is_whole:
+            self._await(self._is_next_decoded)
+            yield from self._seam(run, self._runs[1])
+
+    def _seam(self, run: _Run, other: _Run) -> Iterator[Tables]:
+        """Run on to where both agree, or through the part, which is dropped then."""
+        window = self._window()
+        while run.position < other.end:
+            stop = min(other.end, run.position + window)
+            while run.position < stop:
+                tables = self._step(run, stop)
+                met = _meeting([tables], other.found, run.end)
+                if met is not None:
+                    self._take_over(other, met)
+                    run.is_whole = other.is_placed = True
+                    yield until(tables, met.number, met.end)
+                    return
+                yield tables
+            window *= 2
+        run.end = other.end
+        self._leave(1)
+
+    # --- the threads -----------------------------------------------------------------------------
+
+    def _work(self) -> None:
+        """Decode one part after another, and fit together what can be."""
+        try:
+            while (run := self._begin()) is not None:
+                self._decode(run)
+                with self._ready:
+                    run.is_decoded = True
+                    self._tell()
+                self._join()
+        except BaseException as error:
+            with self._ready:
+                self._error = error
+                self._ready.notify_all()
+
+    def _tell(self) -> None:
+        """Wake who waits, if it is for this."""
+        if self._awaited():
+            self._ready.notify_all()
+
+    def _begin(self) -> _Run | None:
+        """The next part, once there is a decoder for it; None if none is left, or wanted."""
+        with self._spare:
+            while not (self._free or self._is_over):
+                self._spare.wait()
+            start = None if self._is_over else next(self._starts, None)
+            if start is None:
+                self._spare.notify()  # So that the others end, too.
+                return None
+            end = min(len(self._data), start + self._part)
+            run = _Run(self._free.pop(), end, start, is_placed=start == 0)
+            run.engine.start(start, self._foreseen(start))
+            self._runs.append(run)
+            return run
 
     def _foreseen(self, start: int) -> int:
         """The number of the first event from a byte on, if all goes on as before.
 
-        It is right where frames have one size. Then rows need not be numbered anew, which may take
-        a third as long as to fill them; else they are.
+        It is right where frames have one size. Then rows need not be numbered anew; else they are.
         """
         events, size = self._rate
         return self._known.number + (start - self._known.offset) * events // size
 
-    def _end(self, position: int) -> int:
-        """Of the part that begins there, or that the byte is in."""
-        return min(len(self._data), (position // self._part + 1) * self._part)
-
-    def _decode(self, engine: Engine, start: int) -> _Run:
-        """Decode a part as if a stream began there."""
-        run = _Run(engine, start)
-        end, size = self._end(start), 0
-        while run.position < end and size <= self._room:
-            tables = self._step(run, end)
+    def _decode(self, run: _Run) -> None:
+        """Decode a part as if a stream began there, and on to where the next one should agree."""
+        reach = min(max(_REACH, self._window()), self._part // 2)
+        beyond, size = min(len(self._data), run.end + reach), 0
+        while run.position < beyond and size <= self._room:
+            tables = self._step(run, beyond)
             run.found.append(tables)
             size += tables.nbytes
-        return run
 
     def _step(self, run: _Run, end: int) -> Tables:
         taken, tables = run.engine.step(self._data[run.position : end])
         run.position += taken
         return tables
 
-    def _deliver(self, run: _Run) -> Iterator[Tables]:
-        """What was found, and the rest of a part that was not decoded to its end."""
-        while run.found:
-            yield run.found.popleft()
-        forget(self._data, max(0, run.position - self._part), run.position)
-        end = -(-run.position // self._part) * self._part
-        while run.position < min(end, len(self._data)):
-            yield self._step(run, end)
+    def _join(self) -> None:
+        """Fit together what can be; unless another thread does, which then sees all there is."""
+        with self._ready:
+            if self._is_joining:
+                return
+            self._is_joining = True
+        while (pair := self._pair()) is not None:
+            run, other = pair
+            met = self._met(run, other)
+            if met is not None:
+                run.found = _until(run.found, met)
+                self._take_over(other, met)
+            with self._ready:
+                run.is_stuck = met is None
+                run.is_whole = other.is_placed = met is not None
+                self._tell()
 
-    def _seam(self, run: _Run, other: _Run) -> Generator[Tables, None, _Run]:
-        """Run on to where both agree, or through the part; then that which goes on is left."""
-        start, window = run.position, self._window()
-        end = self._end(start)
-        while run.position < end:
-            stop = min(end, run.position + window)
-            while run.position < stop:
-                tables = self._step(run, stop)
-                met = _meeting(tables, other.found, start)
-                if met is not None:
-                    yield until(tables, met.number, met.end)
-                    _take_over(other, met)
-                    self._learn(_Known(met.end, met.number + 1))
-                    self._free.append(run.engine)
-                    return other
-                yield tables
-            window *= 2
-        self._free.append(other.engine)
-        return run
+    def _pair(self) -> tuple[_Run, _Run] | None:
+        """Two parts to fit together; None if there are none now, and nobody does so any more."""
+        with self._ready:
+            for run, other in pairwise(self._runs):
+                if not run.is_whole:
+                    if run.is_placed and run.is_decoded and other.is_decoded and not run.is_stuck:
+                        return run, other
+                    break
+            self._is_joining = False
+            return None
+
+    def _met(self, run: _Run, other: _Run) -> _Meeting | None:
+        """Where two parts agree, if the first was decoded so far."""
+        tail = [tables for tables in run.found if tables.offset + tables.size > run.end]
+        stop = run.end + self._window()
+        while run.position > run.end:
+            met = _meeting(tail, other.found, run.end, stop)
+            if met is not None or stop >= run.position:
+                return met
+            stop += 3 * (stop - run.end)
+        return None
 
     def _window(self) -> int:
-        """Bytes that a decoder runs on at first."""
+        """Bytes in which some frames should be."""
         events, size = self._rate
         return min(max(_WINDOW, _EVENTS * size // max(1, events)), _SAMPLE)
 
-    def _learn(self, known: _Known) -> None:
-        """Foresee numbers from here on, by the rate since the last frame that was known."""
-        before, self._known = self._known, known
-        self._rate = (known.number - before.number, known.offset - before.offset)
+    def _take_over(self, run: _Run, met: _Meeting) -> None:
+        """Forget all up to the frame, and number what is behind it on."""
+        kept: deque[Tables] = deque()
+        more = met.number - met.other
+        for tables in run.found:
+            if tables.sequence > met.other:
+                kept.append(renumbered(tables, more))
+            elif tables.sequence + tables.events > met.other + 1:
+                kept.append(renumbered(behind(tables, met.other, met.end), more))
+        run.found = kept
+        run.engine.renumber(more)
+        # Foresee numbers from here on, by the rate since the last frame that was known.
+        before, self._known = self._known, _Known(met.end, met.number + 1)
+        self._rate = (met.number + 1 - before.number, met.end - before.offset)
 
 
-def _meeting(tables: Tables, others: Sequence[Tables], start: int) -> _Meeting | None:
-    """The first frame from the byte `start` on that both have."""
-    mine = frames_of(tables, start)
-    last = max((offset for offset, _ in mine), default=-1)
+def _meeting(
+    mine: Iterable[Tables], others: Iterable[Tables], start: int, stop: int | None = None
+) -> _Meeting | None:
+    """The first frame from the byte `start` on, and before `stop` if given, that both have."""
+    numbers: dict[Frame, int] = {}
+    for tables in mine:
+        numbers |= frames_of(tables, start, stop)
+    last = max((offset for offset, _ in numbers), default=-1)
     theirs: dict[Frame, int] = {}
-    for item in others:
-        if item.offset > last:
+    for tables in others:
+        if tables.offset > last:
             break
-        theirs |= frames_of(item, start, last + 1)
-    both = [frame for frame in mine if frame in theirs]
-    if not both:
-        return None
-    frame = min(both)
-    return _Meeting(mine[frame], theirs[frame], sum(frame))
+        theirs |= frames_of(tables, start, last + 1)
+    frame = min(numbers.keys() & theirs.keys(), default=None)
+    return None if frame is None else _Meeting(numbers[frame], theirs[frame], sum(frame))
 
 
-def _take_over(run: _Run, met: _Meeting) -> None:
-    """Forget all up to the frame, and number what is behind it on."""
+def _until(found: Iterable[Tables], met: _Meeting) -> deque[Tables]:
+    """What was found up to the frame."""
     kept: deque[Tables] = deque()
-    more = met.number - met.other
-    for tables in run.found:
-        if tables.sequence > met.other:
-            kept.append(renumbered(tables, more))
-        elif tables.sequence + tables.events > met.other + 1:
-            kept.append(renumbered(behind(tables, met.other, met.end), more))
-    run.found = kept
-    run.engine.renumber(more)
+    for tables in found:
+        if tables.offset + tables.size <= met.end:
+            kept.append(tables)
+        elif tables.offset < met.end:
+            kept.append(until(tables, met.number, met.end))
+    return kept
