@@ -24,8 +24,9 @@ from tooling import require_tool
 
 from protogen.capture import batches, columns, gather, native
 from protogen.capture.gather import gathered
-from protogen.capture.native import Memory, NativeEngine, library_of
+from protogen.capture.native import Blocks, Memory, NativeEngine, library_of
 from protogen.capture.parallel import ROOM, Parts
+from protogen.native.library import WORDS, Library
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -164,7 +165,7 @@ def test_nothing_stays_lent_where_memory_ends() -> None:
         engine.step(data)
     assert memory.left == -1
     words = engine._decoder._tables.tolist()
-    assert not any(words[3::7])  # The addresses of what is lent.
+    assert not any(words[3::WORDS])  # The addresses of what is lent.
 
 
 def test_rows_that_could_not_be_copied_are_no_rows(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -196,6 +197,13 @@ class Watched(NativeEngine):
     def renumber(self, more: int) -> None:
         self._seen.append(more)
         super().renumber(more)
+
+    def join(self, front: NativeEngine) -> bool:
+        before = self.place[1]
+        found = super().join(front)
+        if found:
+            self._seen.append(self.place[1] - before)
+        return found
 
 
 def missed(data: bytes, part: int | None) -> list[int]:
@@ -239,3 +247,94 @@ def test_rows_that_were_not_foreseen_get_memory_of_their_own() -> None:
     pieces += engine.flush()
     expected = columns(early + late + early, protocol_of(RN1), "brain", engine="python")
     assert_same_tables(gathered(pieces, len(early), 1), expected)
+
+
+def joined(library: Library, data: memoryview, middle: int, engine: NativeEngine) -> bool:
+    """Whether the second of two parts joined the first; then their tables are those of one."""
+    whole, front = NativeEngine(library), NativeEngine(library)
+    expected = gathered([*whole.feed(data), *whole.flush()], None, 1)
+    front.start(0)
+    front.run(data, middle, middle)
+    engine.start(middle, 7)  # Its number is not foreseen.
+    engine.tell(front)
+    taken = middle + engine.run(data[middle:], len(data) - middle, len(data))
+    if engine.is_joined:
+        rest = [front.take(), engine.take(), *engine.feed(data[taken:]), *engine.flush()]
+        assert_same_tables(gathered(rest, None, 1), expected)
+    return engine.is_joined
+
+
+@EVERY_SENDER
+def test_a_part_joins_the_one_in_front_while_it_is_decoded(path: Path, sender: str) -> None:
+    """It is told where that one stopped, and numbers on whatever it had found until then."""
+    library = library_of(protocol_of(path), protocol_of(path).sender(sender))
+    material = material_of(path, sender, greatest=3000)
+    found = []
+    for seed in SEEDS[:4]:
+        data = memoryview(stream_of(material, Random(f"{path.stem} {sender} {seed}"), 800).data)
+        found.append(joined(library, data, len(data) // 2, NativeEngine(library)))
+    assert any(found)
+
+
+def test_a_part_that_joined_may_become_full() -> None:
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    data = memoryview(b"\x00" + frame * (600_000 // len(frame)))
+    engine = NativeEngine(library, 1 << 20)
+    assert joined(library, data, 100_000, engine)
+    assert list(engine.feed(data[:400_000]))  # Now rows go into lent memory.
+    engine._budget = 1 << 20
+    assert joined(library, data, 100_001, engine)
+
+
+def test_a_part_does_not_join_where_the_one_in_front_found_no_frame() -> None:
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    front, engine = NativeEngine(library), NativeEngine(library)
+    front.start(0)
+    front.run(memoryview(frame), len(frame), len(frame))
+    engine.start(len(frame))
+    engine.tell(front)
+    engine.run(memoryview(frame), len(frame), 2 * len(frame))
+    assert not engine.is_joined
+    assert not engine.join(front)
+
+
+def test_blocks_are_given_back_but_for_some() -> None:
+    blocks, dtype = Blocks(), material_dtype()
+    used, *others = [blocks.rows(dtype, 1 << 18) for _ in range(4)]
+    places = {rows.ctypes.data for rows in others}
+    del others
+    blocks.trim(3 << 20)
+    again = [blocks.rows(dtype, 1 << 18) for _ in range(3)]
+    assert len(places & {rows.ctypes.data for rows in again[:2]}) == 2
+    assert used.ctypes.data not in {rows.ctypes.data for rows in again}
+
+
+def test_what_goes_wrong_in_a_thread_is_raised() -> None:
+    class Broken(NativeEngine):
+        def run(self, data: memoryview, part: int, end: int) -> int:
+            if end > 5000:
+                raise MemoryError
+            return super().run(data, part, end)
+
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    data = min(material_of(RN1, "brain").frames, key=len) * 3000
+    parts = Parts(memoryview(data), [Broken(library) for _ in range(4)], 1000)
+    with pytest.raises(MemoryError):
+        list(parts.tables(2))
+
+
+def test_nothing_stays_lent_where_a_part_can_not_be_decoded() -> None:
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    data = min(material_of(RN1, "brain").frames, key=len) * 5000
+    engine = NativeEngine(library)
+    assert list(engine.feed(data))
+
+    def fail(*_: int) -> int:
+        raise MemoryError
+
+    engine._decoder.feed_on = fail  # type: ignore[method-assign]
+    with pytest.raises(MemoryError):
+        engine.run(memoryview(data), len(data), len(data))
+    assert not any(engine._decoder._tables.tolist()[3::WORDS])

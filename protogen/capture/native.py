@@ -86,14 +86,14 @@ class Blocks:
                 return block
         each = zip(self._blocks, counts, strict=True)
         self._blocks = [block for block, count in each if count > _UNUSED]
-        fresh: Rows = numpy().empty(size + size // 4, "u1")
+        fresh: Rows = numpy().empty(size + size // 8, "u1")
         self._blocks.append(fresh)
         return fresh
 
 
 KEPT = Blocks()
 """What readings of this process use one after another."""
-MOST_KEPT = 64 << 20
+MOST_KEPT = 96 << 20
 """Bytes that are kept for the next reading."""
 
 
@@ -144,6 +144,7 @@ class NativeEngine:
         self._dtypes = Dtypes(library.schema)
         self._budget = budget
         self._memory = memory or Memory()
+        self._held: dict[int, Rows] = {}
         self._offset = 0
         self._sequence = 0
 
@@ -176,6 +177,50 @@ class NativeEngine:
             self._decoder.clear()  # Nobody keeps what was lent any more.
             raise
 
+    def run(self, data: memoryview, part: int, end: int) -> int:
+        """Take the bytes of a part, and those behind it until a frame is complete: how many.
+
+        `part` bytes lead to the offset `end`. What comes of them is held until `take`.
+        """
+        try:
+            self._held = self._lend(part)
+            return self._decoder.feed_on(address_of(data), part, len(data), end)
+        except BaseException:
+            self._decoder.clear()  # Nobody keeps what was lent any more.
+            raise
+
+    @property
+    def is_full(self) -> bool:
+        """Whether a table is, so that `run` took fewer bytes than it could."""
+        return self._decoder.is_full
+
+    def join(self, front: NativeEngine) -> bool:
+        """Let what is held count from where the part in front ran on to, and number it on.
+
+        False: there is no frame that both have, as far as is known.
+        """
+        return self._decoder.join(front._decoder)
+
+    def tell(self, front: NativeEngine) -> None:
+        """Say where the part in front ran on to: `run`, which may be at work, can join it then."""
+        self._decoder.tell(front._decoder)
+
+    @property
+    def is_joined(self) -> bool:
+        """Whether that was done."""
+        return self._decoder.joined is not None
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """The offset of the first byte that no event covers yet, and the next event's number."""
+        return self._decoder.offset, self._decoder.sequence
+
+    def take(self) -> Tables:
+        """What was held."""
+        lent, self._held = self._held, {}
+        self._offset, self._sequence = self._decoder.joined or (self._offset, self._sequence)
+        return self._tables(lent, self._decoder.offset - self._offset)
+
     def flush(self) -> Iterator[Tables]:
         """Take the end of the stream."""
         self._decoder.flush()
@@ -196,7 +241,7 @@ class NativeEngine:
         decoder = self._decoder
         every = list(self._dtypes.empty)
         for number, in_lent, in_own, own in decoder.filled():
-            rows = lent[number][:in_lent] if in_lent else every[number]
+            rows = lent[number][in_lent] if number in lent else every[number]
             if in_own:
                 rows = appended(rows, own, in_own)
             elif len(rows) * 4 < len(lent[number]):

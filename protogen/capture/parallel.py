@@ -6,6 +6,10 @@ and what follows it by the bytes behind it. So the decoder of the part in front 
 end until it completes a frame that the part's own decoder has, too; from there on the part's own
 events count. If there is no such frame, it runs on through the whole part. Invalid bytes are no
 such sign: where they begin and end depends on what was before.
+
+Nearly always the frame is the first one behind the part's end. So a decoder runs on to the end of
+that one at once, and says where it stopped to the part's own, which may be at work in another
+thread: the sooner it knows, the fewer rows have numbers to be put right.
 """
 
 from __future__ import annotations
@@ -16,15 +20,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
 from threading import Condition, Lock
-from typing import Protocol
+from typing import Any, Protocol
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
-ROWS = 14 << 20
-"""Bytes of rows that a part should have: many for what a part costs by itself, and so few that
-those of all parts at hand stay in the processor's cache."""
+ROWS = 12 << 20
+"""Bytes of rows that a part should have: many for what a part costs by itself, and few for what all
+parts at hand take."""
 PARTS = range(1 << 20, (8 << 20) + 1)
 """Bytes that a part may have."""
 ROOM = 64 << 20
@@ -33,8 +37,8 @@ _WINDOW = 1 << 6
 """Bytes at least in which a frame is looked for that the next part has, too."""
 _EVENTS = 4
 """As many events should be in them."""
-_REACH = 1 << 11
-"""Bytes at least that a part is decoded to beyond its end: a frame of the next one is in them."""
+_REACH = 1 << 12
+"""Bytes in which a part that is decoded on beyond its end should come upon a frame, at least."""
 _SAMPLE = 1 << 16
 """Bytes that tell how many rows there will be."""
 
@@ -47,6 +51,36 @@ class Engine(Protocol):
 
     def renumber(self, more: int) -> None:
         """The numbers of the next events are greater by so many."""
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """The offset of the first byte that no event covers yet, and the next event's number."""
+
+    @property
+    def is_full(self) -> bool:
+        """Whether `run` could have taken more bytes, had there been room for rows."""
+
+    def run(self, data: memoryview, part: int, end: int) -> int:
+        """Take the bytes of a part, and those behind it until a frame is complete: how many.
+
+        `part` bytes lead to the offset `end`. What comes of them is held until `take`.
+        """
+
+    def join(self, front: Any) -> bool:
+        """Let what is held count from where the part in front ran on to, and number it on.
+
+        False: there is no frame that both have, as far as is known.
+        """
+
+    def tell(self, front: Any) -> None:
+        """Say where the part in front ran on to: `run`, which may be at work, can join it then."""
+
+    @property
+    def is_joined(self) -> bool:
+        """Whether that was done."""
+
+    def take(self) -> Tables:
+        """What was held."""
 
     def step(self, data: memoryview) -> tuple[int, Tables]:
         """Take some of the next bytes: how many, and what came of them."""
@@ -65,6 +99,8 @@ class _Run:
     """How far the decoder has come."""
     found: deque[Tables] = field(default_factory=deque)
     """What is not delivered yet."""
+    is_held: bool = False
+    """Whether its decoder holds that still."""
     is_decoded: bool = False
     """As far as that is possible ahead."""
     is_placed: bool = False
@@ -212,6 +248,8 @@ class Parts:
 
     def _seam(self, run: _Run, other: _Run) -> Iterator[Tables]:
         """Run on to where both agree, or through the part, which is dropped then."""
+        if other.is_held:
+            self._take(other)
         window = self._window()
         while run.position < other.end:
             stop = min(other.end, run.position + window)
@@ -274,12 +312,21 @@ class Parts:
 
     def _decode(self, run: _Run) -> None:
         """Decode a part as if a stream began there, and on to where the next one should agree."""
-        reach = min(max(_REACH, self._window()), self._part // 2)
-        beyond, size = min(len(self._data), run.end + reach), 0
-        while run.position < beyond and size <= self._room:
-            tables = self._step(run, beyond)
-            run.found.append(tables)
-            size += tables.nbytes
+        start, reach = run.position, min(max(_REACH, self._window()), self._part // 2)
+        beyond = min(len(self._data), run.end + reach)
+        run.position += run.engine.run(self._data[start:beyond], run.end - start, run.end)
+        run.is_held = True
+        if run.engine.is_full or run.is_placed:
+            size = self._take(run).nbytes
+            while run.position < run.end and size <= self._room:
+                run.found.append(self._step(run, beyond))
+                size += run.found[-1].nbytes
+
+    def _take(self, run: _Run) -> Tables:
+        """What its decoder holds."""
+        run.is_held = False
+        run.found.append(run.engine.take())
+        return run.found[-1]
 
     def _step(self, run: _Run, end: int) -> Tables:
         taken, tables = run.engine.step(self._data[run.position : end])
@@ -294,13 +341,10 @@ class Parts:
             self._is_joining = True
         while (pair := self._pair()) is not None:
             run, other = pair
-            met = self._met(run, other)
-            if met is not None:
-                run.found = _until(run.found, met)
-                self._take_over(other, met)
+            fits = self._fit(run, other)
             with self._ready:
-                run.is_stuck = met is None
-                run.is_whole = other.is_placed = met is not None
+                run.is_stuck = not fits
+                run.is_whole = other.is_placed = fits
                 self._tell()
 
     def _pair(self) -> tuple[_Run, _Run] | None:
@@ -308,11 +352,28 @@ class Parts:
         with self._ready:
             for run, other in pairwise(self._runs):
                 if not run.is_whole:
-                    if run.is_placed and run.is_decoded and other.is_decoded and not run.is_stuck:
-                        return run, other
+                    if run.is_placed and run.is_decoded and not run.is_stuck:
+                        if other.is_decoded:
+                            return run, other
+                        other.engine.tell(run.engine)
                     break
             self._is_joining = False
             return None
+
+    def _fit(self, run: _Run, other: _Run) -> bool:
+        """Fit a part to the one in front of it, if they agree somewhere as far as is known."""
+        fits = other.engine.is_joined or (other.is_held and other.engine.join(run.engine))
+        if other.is_held:
+            self._take(other)
+        if fits:
+            self._learn(_Known(*run.engine.place))
+            return True
+        met = self._met(run, other)
+        if met is None:
+            return False
+        run.found = _until(run.found, met)
+        self._take_over(other, met)
+        return True
 
     def _met(self, run: _Run, other: _Run) -> _Meeting | None:
         """Where two parts agree, if the first was decoded so far."""
@@ -341,9 +402,12 @@ class Parts:
                 kept.append(renumbered(behind(tables, met.other, met.end), more))
         run.found = kept
         run.engine.renumber(more)
-        # Foresee numbers from here on, by the rate since the last frame that was known.
-        before, self._known = self._known, _Known(met.end, met.number + 1)
-        self._rate = (met.number + 1 - before.number, met.end - before.offset)
+        self._learn(_Known(met.end, met.number + 1))
+
+    def _learn(self, known: _Known) -> None:
+        """Foresee numbers from here on, by the rate since the last frame that was known."""
+        before, self._known = self._known, known
+        self._rate = (known.number - before.number, known.offset - before.offset)
 
 
 def _meeting(

@@ -102,7 +102,7 @@ class _Reading:
     def tables(self, chunk: int | None, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
         if workers > 1 and self.in_parts and isinstance(self.capture, memoryview):
-            engines = [self.maker() for _ in range(workers + 2)]
+            engines = [self.maker() for _ in range(workers + 3)]
             yield from Parts(self.capture, engines, chunk).tables(workers)
             return
         engine: Engine = self.maker()

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from protogen.capture.tables import Rows
 
 
-_WORDS = 7
-"""`struct protogen_table`: rows, count, room, lent, lent_count, own, own_capacity."""
+WORDS = 8
+"""`struct protogen_table`: rows, count, room, lent, lent_count, own, own_capacity, skipped."""
 
 
 _FEW = 1 << 12
@@ -31,6 +31,10 @@ class State(ctypes.Structure):
         ("sequence", ctypes.c_uint64),
         ("payloads", ctypes.c_uint64),
         ("budget", ctypes.c_uint64),
+        ("frame", ctypes.c_uint64),
+        ("front", ctypes.c_uint64 * 3),
+        ("is_told", ctypes.c_uint32),
+        ("is_joined", ctypes.c_uint32),
         ("is_full", ctypes.c_uint32),
         ("failed", ctypes.c_uint32),
     )
@@ -51,13 +55,19 @@ class Library:
         found = (ctypes.c_size_t * len(expected)).in_dll(library, "protogen_layout")
         if tuple(found) != expected:
             raise NativeError("the compiler lays structs out in a way of its own")
-        self.tables = len(self.schema.messages) + 3
+        rows = (*self.schema.messages.values(), self.schema.invalid, self.schema.unknown)
+        self.sizes = (*(table.row.size for table in rows), 1)
+        self.tables = len(self.sizes)
         pointer, size, long = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint64
         self.new = _function(quick, "protogen_new", pointer, long)
         self.free = _function(quick, "protogen_free", None, pointer)
         self.start = _function(quick, "protogen_start", None, pointer, long, long)
         self.feed = _function(library, "protogen_feed", size, pointer, pointer, size)
         self.feed_few = _function(quick, "protogen_feed", size, pointer, pointer, size)
+        beyond = (pointer, pointer, size, size, long)
+        self.feed_on = _function(library, "protogen_feed_on", size, *beyond)
+        self.join = _function(library, "protogen_join", ctypes.c_int, pointer, pointer)
+        self.tell = _function(quick, "protogen_tell", None, pointer, pointer)
         self.flush = _function(library, "protogen_flush", None, pointer)
         self.lend = _function(quick, "protogen_lend", None, pointer, size, pointer, size)
         self.clear = _function(quick, "protogen_clear", None, pointer)
@@ -109,7 +119,7 @@ class Decoder:
             raise MemoryError
         finalize(self, library.free, self._pointer)
         self._state = State.from_address(self._pointer)
-        words = ctypes.c_size_t * (library.tables * _WORDS)
+        words = ctypes.c_size_t * (library.tables * WORDS)
         memory = words.from_address(self._pointer + ctypes.sizeof(State))
         self._tables = memoryview(memory).cast("B").cast("P")
 
@@ -128,6 +138,32 @@ class Decoder:
         self._check()
         return taken
 
+    def feed_on(self, address: int, part: int, size: int, end: int) -> int:
+        """Take the bytes of a part, and up to `size` bytes until a frame behind it is complete.
+
+        `end` is the offset where the part ends. Returns how many bytes were taken.
+        """
+        taken: int = self._library.feed_on(self._pointer, address, part, size, end)
+        self._check()
+        return taken
+
+    def join(self, front: Decoder) -> bool:
+        """Let rows count from where `front`, the decoder of the part in front, fed on to.
+
+        Their numbers go on as there. False: there is no frame that both have, or a table is full.
+        """
+        return bool(self._library.join(self._pointer, front._pointer))
+
+    def tell(self, front: Decoder) -> None:
+        """Say where `front` fed on to, so that `feed_on`, which may be at work, can join it."""
+        self._library.tell(self._pointer, front._pointer)
+
+    @property
+    def joined(self) -> tuple[int, int] | None:
+        """The offset from which on rows count, and the first number, once it was joined."""
+        _, offset, number = self._state.front
+        return (offset, number) if self._state.is_joined else None
+
     def flush(self) -> None:
         """Take the end of the stream."""
         self._library.flush(self._pointer)
@@ -142,6 +178,11 @@ class Decoder:
         self._state.sequence += more
 
     @property
+    def is_full(self) -> bool:
+        """Whether a table is."""
+        return bool(self._state.is_full)
+
+    @property
     def offset(self) -> int:
         """Of the first byte that no event covers yet."""
         return int(self._state.offset)
@@ -151,17 +192,21 @@ class Decoder:
         """The number of the next event."""
         return int(self._state.sequence)
 
-    def filled(self) -> list[tuple[int, int, int, int]]:
-        """The tables with rows: number, rows in lent memory, rows in its own, and where that is."""
+    def filled(self) -> list[tuple[int, slice, int, int]]:
+        """The tables with rows: number, those in lent memory, how many in its own, and where."""
         words = self._tables.tolist()
         found = []
         for number in range(self._library.tables):
-            rows, count, _, lent, lent_count, own, _ = words[
-                number * _WORDS : (number + 1) * _WORDS
+            rows, count, _, lent, lent_count, own, _, skipped = words[
+                number * WORDS : (number + 1) * WORDS
             ]
-            in_lent, in_own = (count, 0) if lent and rows == lent else (lent_count, count)
-            if in_lent or in_own:
-                found.append((number, in_lent, in_own, own))
+            is_lent = bool(lent) and rows == lent
+            if lent:
+                rows_lent = slice(skipped, count if is_lent else lent_count)
+                found.append((number, rows_lent, 0 if is_lent else count, own))
+            elif count > skipped:
+                place = own + skipped * self._library.sizes[number]
+                found.append((number, slice(0), count - skipped, place))
         return found
 
     def _check(self) -> None:
