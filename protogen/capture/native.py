@@ -101,8 +101,8 @@ class Memory:
     """Memory for the rows of a capture."""
 
     def __init__(self, blocks: Blocks | None = None) -> None:
-        self.rates: list[float] = []
-        """Rows of each table for a byte of the capture, as far as is known."""
+        self.rates: dict[int, float] = {}
+        """Rows for a byte of the capture, as far as is known, of the tables that have some."""
         self._blocks = blocks or Blocks()
         finalize(self, self._blocks.trim, MOST_KEPT)
 
@@ -208,7 +208,7 @@ class NativeEngine:
     @property
     def is_joined(self) -> bool:
         """Whether that was done."""
-        return self._decoder.joined is not None
+        return self._decoder.is_joined
 
     @property
     def place(self) -> tuple[int, int]:
@@ -229,7 +229,7 @@ class NativeEngine:
     def _lend(self, size: int) -> dict[int, Rows]:
         """Memory for what so many bytes may bring."""
         found: dict[int, Rows] = {}
-        for number, rate in enumerate(self._memory.rates):
+        for number, rate in self._memory.rates.items():
             dtype = self._dtypes.each[number]
             if rate * size * dtype.itemsize > _FEW:
                 most = max(1, self._budget // dtype.itemsize)
@@ -240,6 +240,7 @@ class NativeEngine:
     def _tables(self, lent: dict[int, Rows], taken: int) -> Tables:
         decoder = self._decoder
         every = list(self._dtypes.empty)
+        rates: dict[int, float] = {}
         for number, in_lent, in_own, own in decoder.filled():
             rows = lent[number][in_lent] if number in lent else every[number]
             if in_own:
@@ -247,8 +248,9 @@ class NativeEngine:
             elif len(rows) * 4 < len(lent[number]):
                 rows = appended(rows, 0, 0)
             every[number] = rows
+            rates[number] = len(rows) / max(1, taken)
         if taken >= _TELLING:
-            self._memory.rates = [len(rows) / taken for rows in every]
+            self._memory.rates = rates
         found = tables_of(
             self._schema,
             every,

@@ -153,13 +153,14 @@ class Parts:
         self._room = room
         self._known = _Known(0, 0)
         self._rate = (0, 1)  # Events, and the bytes that they cover.
-        lock = Lock()  # For what follows, and for what runs say of themselves.
-        self._ready = Condition(lock)  # What is awaited has come.
-        self._spare = Condition(lock)  # There is a decoder again, or nothing to do.
+        self._lock = Lock()  # For what follows, and for what runs say of themselves.
+        self._spare = Condition(self._lock)  # There is a decoder again, or nothing to do.
         self._free = list(engines)
         self._starts: Iterator[int] = iter(())
         self._runs: deque[_Run] = deque()  # Those that were begun, until all is delivered.
-        self._awaited: Callable[[], bool] = lambda: False
+        self._awaited: Callable[[], bool] | None = None
+        self._come = Lock()  # Held until what is awaited has come: less work than a condition.
+        self._come.acquire()
         self._is_joining = False
         self._is_over = False
         self._error: BaseException | None = None
@@ -224,12 +225,12 @@ class Parts:
 
     def _await(self, awaited: Callable[[], bool]) -> None:
         """Wait until it is so. Raises what went wrong in a thread."""
-        with self._ready:
+        with self._lock:
             self._awaited = awaited
-            while self._error is None and not awaited():
-                self._ready.wait()
-            if self._error is not None:
-                raise self._error
+            self._tell()
+        self._come.acquire()
+        if self._error is not None:
+            raise self._error
 
     def _leave(self, place: int) -> None:
         """Let go of a part."""
@@ -273,19 +274,20 @@ class Parts:
         try:
             while (run := self._begin()) is not None:
                 self._decode(run)
-                with self._ready:
+                with self._lock:
                     run.is_decoded = True
                     self._tell()
                 self._join()
         except BaseException as error:
-            with self._ready:
+            with self._lock:
                 self._error = error
-                self._ready.notify_all()
+                self._tell()
 
     def _tell(self) -> None:
-        """Wake who waits, if it is for this."""
-        if self._awaited():
-            self._ready.notify_all()
+        """Wake who waits, if that has come, or something went wrong."""
+        if self._awaited is not None and (self._error is not None or self._awaited()):
+            self._awaited = None
+            self._come.release()
 
     def _begin(self) -> _Run | None:
         """The next part, once there is a decoder for it; None if none is left, or wanted."""
@@ -335,21 +337,21 @@ class Parts:
 
     def _join(self) -> None:
         """Fit together what can be; unless another thread does, which then sees all there is."""
-        with self._ready:
+        with self._lock:
             if self._is_joining:
                 return
             self._is_joining = True
         while (pair := self._pair()) is not None:
             run, other = pair
             fits = self._fit(run, other)
-            with self._ready:
+            with self._lock:
                 run.is_stuck = not fits
                 run.is_whole = other.is_placed = fits
                 self._tell()
 
     def _pair(self) -> tuple[_Run, _Run] | None:
         """Two parts to fit together; None if there are none now, and nobody does so any more."""
-        with self._ready:
+        with self._lock:
             for run, other in pairwise(self._runs):
                 if not run.is_whole:
                     if run.is_placed and run.is_decoded and not run.is_stuck:

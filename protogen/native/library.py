@@ -159,6 +159,11 @@ class Decoder:
         self._library.tell(self._pointer, front._pointer)
 
     @property
+    def is_joined(self) -> bool:
+        """Whether `join` came about."""
+        return bool(self._state.is_joined)
+
+    @property
     def joined(self) -> tuple[int, int] | None:
         """The offset from which on rows count, and the first number, once it was joined."""
         _, offset, number = self._state.front
@@ -196,17 +201,18 @@ class Decoder:
         """The tables with rows: number, those in lent memory, how many in its own, and where."""
         words = self._tables.tolist()
         found = []
-        for number in range(self._library.tables):
+        each = zip(words[1::WORDS], words[3::WORDS], strict=True)
+        for number in [it for it, (count, lent) in enumerate(each) if count or lent]:
             rows, count, _, lent, lent_count, own, _, skipped = words[
                 number * WORDS : (number + 1) * WORDS
             ]
-            is_lent = bool(lent) and rows == lent
             if lent:
-                rows_lent = slice(skipped, count if is_lent else lent_count)
-                found.append((number, rows_lent, 0 if is_lent else count, own))
+                is_lent = rows == lent
+                place = slice(skipped, count if is_lent else lent_count)
+                found.append((number, place, 0 if is_lent else count, own))
             elif count > skipped:
-                place = own + skipped * self._library.sizes[number]
-                found.append((number, slice(0), count - skipped, place))
+                own += skipped * self._library.sizes[number]
+                found.append((number, slice(0), count - skipped, own))
         return found
 
     def _check(self) -> None:
