@@ -28,6 +28,10 @@ _MOST_BATCHES = 64
 _MOST_PIECES = 1 << 13
 """Columns of groups of rows, in all files that are being written. Parquet keeps a record of one or
 two kilobytes of each, and writes it when a file ends."""
+_PAGE = 1 << 17
+"""Bytes of a page of a column: what the processor's cache still holds when it is compressed."""
+_AT_ONCE = 1 << 16
+"""Numbers that Parquet takes between two looks at how full the page is."""
 
 
 class Sink(Protocol):
@@ -188,6 +192,8 @@ class ParquetWriter(ArrowWriter):
         spelling = spelling_of(first)
         options: dict[str, Any] = {
             "compression": spelling.compression,
+            "data_page_size": _PAGE,
+            "write_batch_size": _AT_ONCE,
             # Values of sensors seldom come back; looking for those that do takes most of the time.
             "use_dictionary": [
                 column.name for column in table.all_columns if isinstance(column.type, Names)

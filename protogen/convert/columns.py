@@ -198,10 +198,11 @@ class Times:
     ends: Array
     times: Array
 
-    def at(self, lasts: Array) -> Values:
-        """When the bytes at these offsets came."""
+    def of(self, rows: Any) -> Values:
+        """When the last byte of each row came."""
         if not len(self.ends):
-            return Nothing(len(lasts))
+            return Nothing(len(rows))
+        lasts = rows["offset"] + rows["size"] - np.uint64(1)
         places = np.searchsorted(self.ends, lasts, side="right")
         missing = places >= len(self.ends)
         found = self.times[np.minimum(places, len(self.ends) - 1)]
@@ -260,7 +261,7 @@ class ColumnBatch:
 
     def times_of(self, rows: Any) -> Values:
         """When the last byte of each row came."""
-        return self.times.at(rows["offset"] + rows["size"] - np.uint64(1))
+        return self.times.of(rows)
 
     def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
         offset, *rest = (reader(rows) for reader in readers)

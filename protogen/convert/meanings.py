@@ -70,7 +70,7 @@ class NameFinder:
             if lookup is None:
                 lookup = self._small[values.dtype] = self._lookup(values.dtype)
             # A negative index counts from the end, which is where its number stands.
-            return Codes(lookup[values.astype("i4", copy=False)], self.texts)
+            return Codes(lookup.take(values), self.texts)
         codes = np.full(len(values), -1, "i2")
         for value, place in self._names.items():
             codes[values == value] = place
