@@ -12,7 +12,7 @@ import ctypes
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -244,14 +244,21 @@ def main() -> int:
     parser.add_argument("--megabytes", type=int, default=512)
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
-    text = _HEAD.format(megabytes=options.megabytes, rounds=options.rounds)
+    head = _HEAD.format(megabytes=options.megabytes, rounds=options.rounds)
     with TemporaryDirectory() as folder:
-        for case in CASES:
-            line = measure(case, options.megabytes << 20, options.rounds, Path(folder))
-            print(line, flush=True)
-            text += line + "\n"
-    OUT.write_text(text, encoding="utf-8")
+        size = options.megabytes << 20
+        rows = (measure(case, size, options.rounds, Path(folder)) for case in CASES)
+        write_page(OUT, head, rows)
     return 0
+
+
+def write_page(path: Path, head: str, rows: Iterable[str]) -> None:
+    """Write a page that ends with a table, and print the table's rows as they come."""
+    lines = []
+    for row in rows:
+        print(row, flush=True)
+        lines.append(f"{row}\n")
+    path.write_text(head + "".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":
