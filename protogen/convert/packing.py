@@ -61,8 +61,8 @@ def unpacking(stream: BufferedReader, packing: Packing, complain: Complain) -> B
 class _Member(Protocol):
     """One of the wholes that stand behind one another in a compressed file."""
 
-    def feed(self, data: bytes) -> tuple[bytes, bytes]:
-        """What the next bytes unpack to, and those of them that were not taken as yet."""
+    def feed(self, data: memoryview) -> tuple[bytes, int]:
+        """What some of the next bytes unpack to, and how many of them were taken."""
 
     @property
     def is_whole(self) -> bool:
@@ -73,9 +73,10 @@ class _Gzip:
     def __init__(self) -> None:
         self._machine = zlib.decompressobj(wbits=16 + zlib.MAX_WBITS)  # 16: with gzip's head.
 
-    def feed(self, data: bytes) -> tuple[bytes, bytes]:
+    def feed(self, data: memoryview) -> tuple[bytes, int]:
         unpacked = self._machine.decompress(data, _MOST)
-        return unpacked, self._machine.unused_data or self._machine.unconsumed_tail
+        left = self._machine.unused_data or self._machine.unconsumed_tail
+        return unpacked, len(data) - len(left)
 
     @property
     def is_whole(self) -> bool:
@@ -88,17 +89,18 @@ class _Frame(Protocol):
     eof: bool
     unused_data: bytes
 
-    def decompress(self, data: bytes) -> bytes: ...
+    def decompress(self, data: memoryview) -> bytes: ...
 
 
 class _Zstd:
     def __init__(self, machine: _Frame) -> None:
         self._machine = machine
 
-    def feed(self, data: bytes) -> tuple[bytes, bytes]:
-        unpacked = self._machine.decompress(data[:_SLICE])
-        unused = self._machine.unused_data if self.is_whole else b""
-        return unpacked, unused + data[_SLICE:]
+    def feed(self, data: memoryview) -> tuple[bytes, int]:
+        some = data[:_SLICE]
+        unpacked = self._machine.decompress(some)
+        left = self._machine.unused_data if self.is_whole else b""
+        return unpacked, len(some) - len(left)
 
     @property
     def is_whole(self) -> bool:
@@ -121,7 +123,7 @@ class _Unpacked(RawIOBase):
         self._new = member
         self._complain = complain
         self._member: _Member | None = None
-        self._packed = b""
+        self._packed = memoryview(b"")
         self._ready = memoryview(b"")
 
     def readable(self) -> bool:
@@ -139,15 +141,16 @@ class _Unpacked(RawIOBase):
     def _unpack(self) -> bool:
         """Unpack something more; False at the end."""
         if not self._packed:
-            self._packed = self._stream.read1(_READ)
+            self._packed = memoryview(self._stream.read1(_READ))
         if not self._packed:
             return self._end()
         if self._member is None:
-            self._packed = self._packed.lstrip(self._padding)
-            if not self._packed:
+            if self._packed[:1] == self._padding:
+                self._packed = memoryview(bytes(self._packed).lstrip(self._padding))
                 return True
             self._member = self._new()
-        unpacked, self._packed = self._member.feed(self._packed)
+        unpacked, taken = self._member.feed(self._packed)
+        self._packed = self._packed[taken:]
         self._ready = memoryview(unpacked)
         if self._member.is_whole:
             self._member = None
@@ -156,7 +159,7 @@ class _Unpacked(RawIOBase):
     def _end(self) -> bool:
         """The file is over: what its member still holds, then a complaint if its end is missing."""
         if self._member is not None:
-            unpacked, _ = self._member.feed(b"")
+            unpacked, _ = self._member.feed(memoryview(b""))
             self._ready = memoryview(unpacked)
             if unpacked:
                 return True
