@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+from contextlib import closing
 from pathlib import Path
 from random import Random
 
@@ -17,7 +18,7 @@ def test_all_that_was_written_is_there(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(draining, "_STRETCH", 1000)
     dice = Random(1)
     pieces = [dice.randbytes(dice.randrange(700)) for _ in range(100)]
-    with DrainedFile(tmp_path / "file") as file:
+    with closing(DrainedFile(tmp_path / "file")) as file:
         file.write(pieces[0])
         file.writelines(pieces[1:])
     assert (tmp_path / "file").read_bytes() == b"".join(pieces)
@@ -36,7 +37,7 @@ def test_every_stretch_is_told_of_again(
 
     monkeypatch.setattr(draining, "_STRETCH", 1000)
     monkeypatch.setattr(os, "posix_fadvise", note)
-    with DrainedFile(tmp_path / "file") as file:
+    with closing(DrainedFile(tmp_path / "file")) as file:
         file.writelines(bytes(size) for _ in range(20))
     ends = [end for _, end in told]
     assert ends == list(range(max(size, 1000), 20 * size + 1, max(size, 1000)))
@@ -53,7 +54,7 @@ def test_files_are_written_where_advice_fails(
 
     monkeypatch.setattr(os, "posix_fadvise", refuse)
     monkeypatch.setattr(draining, "_STRETCH", 10)
-    with DrainedFile(tmp_path / "file") as file:
+    with closing(DrainedFile(tmp_path / "file")) as file:
         file.write(bytes(100))
     assert (tmp_path / "file").read_bytes() == bytes(100)
 
@@ -63,6 +64,6 @@ def test_files_are_written_where_no_advice_is_taken(
 ) -> None:
     monkeypatch.delattr(os, "posix_fadvise", raising=False)
     monkeypatch.setattr(draining, "_STRETCH", 10)
-    with DrainedFile(tmp_path / "file") as file:
+    with closing(DrainedFile(tmp_path / "file")) as file:
         file.write(bytes(100))
     assert (tmp_path / "file").read_bytes() == bytes(100)

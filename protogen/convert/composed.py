@@ -11,13 +11,10 @@ import numpy as np
 
 from protogen.convert.arrays import Array
 from protogen.convert.tables import ColumnType, Listed, Record
-from protogen.convert.values import as_list
+from protogen.convert.values import Values, as_list
 
 if TYPE_CHECKING:
     import pyarrow as pa
-
-Values = Any
-"""What a batch holds a column in."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import csv
 import io
 import json
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING, Any
 
 from protogen.convert.batches import Batch, Rows
@@ -71,7 +71,7 @@ class CsvWriter:
         beside = f"{table.name}/{self._name}.columns.json"
         self._pending.path(beside).write_text(text, encoding="utf-8")
         path = self._pending.path(f"{table.name}/{self._name}.csv")
-        file = self._files.enter_context(DrainedFile(path))
+        file = self._files.enter_context(closing(DrainedFile(path)))
         file.write(_lines([[column.name for column in table.all_columns]]))
         self._open_files[table.name] = file
         return file

@@ -12,8 +12,6 @@ from collections import deque
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 _STRETCH = 4 << 20
 """Bytes, or some more, after which the system is told. It begins to write a stretch when it is told
@@ -48,17 +46,6 @@ class DrainedFile:
         self._file = path.open("wb")
         self._drain = Drain()
         self._written = 0
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def write(self, data: bytes) -> None:
         """Write some bytes."""

@@ -17,7 +17,15 @@ from protogen.capture.schema import Choice, Column, Dimension, Record, TableSche
 from protogen.capture.schema import Text as TextShape
 from protogen.convert.arrays import Array, Lists, Numbers, Octets
 from protogen.convert.composed import Cases, ListsOf, Scattered, Structs
-from protogen.convert.unstored import Scope, Values, at_places, constants_in, followed, unstored
+from protogen.convert.unstored import (
+    CaseRows,
+    Scope,
+    at_places,
+    constants_in,
+    followed,
+    unstored,
+)
+from protogen.convert.values import Values
 from protogen.model.fields import Field
 from protogen.model.types import Array as ArrayType
 from protogen.model.types import Fixed, Struct, Switch, Text, Type
@@ -102,18 +110,16 @@ def _case(
         there = ~np.isin(chosen, np.array([case.value for case in type.cases], chosen.dtype))
     else:
         there = chosen == case.value
-    rows = np.flatnonzero(there)
-    places = np.full(len(held), -1, "i8")
-    places[rows] = np.arange(len(rows))
+    having = CaseRows.where(there, scope)
     if case is None:
-        return Scattered(_rest(choice, held[rows]), places)
+        return Scattered(_rest(choice, held[having.rows]), having.places)
     column = dict(choice.cases).get(case.value)
-    inner = at_places(scope, lambda: rows)
     if column is None:
-        found = unstored(item, case.type, len(rows), inner)
-        return Scattered(followed(found, path[1:]), places)
-    found = _inside(path[1:], item, case.type, column, held[rows][column.name], inner)
-    return Scattered(found, places)
+        constant = unstored(item, case.type, len(having), having.scope)
+        return Scattered(followed(constant, path[1:]), having.places)
+    inside = held[having.rows][column.name]
+    found = _inside(path[1:], item, case.type, column, inside, having.scope)
+    return Scattered(found, having.places)
 
 
 def _rest(choice: Choice, held: Any) -> Octets:

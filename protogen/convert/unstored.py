@@ -7,19 +7,18 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from protogen.convert.arrays import Array
 from protogen.convert.composed import Cases, ListsOf, Same, Scattered, Structs
 from protogen.convert.plain import constant_of
+from protogen.convert.values import Values
 from protogen.model.fields import Field
 from protogen.model.types import Array as ArrayType
 from protogen.model.types import Counted, Fixed, Struct, Switch, Type
 
-Values = Any
 Scope = ChainMap[str, Array]
 """The numbers in front, which count and choose, of each row."""
 
@@ -35,6 +34,29 @@ def constants_in(fields: Iterable[Field], count: int) -> dict[str, Array]:
 def at_places(scope: Scope, places: Callable[[], Array]) -> Scope:
     """What counts and chooses in these rows."""
     return ChainMap(_Picked(scope, places))
+
+
+@dataclass(frozen=True, slots=True)
+class CaseRows:
+    """The rows that have one case of a switch."""
+
+    rows: Array
+    """Their numbers."""
+    places: Array
+    """The place among them of each row; -1: it has another case."""
+    scope: Scope
+    """What counts and chooses in them."""
+
+    @classmethod
+    def where(cls, there: Array, scope: Scope) -> CaseRows:
+        """Those of all rows where `there` holds."""
+        rows = np.flatnonzero(there)
+        places = np.full(len(there), -1, "i8")
+        places[rows] = np.arange(len(rows))
+        return cls(rows, places, at_places(scope, lambda: rows))
+
+    def __len__(self) -> int:
+        return len(self.rows)
 
 
 class _Picked(dict[str, Array]):
@@ -89,18 +111,11 @@ def _unstored_cases(item: Field, type: Switch, count: int, scope: Scope) -> Case
     chosen = scope[type.selector]
     members = {}
     for case in type.cases:
-        rows = np.flatnonzero(chosen == case.value)
-        places = np.full(count, -1, "i8")
-        places[rows] = np.arange(len(rows))
-        inner = at_places(scope, partial(_same, rows))
-        if len(rows):
-            values = unstored(item, case.type, len(rows), inner)
-            members[case.name] = Scattered(values, places)
+        having = CaseRows.where(chosen == case.value, scope)
+        if len(having):
+            values = unstored(item, case.type, len(having), having.scope)
+            members[case.name] = Scattered(values, having.places)
     return Cases(members, count)
-
-
-def _same(rows: Array) -> Array:
-    return rows
 
 
 def followed(values: Values, path: Sequence[str]) -> Values:

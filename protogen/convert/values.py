@@ -6,6 +6,9 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any
 
+Values = Any
+"""What a batch holds a column in."""
+
 _BETWEEN = "\ud800"
 """Half a character, which no text has."""
 _SEAM = f", {json.dumps(_BETWEEN)}, "
