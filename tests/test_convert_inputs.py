@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
@@ -14,12 +15,14 @@ import pytest
 from cli_support import SINK, run, start
 
 from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
+from protogen.convert.capture_names import names_of
 from protogen.convert.chunks import Chunk, Clock
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Packing, Source, format_of, names_of, opened
+from protogen.convert.inputs import Packing, Source, format_of, opened
 from protogen.convert.kinds import InputKind
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import log_pieces
+from protogen.convert.texts import decoded, lines_of
 
 FRAME = bytes.fromhex("1B 02 45 00 00 45 1B 03")  # `empty` with number 0
 SECOND = bytes.fromhex("1B 02 45 01 00 44 1B 03")
@@ -85,11 +88,62 @@ class TestDetection:
             False,
         )
 
-    def test_names_of_captures(self) -> None:
-        places = ["a/run.bin.gz", "s3://robots/7/run2.zst", "-", "a/.hidden", "a/x.bin", "b/x.bin"]
-        assert names_of(map(Source, places)) == [
-            "run", "run2", "stdin", ".hidden", "a-x.bin", "b-x.bin",
-        ]  # fmt: skip
+    @pytest.mark.parametrize("in_front", ["", "# what it is\n\n", " \r\n#(\r\n"])
+    @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+    def test_logs_of_any_text(self, tmp_path: Path, encoding: str, in_front: str) -> None:
+        text = f"{in_front}(1.5) can0 123#{FRAME.hex()}\r\n(2) can0 123#00\r\n"
+        (tmp_path / "run").write_bytes(text.encode(encoding))
+        kind, *found = read(tmp_path / "run")
+        assert kind == "a text log with times"
+        assert found == [FRAME + b"\0", [8, 9], [1_500_000_000, 2 * 10**9]]
+
+    @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+    def test_digits_of_any_text(self, tmp_path: Path, encoding: str) -> None:
+        (tmp_path / "run.hex").write_bytes(f"{FRAME.hex(' ')}\r\n".encode(encoding))
+        assert read(tmp_path / "run.hex")[:2] == ("hex digits", FRAME)
+
+    def test_text_in_single_bytes(self) -> None:
+        for text in ("", "1", "1B 03"):
+            for encoding in ("utf-8-sig", "utf-16"):
+                data = text.encode(encoding)
+                assert "".join(decoded(data[i : i + 1] for i in range(len(data)))) == text
+        assert list(decoded([b"1"])) == ["1"]
+
+
+class TestNames:
+    @pytest.mark.parametrize(
+        ("places", "names"),
+        [
+            (["a/run.bin.gz", "s3://robots/7/run2.zst", "-"], ["run", "run2", "stdin"]),
+            (["a/x.bin", "b/x.bin", "a/y"], ["a-x.bin", "b-x.bin", "y"]),
+            (["../x.bin", "x.bin"], ["up-x.bin", "x.bin"]),
+            (["/a/x.bin", "./b/../x.bin"], ["a-x.bin", "x.bin"]),
+            (["a/.bin", "_run.bin"], ["capture.bin", "capture_run"]),
+            (["bad\udcff.bin", "bad\udcfe.bin"], ["bad%xff", "bad%xfe"]),
+        ],
+        ids=["bare", "folders", "parent", "path", "passed_over", "no_text"],
+    )
+    def test_no_two_captures_have_one(self, places: list[str], names: list[str]) -> None:
+        assert names_of(places) == names
+
+    def test_what_would_be_called_alike(self) -> None:
+        with pytest.raises(ConvertError, match=r"a/run\.bin is given twice"):
+            names_of(["a/../a/run.bin", "a/run.bin"])
+        with pytest.raises(ConvertError, match=r"a/run\.bin and /a/run\.bin would both be called"):
+            names_of(["a/run.bin", "/a/run.bin"])
+
+    @pytest.mark.parametrize("to", ["parquet", "arrow", "csv", "jsonl", "mcap"])
+    def test_that_are_no_text(self, tmp_path: Path, to: str) -> None:
+        if sys.platform != "linux":
+            pytest.skip("elsewhere, names of files are text")
+        pytest.importorskip("mcap" if to == "mcap" else "pyarrow")
+        (tmp_path / "sink.yaml").write_text(SINK)
+        capture = tmp_path / "bad\udcff.bin"
+        capture.write_bytes(FRAME)
+        options = ["--sender", "pc", "--to", to, "-o", str(tmp_path / "out"), "--quiet"]
+        done = run("convert", str(tmp_path / "sink.yaml"), str(capture), *options)
+        assert done.exit_code == 0, done.output
+        assert any(path.name == f"bad%xff.{to}" for path in (tmp_path / "out").rglob("*"))
 
 
 class TestLogs:
@@ -124,8 +178,46 @@ class TestLogs:
         assert found == [(b"\x01", (1 << 63) - 1)]
         assert [text.partition(":")[0] for text in complaints] == ["line 2", "line 3"]
 
-    def test_a_frame_without_bytes_is_none(self) -> None:
-        assert list(log_pieces(["(1) can0 123#"], "pc", (), pytest.fail)) == [(b"", 10**9)]
+    @pytest.mark.parametrize(
+        "line",
+        [
+            "(1) can0 123#", "(1) can0 123#R", "(1) can0 123#R8", "(1)  can0  123   [0] ",
+            "(1)  can0  123   [8]  remote request", "(1) can0 123# R",
+        ],
+    )  # fmt: skip
+    def test_a_frame_without_bytes_has_none(self, line: str) -> None:
+        assert list(log_pieces([line], "pc", (), pytest.fail)) == [(b"", 10**9)]
+
+    @pytest.mark.parametrize(
+        "line",
+        [
+            "(1) can0 123#5502AB", "(1) can0 123#5502AB T", "(1) can0 123##15502AB Rx",
+            "(1) can0 1FFFFFFF#5502AB", "(1)  can0  123   [3]  55 02 AB", "(1) 55 02 AB",
+            "(1)  can0  123   [3]  55 02 AB   'U..'", "(1)  can0  123  [03]  55 02 AB   '''''",
+            "(1)  can0  TX - -  1FFFFFFF   [3]  55 02 AB", "(1) can0  RX B -  123 [3] 55 02 AB",
+        ],
+    )  # fmt: skip
+    def test_ways_of_candump(self, line: str) -> None:
+        found = list(log_pieces([line], "pc", (), pytest.fail))
+        assert found == [(b"\x55\x02\xab", 10**9)]
+
+    @pytest.mark.parametrize(
+        "line",
+        [
+            "(1) can0 20000004#0004000000000000",
+            "(1)  can0  20000080   [8]  00 00 00 00 00 00 00 00   ERRORFRAME",
+        ],
+    )
+    def test_notes_about_errors_were_on_no_line(self, line: str) -> None:
+        assert not list(log_pieces([line], "pc", (), pytest.fail))
+
+    @pytest.mark.timeout(20)
+    @pytest.mark.parametrize("middle", [" ", "55 ", "5", "'", "[5] ", "(1) can0 "])
+    def test_long_lines_that_fit_nothing_are_soon_known(self, middle: str) -> None:
+        complaints: list[str] = []
+        line = f"(1) can0 55 {middle * 100_000}x"
+        assert not list(log_pieces([line], "pc", (), complaints.append))
+        assert len(complaints) == 1
 
 
 class TestRecorder:
@@ -310,7 +402,5 @@ class TestCommand:
 
 
 def test_endless_lines_are_no_text() -> None:
-    from protogen.convert.inputs import _lines
-
-    with pytest.raises(ConvertError, match="this is no text"):
-        list(_lines([b"(1) " * (1 << 20)] * 5))
+    with pytest.raises(ConvertError, match=r"run\.log: a line has over .* this is no text"):
+        list(lines_of([b"(1) " * (1 << 20)] * 5, "run.log"))

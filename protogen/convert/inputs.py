@@ -3,7 +3,8 @@
     bytes in front of the rest            it is
     1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd; then what is inside
     50 47 52 45 43 00 01 0A (`PGREC`)     a recorded capture, see `protogen/capture/record.py`
-    `(1700000000.25) ...`                 a log of text with times, see `textlog.py`
+    `(1700000000.25) ...`                 a log of text with times, see `textlog.py`; comments
+                                          and empty lines may stand in front
 
 A name that ends in `.hex` means hex digits. Digits alone do not: there are protocols whose raw
 bytes are hex digits. All else is the raw bytes of the line.
@@ -11,8 +12,6 @@ bytes are hex digits. All else is the raw bytes of the line.
 
 from __future__ import annotations
 
-import codecs
-import os
 import stat
 import sys
 import zlib
@@ -24,21 +23,19 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO, cast
 
 from protogen.capture.record import MAGIC
+from protogen.convert.capture_names import STANDARD_INPUT, plain_name
 from protogen.convert.chunks import PIECE, Chunk, joined
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.kinds import InputKind
 from protogen.convert.packing import SUFFIXES, Packing, packing_of, unpacking
 from protogen.convert.recorded import record_pieces
-from protogen.convert.textlog import LINE, Complain, log_pieces
+from protogen.convert.textlog import BEGIN, Complain, log_pieces
+from protogen.convert.texts import decoded, encoding_of, lines_of
 
-STANDARD_INPUT = "-"
 _HEAD = 1 << 12
 """So many bytes are looked at to find out what a capture is."""
 _READ = PIECE
 """The most bytes that are read at once."""
-_LONGEST_LINE = 1 << 24
-
-
 _WORDS = {
     InputKind.RAW: "raw bytes",
     InputKind.HEX: "hex digits",
@@ -67,12 +64,7 @@ class Source:
     @property
     def name(self) -> str:
         """The name that its tables get, if no other capture has it: that of the file, bare."""
-        if self.is_standard_input:
-            return "stdin"
-        path = PurePosixPath(self.place.partition("://")[2] or self.place)
-        if path.suffix in SUFFIXES:
-            path = path.with_suffix("")
-        return path.stem or "capture"
+        return plain_name(self.place)
 
     def stamp(self) -> tuple[int | None, int | None]:
         """Size in bytes, and the time in ns of the last change; None where that is not known.
@@ -223,7 +215,7 @@ class _Counted(BufferedReader):
 def _kind(head: bytes, place: str) -> InputKind:
     if head.startswith(MAGIC):
         return InputKind.RECORD
-    if LINE.match(head.lstrip(b"\xef\xbb\xbf \t\r\n")):
+    if BEGIN.match(head.decode(encoding_of(head), "replace")):
         return InputKind.LOG
     path = PurePosixPath(place)
     suffix = path.with_suffix("").suffix if path.suffix in SUFFIXES else path.suffix
@@ -249,7 +241,7 @@ def _chunks(
         case InputKind.HEX:
             return _large(_hex(pieces, place))
         case InputKind.LOG:
-            return joined(log_pieces(_lines(pieces), sender, senders, complain))
+            return joined(log_pieces(lines_of(pieces, place), sender, senders, complain))
         case InputKind.RECORD:
             return joined(record_pieces(pieces, complain))
 
@@ -278,42 +270,10 @@ def _hex(pieces: Iterable[bytes], place: str) -> Iterator[bytes]:
     # The package of the command line imports this module.
     from protogen.cli.hexinput import HexError, HexReader
 
-    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     reader = HexReader()
     try:
-        for piece in pieces:
-            yield reader.feed(decode(piece))
+        for text in decoded(pieces):
+            yield reader.feed(text)
         yield reader.finish()
     except HexError as error:
         raise ConvertError(f"{place}: {error}") from None
-
-
-def _lines(pieces: Iterable[bytes]) -> Iterator[str]:
-    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
-    rest = ""
-    for piece in pieces:
-        *whole, rest = (rest + decode(piece)).split("\n")
-        yield from whole
-        if len(rest) > _LONGEST_LINE:
-            raise ConvertError(f"a line has over {_LONGEST_LINE} characters: this is no text")
-    if rest:
-        yield rest
-
-
-def names_of(sources: Iterable[Source]) -> list[str]:
-    """A name for each capture that no other has: that of its file, with folders where it must."""
-    given = list(sources)
-    plain = [source.name for source in given]
-    names = [
-        source.name if plain.count(source.name) == 1 else _long_name(source.place)
-        for source in given
-    ]
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise ConvertError(f"{given[index].place} is given twice")
-    return names
-
-
-def _long_name(place: str) -> str:
-    path = os.path.normpath(place.partition("://")[2] or place)
-    return path.strip("/.").replace("/", "-").replace(os.sep, "-")

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from protogen.convert.batches import BatchDecoder, Tally, batches_of
+from protogen.convert.capture_names import names_of
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Source, names_of, opened
+from protogen.convert.inputs import Source, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, remove
 from protogen.convert.state import Done, State
@@ -83,7 +84,7 @@ def plan(job: Job, places: Sequence[str]) -> list[tuple[str, Source]]:
     """The captures, each with the name of its files. Raises ConvertError."""
     require(job.format)
     sources = [Source(place) for place in places]
-    names = names_of(sources)
+    names = names_of(places)
     for source in sources:
         source.stamp()
     return list(zip(names, sources, strict=True))

@@ -1,12 +1,14 @@
-"""Logs of text with a time in each line, as `candump -l` writes them.
+"""Logs of text with a time in each line, as `candump -l` and `candump -ta` write them.
 
     (1700000000.123456) can0 123#55020141BC
+    (1700000000.123456)  can0  123   [5]  55 02 01 41 BC
     (1700000000.124) ttyUSB0 55 02 01 41 BC
     (1700000000.124) esp 55 02 01 41 BC
 
 In parentheses stand seconds since 1970-01-01, behind them, if one likes, a word that is no hex
 number: an interface, or the sender, and only the wanted sender's lines count where it is one. The
-identifier of a CAN frame is no part of the bytes. Empty lines and comments behind `#` say nothing.
+identifier of a CAN frame is no part of the bytes; one that asks for data (`R`) has none. Notes
+about errors, empty lines and comments behind `#` say nothing.
 """
 
 from __future__ import annotations
@@ -17,15 +19,19 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 Complain = Callable[[str], None]
 """Take note of a line that can't be used."""
 
-LINE = re.compile(rb"\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S")
+BEGIN = re.compile(r"\s*(?:#[^\n]*\n\s*)*\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S")
 """How a file of this kind begins."""
 
 _SPLIT = re.compile(
     r"\((?P<seconds>\d{1,12})(?:\.(?P<fraction>\d{1,9}))?\)"
     r"(?:\s+(?P<name>(?![0-9A-Fa-f]+(?:\s|$))[^\s#]+)(?=\s|$))?"
-    r"(?:\s+[0-9A-Fa-f]+\#(?:\#[0-9A-Fa-f])?)?"
-    r"\s*(?P<hex>(?:[0-9A-Fa-f]{2}\s*)*)(?:\s[RT]x?)?"
+    r"(?:(?:\s+[RT]X\s+[-B]\s+[-E])?\s+(?P<id>[0-9A-Fa-f]+)"
+    r"(?:\#(?:\#[0-9A-Fa-f]|R[0-9A-Fa-f]?)?|\s+\[\d{1,4}\](?:\s+remote request)?))?"
+    # What is taken here is not given back: long lines that fit nothing are soon known.
+    r"\s*+(?P<hex>(?:[0-9A-Fa-f]{2}\s*+)*+)(?:(?<=\s)(?:[RT]x?|ERRORFRAME))?\s*+(?:'.*')?"
 )
+_ERROR = 1 << 29
+"""The bit of an identifier that makes the frame a note about an error, which was on no line."""
 
 _LATEST = (1 << 63) - 1
 """The last time that tables have a place for: nanoseconds in an `int64`."""
@@ -43,8 +49,10 @@ def log_pieces(
         if not text or text.startswith("#"):
             continue
         found = _SPLIT.fullmatch(text)
-        if found is None or not (found["hex"] or "#" in text):
+        if found is None or not (found["hex"] or found["id"]):
             complain(f"line {number}: not `(SECONDS) [NAME] HEX`: {text[:40]!r}")
+        elif found["id"] and int(found["id"], 16) & _ERROR:
+            continue
         elif found["name"] not in senders or found["name"] == sender:
             when = int(found["seconds"]) * 10**9 + int((found["fraction"] or "").ljust(9, "0"))
             if when > _LATEST:
