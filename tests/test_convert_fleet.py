@@ -24,12 +24,14 @@ parquet = pytest.importorskip("pyarrow.parquet")
 dataset = pytest.importorskip("pyarrow.dataset")
 
 from protogen.convert.batches import Tally  # noqa: E402
+from protogen.convert.begun import MARKERS, marker_of  # noqa: E402
 from protogen.convert.decoding import column_decoders  # noqa: E402
 from protogen.convert.errors import ConvertError  # noqa: E402
 from protogen.convert.fleet import convert_fleet  # noqa: E402
-from protogen.convert.parts import MARKERS, Part, PartDone, marker_of, read_marker  # noqa: E402
+from protogen.convert.parts import Part, PartDone, read_marker  # noqa: E402
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry  # noqa: E402
-from protogen.convert.run import Job, plan  # noqa: E402
+from protogen.convert.run import Job, convert, plan  # noqa: E402
+from protogen.convert.state import RECORD  # noqa: E402
 from protogen.convert.tables import tables_of  # noqa: E402
 from protogen.convert.values import as_list  # noqa: E402
 from protogen.convert.writers import OutputFormat  # noqa: E402
@@ -296,6 +298,43 @@ def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) 
     found = dataset.dataset([str(out / file) for file in result.files]).to_table()
     assert found.column("address").to_pylist() == list(range(60))
     assert {path.name for path in out.rglob("*.parquet")} == {Path(f).name for f in result.files}
+
+
+@pytest.mark.parametrize("ended", ["_finished", "finish"], ids=["in_front", "when_it_is_recorded"])
+@pytest.mark.parametrize("second", [97, 10_000, None], ids=["same", "larger", "one_machine"])
+def test_what_a_fleet_did_not_finish_is_not_left_beside_it(
+    tmp_path: Path, monkeypatch: Any, second: int | None, ended: str
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    from protogen.convert import fleet
+
+    path, data = frames_in_frames()
+    (tmp_path / "run.bin").write_bytes(data)
+    out = tmp_path / "out"
+    job = job_of(path, "station", out)
+    named = plan(job, [str(tmp_path / "run.bin")])
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+
+        def convert_in_parts(size: int) -> list[Any]:
+            scheduler = fleet.Fleet(cluster.scheduler_address, None, size)
+            return list(convert_fleet(job, named, scheduler, pytest.fail, lambda amount: None))
+
+        def end(*arguments: Any) -> None:
+            raise InterruptedError
+
+        with monkeypatch.context() as patched:
+            patched.setattr(fleet, ended, end)
+            with pytest.raises(InterruptedError):
+                convert_in_parts(97)
+        assert len(list(out.glob("*/run.0*.parquet"))) > 3
+        if second is None:
+            (result,) = convert(job, named, pytest.fail, lambda amount: None)
+        else:
+            (result,) = convert_in_parts(second)
+    assert {file.relative_to(out).as_posix() for file in out.rglob("*.parquet")} == {*result.files}
+    assert sorted(item.name for item in out.iterdir() if item.name.startswith(".")) == [RECORD]
 
 
 def job_of(path: Path, sender: str, folder: Path) -> Job:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import shutil
@@ -10,14 +11,23 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from threading import Thread
 
 import pytest
 from cli_support import PATIENCE, ROOT, SINK, run
+from click.testing import Result
 from test_json_lines import capture_of
 
+import protogen
+from protogen.convert import locking
 from protogen.convert.batches import Tally
-from protogen.convert.outputs import Pending, write_whole
+from protogen.convert.errors import ConvertError
+from protogen.convert.kinds import OutputFormat
+from protogen.convert.locking import alone
+from protogen.convert.outputs import Pending, forget_torn, write_whole
 from protogen.convert.state import RECORD, Done, State
+from protogen.convert.tables import tables_of
+from protogen.convert.writers import first_files
 
 pytest.importorskip("pyarrow")
 
@@ -124,6 +134,128 @@ def test_a_lost_file_is_made_again(workspace: Path, tmp_path: Path) -> None:
     assert (tmp_path / "numbers" / "one.arrow").exists()
 
 
+_KILLED_EVERYWHERE = """
+import os, shutil, sys
+from pathlib import Path
+import protogen
+from protogen.convert.kinds import OutputFormat
+from protogen.convert.run import Job, convert, plan
+
+schema, folder, to = Path(sys.argv[1]), Path(sys.argv[2]), OutputFormat(sys.argv[3])
+protocol = protogen.load(schema)
+runtime = protogen.module_of(protocol).PROTOCOL
+capture, out = folder / "run.bin", folder / "out"
+
+
+def go(target):
+    job = Job(protocol, runtime, protocol.sender("pc"), to, target, engine="events")
+    list(convert(job, plan(job, [str(capture)]), print, lambda count: None))
+
+
+def tree(target):
+    files = (path for path in sorted(target.rglob("*")) if path.is_file())
+    found = {path.relative_to(target).as_posix(): path.read_bytes() for path in files}
+    del found[".protogen-convert.json"]
+    return found
+
+
+def killed(step):
+    if (child := os.fork()) == 0:
+        steps = iter(range(1, step))
+
+        def hook(event, arguments):
+            if event in ("open", "os.rename", "os.remove", "os.rmdir", "os.mkdir"):
+                if any(str(out) in str(it) for it in arguments) and next(steps, None) is None:
+                    os._exit(9)
+
+        sys.addaudithook(hook)
+        go(out)
+        os._exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
+
+
+go(folder / "before")
+before = tree(folder / "before")
+capture.write_bytes(b"only noise")
+go(folder / "after")
+after = tree(folder / "after")
+step = 0
+while True:
+    step += 1
+    shutil.rmtree(out, ignore_errors=True)
+    shutil.copytree(folder / "before", out)
+    if not killed(step):
+        break
+    for name, data in tree(out).items():
+        is_hidden = name.rpartition("/")[2].startswith(".")
+        assert is_hidden or data in (before.get(name), after.get(name))
+    go(out)
+    assert tree(out) == after, (step, sorted(tree(out)))
+print(step)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="it forks")
+@pytest.mark.parametrize("to", ["csv", "jsonl"])
+def test_a_run_that_is_killed_anywhere_is_gone_on_with(
+    workspace: Path, tmp_path: Path, to: str
+) -> None:
+    (tmp_path / "run.bin").write_bytes((workspace / "one.bin").read_bytes())
+    arguments = [str(workspace / "sink.yaml"), str(tmp_path), to]
+    done = subprocess.run(
+        [sys.executable, "-c", _KILLED_EVERYWHERE, *arguments],
+        cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE * 4, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert int(done.stdout) > 15
+
+
+def test_captures_of_one_name_do_not_replace_each_other(workspace: Path, tmp_path: Path) -> None:
+    for day in ("monday", "tuesday"):
+        (tmp_path / day).mkdir()
+        (tmp_path / day / "run.bin").write_bytes((workspace / "one.bin").read_bytes())
+    schema, out = str(workspace / "sink.yaml"), tmp_path / "out"
+
+    def convert(day: str, *more: str, sender: str = "pc") -> Result:
+        capture = str(tmp_path / day / "run.bin")
+        return run(
+            "convert", schema, capture, "--sender", sender, "--to", "csv", "-o", str(out), *more
+        )
+
+    assert convert("monday").exit_code == 0
+    before = visible(out)
+    refused = convert("tuesday")
+    assert refused.exit_code == 2
+    assert f"{out} has tables called run of {tmp_path / 'monday' / 'run.bin'}" in refused.output
+    assert convert("monday", sender="board").exit_code == 2
+    assert visible(out) == before
+    assert convert("tuesday", "--force").exit_code == 0
+    assert convert("monday").exit_code == 2
+    shutil.rmtree(out)
+    assert convert("monday").exit_code == 0
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_what_came_through_a_pipe_may_be_something_else_now(
+    workspace: Path, tmp_path: Path
+) -> None:
+    pipe, out = tmp_path / "pipe", tmp_path / "out"
+    os.mkfifo(pipe)
+    sizes = []
+    for name in ("one", "two"):
+        data = (workspace / f"{name}.bin").read_bytes()
+        writer = Thread(target=pipe.write_bytes, args=(data,))
+        writer.start()
+        schema = str(workspace / "sink.yaml")
+        arguments = [schema, str(pipe), "--sender", "pc", "--to", "jsonl", "-o", str(out)]
+        done = run("convert", *arguments)
+        writer.join()
+        assert done.exit_code == 0, done.output
+        assert f"{len(data)} bytes" in done.output
+        sizes.append((out / "pipe.jsonl").stat().st_size)
+    assert sizes[1] > 30 * sizes[0]
+
+
 class TestState:
     def test_what_can_not_be_read_is_no_record(self, tmp_path: Path) -> None:
         for text in ("", "[]", '{"version": 2}', '{"version": 1, "captures": {"a": {}}}'):
@@ -132,8 +264,10 @@ class TestState:
 
     def test_files_that_were_expected_are_owned_but_not_finished(self, tmp_path: Path) -> None:
         (tmp_path / "a.csv").write_text("")
-        State(tmp_path).expect("a", ["a.csv"])
+        State(tmp_path).expect("a", ["a.csv"], {"capture": "x"})
         state = State(tmp_path)
+        assert state.origin("a") == {"capture": "x"}
+        assert state.origin("b") == {}
         assert state.owns("a.csv")
         assert not state.owns("b.csv")
         assert state.finished("a", {"size": 1}) is None
@@ -142,6 +276,91 @@ class TestState:
         assert found is not None
         assert found.tally == Tally(3)
         assert json.loads((tmp_path / RECORD).read_text())["version"] == 1
+
+    def test_what_earlier_runs_made_stays_ours_until_it_is_done(self, tmp_path: Path) -> None:
+        state = State(tmp_path)
+        state.record("a", Done({"size": 1}, ["old.csv"], Tally(), ""))
+        state.expect("a", ["new.csv"], {})
+        assert State(tmp_path).files("a") == ["new.csv", "old.csv"]
+
+    def test_runs_at_the_same_time_keep_what_others_did(self, tmp_path: Path) -> None:
+        one, other = State(tmp_path / "out"), State(tmp_path / "out")
+        one.record("a", Done({"size": 1}, [], Tally(1), ""))
+        other.record("b", Done({"size": 2}, [], Tally(2), ""))
+        found = State(tmp_path / "out")
+        assert found.finished("a", {"size": 1}) is not None
+        assert found.finished("b", {"size": 2}) is not None
+
+    def test_what_has_no_size_is_never_finished(self, tmp_path: Path) -> None:
+        state = State(tmp_path)
+        state.record("a", Done({"size": None}, [], Tally(), ""))
+        assert state.finished("a", {"size": None}) is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such locks")
+class TestLocks:
+    def test_one_run_at_a_time_writes_a_capture(self, workspace: Path, tmp_path: Path) -> None:
+        arguments = command(workspace, tmp_path, "csv")
+        with alone(tmp_path, "two.csv"):
+            held = run(*arguments)
+        assert held.exit_code == 2
+        assert f"another run is writing two.csv in {tmp_path}" in held.output
+        assert run(*arguments).exit_code == 0
+        assert not list(tmp_path.glob(".*.lock"))
+
+    def test_the_lock_of_a_file_that_was_removed_is_none(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def lock_late(descriptor: int, *, wait: bool) -> bool:
+            if not late:
+                (tmp_path / ".a.lock").unlink()  # As the run does that had it until now.
+            late.append(descriptor)
+            return lock(descriptor, wait=wait)
+
+        lock, late = locking._lock, list[int]()
+        monkeypatch.setattr(locking, "_lock", lock_late)
+        with alone(tmp_path, "a"):
+            assert len(late) == 2
+            with pytest.raises(ConvertError), alone(tmp_path, "a"):
+                pass
+
+    def test_a_file_system_without_locks_is_as_good_as_it_can(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def refuse(descriptor: int, how: int) -> None:
+            raise OSError(errno.ENOLCK, "no locks")
+
+        monkeypatch.setattr("fcntl.flock", refuse)
+        with alone(tmp_path, "a"), alone(tmp_path, "a"):
+            assert (tmp_path / ".a.lock").exists()
+
+
+class TestTorn:
+    @pytest.mark.parametrize("to", list(OutputFormat))
+    def test_all_files_of_a_format_are_known(
+        self, workspace: Path, tmp_path: Path, to: OutputFormat
+    ) -> None:
+        pytest.importorskip("mcap")
+        assert run(*command(workspace, tmp_path, to)).exit_code == 0
+        protocol = protogen.load(workspace / "sink.yaml")
+        tables = tables_of(protocol, protocol.sender("pc"))
+        known = {file for name in ("one", "two", "three") for file in first_files(to, name, tables)}
+        assert known >= set(visible(tmp_path))
+
+    def test_nothing_is_left_of_what_was_killed(self, tmp_path: Path) -> None:
+        here = tmp_path / "gyro"
+        here.mkdir()
+        (here / "x.csv").touch()
+        (here / "x.part-0001.csv").touch()
+        for name in ("x", "x.part-0002", "x.part-0003", "y"):
+            (here / f".{name}.csv.partial").touch()
+        (tmp_path / "other").mkdir()
+        (tmp_path / "other" / ".x.csv.partial").touch()
+        forget_torn(tmp_path, ["gyro/x.csv", "other/x.csv", "third/x.csv"])
+        assert sorted(path.name for path in here.iterdir()) == [
+            ".x.csv.partial", ".y.csv.partial", "x.csv", "x.part-0001.csv",
+        ]  # fmt: skip
+        assert not (tmp_path / "other").exists()
 
 
 class TestPending:

@@ -14,25 +14,23 @@ from pathlib import Path
 from typing import Any
 
 from protogen.convert.batches import Tally
+from protogen.convert.begun import begin, finish, is_begun, part_name
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.inputs import Source, format_of
-from protogen.convert.outputs import remove, sweep, write_whole
+from protogen.convert.outputs import remove
 from protogen.convert.parts import (
-    MARKERS,
     Part,
     PartDone,
     Work,
     convert_part,
-    marker_of,
     read_marker,
 )
 from protogen.convert.ranges import START
-from protogen.convert.run import Job, Result, check_room
+from protogen.convert.run import Job, Result, check_origin, check_room, forget_parts
 from protogen.convert.state import Done, State
 
 PART_SIZE = 256 << 20
 """Bytes of a capture in a part, unless somebody says otherwise."""
-_DIGITS = 6
 
 Complain = Callable[[str], None]
 Advance = Callable[[int], None]
@@ -102,6 +100,7 @@ def convert_fleet(
             waiting.append(_planned(job, name, source, stamp, fleet.part_size))
         else:
             advance(stamp["size"] or 0)
+            forget_parts(job, name, before.files)
             yield Result(
                 source.place, before.format, before.tally, before.files, True, before.lost_lines
             )
@@ -111,8 +110,6 @@ def convert_fleet(
         with _client(fleet) as client:
             for capture in _Workers(client, work, advance).run(waiting, fresh=job.force):
                 yield _finished(job, state, capture, complain)
-    if (job.folder / MARKERS).is_dir() and not any((job.folder / MARKERS).iterdir()):
-        (job.folder / MARKERS).rmdir()
 
 
 def _planned(
@@ -136,7 +133,7 @@ def _planned(
     for number, start in enumerate(range(0, size, part_size)):
         span = (start, min(size, start + part_size))
         of_part = {**stamp, "span": list(span)}
-        part = Part(f"{name}.{number:0{_DIGITS}}", place, name, of_part, kind, size, span)
+        part = Part(part_name(name, number), place, name, of_part, kind, size, span)
         parts.append(replace(part, entry=START) if number == 0 else part)
     return _Capture(name, source, str(job.folder), str(format), stamp, parts)
 
@@ -155,11 +152,8 @@ def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> 
             complain(f"{capture.source.place}: {problem}")
     stale = [file for file in state.files(key) if file not in files]
     remove(job.folder, stale)
-    sweep(job.folder, [f"{part.name}.{job.format}" for part in capture.parts], files)
     state.record(key, Done(capture.stamp, files, tally, capture.format, lost))
-    # A worker that was killed may have left a marker that is not whole.
-    markers = [marker_of(job.folder, part.name) for part in capture.parts]
-    sweep(job.folder, [path.name for path in (*markers, _begun(job, capture))], within=MARKERS)
+    finish(job.folder, capture.name, [part.name for part in capture.parts], files)
     return Result(capture.source.place, capture.format, tally, files, lost_lines=lost)
 
 
@@ -245,16 +239,12 @@ def _begin(job: Job, state: State, capture: _Capture) -> None:
 
     Raises ConvertError where there are some already that no earlier run made.
     """
-    begun = _begun(job, capture)
-    if not begun.exists():
+    check_origin(job, state, capture.name, capture.stamp)
+    if not is_begun(job.folder, capture.name):
         names = [f"{part.name}.{job.format}" for part in capture.parts]
         tables = [table.name for table in job.tables.all_tables]
         check_room(job, state, (f"{table}/{name}" for table in tables for name in names))
-        write_whole(begun, b"")
-
-
-def _begun(job: Job, capture: _Capture) -> Path:
-    return job.folder / MARKERS / f"{capture.name}.begun"
+    begin(job.folder, capture.name, len(capture.parts))
 
 
 def _size(part: Part) -> int:

@@ -12,6 +12,7 @@ bytes are hex digits. All else is the raw bytes of the line.
 
 from __future__ import annotations
 
+import os
 import stat
 import sys
 import zlib
@@ -65,6 +66,13 @@ class Source:
     def name(self) -> str:
         """The name that its tables get, if no other capture has it: that of the file, bare."""
         return plain_name(self.place)
+
+    @property
+    def identity(self) -> str:
+        """The place, whatever the working folder is."""
+        if self.is_standard_input or self.is_url:
+            return self.place
+        return str(Path(os.path.normpath(self.place)).absolute())
 
     def stamp(self) -> tuple[int | None, int | None]:
         """Size in bytes, and the time in ns of the last change; None where that is not known.

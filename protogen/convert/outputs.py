@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Iterable
 from contextlib import suppress
+from itertools import chain, count
 from pathlib import Path
 
 _PARTIAL = ".partial"
@@ -73,6 +74,18 @@ def remove(folder: Path, relatives: Iterable[str]) -> None:
     for relative in relatives:
         (folder / relative).unlink(missing_ok=True)
         _remove_empty((folder / relative).parent, folder)
+
+
+def forget_torn(folder: Path, relatives: Iterable[str]) -> None:
+    """Remove what runs that were killed left half written of files, and of those they go on in."""
+    for relative in relatives:
+        numbers = count()
+        number = next(n for n in numbers if not (folder / continuation(relative, n)).exists())
+        with suppress(FileNotFoundError):
+            for following in chain([number], numbers):
+                hidden = _hidden(folder / continuation(relative, following), "")
+                hidden.unlink()
+                _remove_empty(hidden.parent, folder)
 
 
 def sweep(folder: Path, names: Iterable[str], keep: Iterable[str] = (), within: str = "*") -> None:

@@ -18,6 +18,7 @@ from typing import Any, BinaryIO, cast
 from uuid import uuid4
 
 from protogen.convert.batches import Tally, batches_of
+from protogen.convert.begun import marker_of
 from protogen.convert.inputs import Source, open_stream, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, write_whole
@@ -27,8 +28,6 @@ from protogen.convert.writers import open_writer, write_all
 from protogen.model.protocol import Protocol
 from protogen.runtime.sender import SenderSpec
 
-MARKERS = ".protogen-convert-parts"
-"""The folder of markers in the output folder."""
 _LEAST_LEAD = 1 << 14
 """A decoder that is to guess an entry begins at least so many bytes before the range."""
 
@@ -83,11 +82,6 @@ class PartDone:
             "files": list(self.files),
             "complaints": list(self.complaints),
         }
-
-
-def marker_of(folder: Path, name: str) -> Path:
-    """Where the marker of a part is."""
-    return folder / MARKERS / f"{name}.json"
 
 
 def read_marker(folder: Path, part: Part) -> PartDone | None:

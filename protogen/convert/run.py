@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from protogen.convert.batches import BatchDecoder, Tally, batches_of
+from protogen.convert.begun import finish, is_begun
 from protogen.convert.capture_names import names_of
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, opened
 from protogen.convert.kinds import InputKind, OutputFormat
-from protogen.convert.outputs import Pending, remove
+from protogen.convert.locking import alone
+from protogen.convert.outputs import Pending, forget_torn, remove
 from protogen.convert.state import Done, State
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import open_writer, require, write_all
+from protogen.convert.writers import first_files, open_writer, require, write_all
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.codec import Protocol as RuntimeProtocol
 
+_ORIGIN = ("capture", "protocol", "sender")
+"""Of a stamp, what tables are made of, whatever becomes of it."""
 Complain = Callable[[str], None]
 Advance = Callable[[int], None]
 
@@ -54,7 +58,7 @@ class Job:
         """All that the result depends on, to see whether an earlier one still holds."""
         size, changed = source.stamp()
         return {
-            "capture": source.place,
+            "capture": source.identity,
             "size": size,
             "changed_ns": changed,
             "input": self.input and self.input.value,
@@ -98,17 +102,19 @@ def convert(
     for name, source in named:
         key = f"{name}.{job.format}"
         stamp = job.stamp(source)
-        done = None if source.is_standard_input or job.force else state.finished(key, stamp)
+        done = None if job.force else state.finished(key, stamp)
+        was_done = done is not None
         if done is None:
-            done = _convert_one(job, name, source, state, complain, advance)
-            state.record(key, done)
-            yield Result(
-                source.place, done.format, done.tally, done.files, lost_lines=done.lost_lines
-            )
+            with alone(job.folder, key):
+                state.refresh()
+                check_origin(job, state, name, stamp)
+                done = _convert_one(job, name, source, state, complain, advance)
+            state.record(key, done)  # After all else: what is recorded is not looked at again.
         else:
-            advance(stamp["size"] or 0)
-            lost = done.lost_lines
-            yield Result(source.place, done.format, done.tally, done.files, True, lost)
+            advance(stamp["size"])
+        forget_parts(job, name, done.files)
+        lost = done.lost_lines
+        yield Result(source.place, done.format, done.tally, done.files, was_done, lost)
 
 
 def _convert_one(
@@ -129,14 +135,21 @@ def _convert_one(
         with opened(source, job.input, job.sender.name, senders, lose, advance) as capture:
             writer = open_writer(job.format, name, pending, job.tables)
             write_all(writer, batches_of(job.decoder(), capture.chunks), tally)
-            _make_room(job, f"{name}.{job.format}", pending.relatives, state)
+            _make_room(job, f"{name}.{job.format}", pending.relatives, stamp, state)
             files = pending.commit()
+            forget_torn(job.folder, first_files(job.format, name, job.tables))
     except BaseException as error:
         pending.discard()
         if isinstance(error, OSError) and error.filename is None:
             error.filename = str(job.folder)  # As when the disk is full.
         raise
     return Done(stamp, files, tally, str(capture.format), lost)
+
+
+def forget_parts(job: Job, name: str, files: Sequence[str]) -> None:
+    """Remove what a fleet left that was ended while it made a capture, but for these files."""
+    if job.format is OutputFormat.PARQUET and is_begun(job.folder, name):
+        finish(job.folder, name, (), files)
 
 
 def check_room(job: Job, state: State, files: Iterable[str]) -> None:
@@ -149,7 +162,26 @@ def check_room(job: Job, state: State, files: Iterable[str]) -> None:
             )
 
 
-def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
+def check_origin(job: Job, state: State, name: str, stamp: Mapping[str, Any]) -> None:
+    """Raise ConvertError where files of this name are there that are made of something else.
+
+    A capture that has changed, or a schema that has, is not something else.
+    """
+    key = f"{name}.{job.format}"
+    earlier = state.origin(key)
+    there = any((job.folder / file).exists() for file in state.files(key))
+    if job.force or not there or all(earlier.get(word) in (None, stamp[word]) for word in _ORIGIN):
+        return
+    raise ConvertError(
+        f"{job.folder} has tables called {name} of {earlier['capture']}, sent by"
+        f" {earlier['sender']} of {earlier['protocol']}",
+        "name another folder with --output, or replace them with --force",
+    )
+
+
+def _make_room(
+    job: Job, key: str, files: Sequence[str], stamp: Mapping[str, Any], state: State
+) -> None:
     """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
     check_room(job, state, files)
     for file in files:
@@ -160,5 +192,5 @@ def _make_room(job: Job, key: str, files: Sequence[str], state: State) -> None:
                 "name another folder with --output for one of them",
             )
     stale = [file for file in state.files(key) if file not in files]
-    state.expect(key, files)
+    state.expect(key, files, {word: stamp[word] for word in _ORIGIN})
     remove(job.folder, stale)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from protogen.convert.batches import Tally
+from protogen.convert.locking import one_after_another
 from protogen.convert.outputs import write_whole
 
 RECORD = ".protogen-convert.json"
@@ -39,16 +40,27 @@ class State:
         self._path = folder / RECORD
         self._done = _read(self._path)
 
+    def refresh(self) -> None:
+        """Take note of what other runs have done."""
+        self._done = _read(self._path)
+
     def finished(self, key: str, stamp: Mapping[str, Any]) -> Done | None:
-        """What became of a capture, if nothing has changed since and its files are there."""
+        """What became of a capture, if nothing has changed since and its files are there.
+
+        Whether what comes through a pipe has changed can't be seen: it has no size.
+        """
         done = self._done.get(key)
-        if done is None or dict(done.stamp) != dict(stamp):
+        if done is None or dict(done.stamp) != dict(stamp) or stamp["size"] is None:
             return None
         return done if all((self._folder / file).is_file() for file in done.files) else None
 
     def files(self, key: str) -> Sequence[str]:
         """The files that an earlier run made of a capture."""
         return self._done[key].files if key in self._done else ()
+
+    def origin(self, key: str) -> Mapping[str, Any]:
+        """What an earlier run made files of: a stamp, or of one that did not end some of it."""
+        return self._done[key].stamp if key in self._done else {}
 
     def owns(self, file: str) -> bool:
         """Whether a file is one that an earlier run made."""
@@ -61,14 +73,21 @@ class State:
 
     def record(self, key: str, done: Done) -> None:
         """Take note that a capture is done. Raises OSError."""
-        self._done[key] = done
-        captures = {name: _as_json(item) for name, item in sorted(self._done.items())}
-        text = json.dumps({"version": _VERSION, "captures": captures}, indent=1) + "\n"
-        write_whole(self._path, text.encode())
+        self._folder.mkdir(parents=True, exist_ok=True)
+        with one_after_another(self._folder):
+            self.refresh()
+            self._done[key] = done
+            captures = {name: _as_json(item) for name, item in sorted(self._done.items())}
+            text = json.dumps({"version": _VERSION, "captures": captures}, indent=1) + "\n"
+            write_whole(self._path, text.encode())
 
-    def expect(self, key: str, files: Sequence[str]) -> None:
-        """Take note that files are about to come, so that they are known to be ours if they do."""
-        self.record(key, Done({}, files, Tally(), ""))
+    def expect(self, key: str, files: Sequence[str], origin: Mapping[str, Any]) -> None:
+        """Take note that files are about to come, so that they are known to be ours if they do.
+
+        Those of earlier runs stay ours until it is done, so that none is forgotten.
+        """
+        both = sorted({*files, *self.files(key)})
+        self.record(key, Done(origin, both, Tally(), ""))
 
 
 def _as_json(done: Done) -> dict[str, Any]:

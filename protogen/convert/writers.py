@@ -60,6 +60,19 @@ def open_writer(format: OutputFormat, name: str, pending: Pending, tables: Table
             return McapWriter(name, pending, tables)
 
 
+def first_files(format: OutputFormat, name: str, tables: Tables) -> list[str]:
+    """The files, relative to the output folder, that a writer of a capture may begin with."""
+    match format:
+        case OutputFormat.JSONL | OutputFormat.MCAP:
+            return [f"{name}.{format}"]
+        case OutputFormat.CSV:
+            suffixes = ["csv", "columns.json"]
+        case _:
+            suffixes = [format]
+    tables_of_all = (table.name for table in tables.all_tables)
+    return [f"{table}/{name}.{suffix}" for table in tables_of_all for suffix in suffixes]
+
+
 def write_all(writer: Writer, batches: Iterable[Batch], tally: Tally) -> None:
     """Write every batch, count what is in them, and close the writer whatever happens."""
     try:
