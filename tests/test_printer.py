@@ -19,7 +19,7 @@ from tooling import require_tool
 
 np = pytest.importorskip("numpy")
 
-from protogen.convert.arrays import Numbers  # noqa: E402
+from protogen.convert.arrays import Lists, Numbers  # noqa: E402
 from protogen.convert.batches import Rows, Tally  # noqa: E402
 from protogen.convert.composed import ListsOf, Structs  # noqa: E402
 from protogen.convert.csv_writer import CsvWriter  # noqa: E402
@@ -214,6 +214,77 @@ def test_lists_in_lists_may_all_be_empty(counts: list[int]) -> None:
     inner = Structs({"x": ListsOf(innermost, inside)}, sum(counts))
     lists = ListsOf(inner, np.array(counts))
     assert json_texts(lists, str) == [json.dumps(value) for value in lists.tolist()]
+
+
+def nested_values(dice: Random, rows: int, deep: int) -> Any:
+    """Numbers, lists and structs of them, and now and then a text, which lists hold no more of."""
+    kind = dice.choice(["number", "list", "struct", "lists"] if deep else ["number", "list"])
+    if kind == "struct":
+        names = dice.sample(["x", "naïve", 'a "b"', "y%", "z"], dice.randrange(1, 4))
+        return Structs({name: nested_values(dice, rows, deep - 1) for name in names}, rows)
+    if kind == "lists":
+        counts = np.array([dice.randrange(4) for _ in range(rows)], "i4")
+        return ListsOf(nested_values(dice, int(counts.sum()), deep - 1), counts)
+    if dice.random() < 0.05:
+        return [dice.choice(["", '"', "é"]) for _ in range(rows)]
+    code = dice.choice(["u1", "i2", "u8", "?", "f4", "f8"])
+    size = np.dtype(code).itemsize
+    many = 3 if kind == "list" else 1
+    data = np.frombuffer(dice.randbytes(rows * many * size), "u1" if code == "?" else code)
+    matrix = (data % 2 == 1 if code == "?" else data).reshape(rows, many)
+    if kind == "number":
+        return Numbers(matrix[:, 0].copy())
+    counts = np.array([dice.randrange(many + 1) for _ in range(rows)], "i4")
+    return Lists(matrix, dice.choice([counts, None]))
+
+
+def csv_of_lists(values: ListsOf) -> tuple[str, str, int]:
+    """Lines that C printed, those of Python, and how many columns C knew nothing of."""
+    table = tables_of(protocol_of(SENDERS[0][0]), protocol_of(SENDERS[0][0]).senders[0]).invalid
+    table = replace(table, frame_columns=table.frame_columns[:1], columns=table.columns[-1:])
+    asked = []
+
+    def show(column: Any, shown: Any) -> list[str]:
+        asked.append(column)
+        return json_texts(shown, str)
+
+    printer = CsvPrinter(show)
+    rows = Rows(table, [Numbers(np.arange(len(values), dtype="u8")), values])
+    found = b"".join(printer.lines(rows)).decode()
+    expected = io.StringIO(newline="")
+    texts = map(json.dumps, values.tolist())
+    csv.writer(expected, lineterminator="\n").writerows(enumerate(texts))
+    return found, expected.getvalue(), len(asked)
+
+
+def test_lists_of_anything_are_those_of_python() -> None:
+    known = 0
+    for seed in range(150):
+        dice = Random(seed)
+        counts = np.array([dice.randrange(5) for _ in range(dice.randrange(1, 40))], "i4")
+        inside = nested_values(dice, int(counts.sum()), 3)
+        found, expected, asked = csv_of_lists(ListsOf(inside, counts))
+        assert found == expected, seed
+        known += not asked
+    assert known > 100
+
+
+def test_lists_that_are_long_and_short_by_turns_take_no_room() -> None:
+    counts = np.zeros(5000, "i4")
+    counts[7] = 300
+    found, expected, asked = csv_of_lists(ListsOf(Numbers(np.arange(300)), counts))
+    assert found == expected
+    assert asked == 1
+
+
+def test_lists_in_lists_are_printed_as_deep_as_there_is_room() -> None:
+    for deep, is_printed in ((9, True), (10, False)):
+        values: Any = Numbers(np.arange(1))
+        for _ in range(deep):
+            values = ListsOf(values, np.ones(1, "i4"))
+        found, expected, asked = csv_of_lists(values)
+        assert found == expected == f"0,{'[' * deep}0{']' * deep}\n"
+        assert bool(asked) != is_printed
 
 
 def test_without_a_compiler_csv_is_the_same(

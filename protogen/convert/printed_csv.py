@@ -16,15 +16,14 @@ from protogen.convert.arrays import Array, Codes, Lists, Nothing, Numbers, Octet
 from protogen.convert.batches import Rows
 from protogen.convert.composed import ListsOf, Structs
 from protogen.convert.programs import Programs, needs_quotes, operand
+from protogen.convert.side_by_side import NUMBERS, code_of, laid, spread
 from protogen.convert.tables import Column
 from protogen.convert.values import as_list, json_of_each
 from protogen.native.printer import BESIDE, Kind, Operand, Printer, Table
 
 Show = Callable[[Column, Any], Sequence[str]]
 """The cells of a column, as texts."""
-_NUMBERS = ("nan", "inf", "-inf")
-_IN_LISTS = ("NaN", "Infinity", "-Infinity")
-"""As `json.dumps` has them."""
+_ALONE = ("nan", "inf", "-inf")
 
 
 class CsvPrinter:
@@ -66,11 +65,7 @@ class _Lent:
 
     def number(self, values: Array) -> Operand:
         """A column of numbers."""
-        return operand(_code(values), source=self.take(values))
-
-
-def _code(values: Array) -> str:
-    return "?" if values.dtype == np.bool_ else values.dtype.str[1:]
+        return operand(code_of(values), source=self.take(values))
 
 
 def _cell(programs: Programs, lent: _Lent, values: Any, show: Callable[[Any], Any]) -> Any:
@@ -79,7 +74,7 @@ def _cell(programs: Programs, lent: _Lent, values: Any, show: Callable[[Any], An
         case Nothing():
             return None
         case Numbers():
-            number = partial(_number, programs, lent.number(values.values), values.values, _NUMBERS)
+            number = partial(_number, programs, lent.number(values.values), values.values, _ALONE)
             if values.missing is None:
                 number()
             else:
@@ -91,8 +86,8 @@ def _cell(programs: Programs, lent: _Lent, values: Any, show: Callable[[Any], An
             return values.codes.dtype, values.texts
         case Lists():
             return _lists(programs, lent, values)
-        case ListsOf(elements=Structs() as structs, counts=counts) if _are_numbers(structs):
-            return _structs(programs, lent, structs, counts)
+        case ListsOf() if (shape := _nested(programs, lent, values)) is not None:
+            return shape
         case Octets(values=matrix, counts=counts):
             first = Operand(lent.take(matrix))
             if counts is None:
@@ -122,7 +117,7 @@ def _texts(programs: Programs, lent: _Lent, texts: Sequence[str]) -> None:
 
 
 def _number(programs: Programs, place: Operand, values: Array, others: Any) -> None:
-    programs.number(place, _code(values), others)
+    programs.number(place, code_of(values), others)
 
 
 def _lists(programs: Programs, lent: _Lent, values: Lists) -> Any:
@@ -132,7 +127,7 @@ def _lists(programs: Programs, lent: _Lent, values: Lists) -> Any:
     if values.counts is not None:
         count = lent.number(values.counts)
     beside = -1 if missing is None else lent.take(np.ascontiguousarray(missing).view("u1"))
-    element = partial(_number, programs, first._replace(source=-1, offset=0), matrix, _IN_LISTS)
+    element = partial(_number, programs, first._replace(source=-1, offset=0), matrix, NUMBERS)
 
     def body() -> None:
         if missing is None:
@@ -149,36 +144,19 @@ def _lists(programs: Programs, lent: _Lent, values: Lists) -> Any:
     return matrix.dtype, matrix.shape[1], values.counts is None, missing is None
 
 
-def _are_numbers(structs: Structs) -> bool:
-    members = structs.members.values()
-    return bool(members) and all(isinstance(it, Numbers) and it.missing is None for it in members)
-
-
-def _structs(programs: Programs, lent: _Lent, structs: Structs, counts: Array) -> Any:
-    """Lists of structs of numbers, which lie side by side for the time being."""
-    arrays = {name: member.values for name, member in structs.members.items()}
-    record = np.dtype([(name, array.dtype) for name, array in arrays.items()])
-    places = record.fields
-    assert places is not None
-    side_by_side = np.zeros((len(counts), max(1, int(counts.max(initial=0)))), record)
-    there = np.arange(side_by_side.shape[1]) < counts.reshape(-1, 1)
-    for name, array in arrays.items():
-        side_by_side[name][there] = array
-
-    def body() -> None:
-        for place, (name, array) in enumerate(arrays.items()):
-            programs.text(f"{', ' if place else '{'}{json.dumps(name)}: ")
-            code = _code(array)
-            programs.number(operand(code, places[name][1]), code, _IN_LISTS)
-        programs.text("}")
-
+def _nested(programs: Programs, lent: _Lent, values: ListsOf) -> Any:
+    """Lists of what lies side by side for the time being; None if C knows nothing of it."""
+    elements = spread(laid(values.elements), values.counts)
+    if elements is None:
+        return None
+    matrix = elements.values
     programs.step(Kind.QUOTE)
     programs.text("[")
-    first, count = Operand(lent.take(side_by_side)), lent.number(np.ascontiguousarray(counts))
-    programs.listed(first, record.itemsize, count, body)
+    first, count = Operand(lent.take(matrix)), lent.number(np.ascontiguousarray(values.counts))
+    programs.listed(first, matrix.itemsize, count, lambda: elements.step(programs, 0))
     programs.text("]")
     programs.step(Kind.UNQUOTE)
-    return "structs", tuple(arrays), record
+    return "nested", matrix.dtype
 
 
 def _quoted(text: str) -> str:
