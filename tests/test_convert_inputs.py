@@ -127,6 +127,8 @@ class TestNames:
         assert names_of(places) == names
 
     def test_what_would_be_called_alike(self) -> None:
+        with pytest.raises(ConvertError, match=r"^a\.bin is given twice"):
+            names_of(["a.bin"] * 2)
         with pytest.raises(ConvertError, match=r"a/run\.bin is given twice"):
             names_of(["a/../a/run.bin", "a/run.bin"])
         with pytest.raises(ConvertError, match=r"a/run\.bin and /a/run\.bin would both be called"):

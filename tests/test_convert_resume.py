@@ -291,6 +291,15 @@ class TestState:
         assert found.finished("a", {"size": 1}) is not None
         assert found.finished("b", {"size": 2}) is not None
 
+    def test_a_capture_has_a_line_of_the_record(self, tmp_path: Path) -> None:
+        state = State(tmp_path)
+        for size, name in ((1, "b"), (2, 'a"'), (3, "b")):
+            state.record(name, Done({"size": size}, [f"{name}.csv"], Tally(size), "raw"))
+        text = (tmp_path / RECORD).read_text()
+        captures = json.loads(text)["captures"]
+        assert {name: it["stamp"]["size"] for name, it in captures.items()} == {'a"': 2, "b": 3}
+        assert len(text.splitlines()) == 4
+
     def test_what_has_no_size_is_never_finished(self, tmp_path: Path) -> None:
         state = State(tmp_path)
         state.record("a", Done({"size": None}, [], Tally(), ""))

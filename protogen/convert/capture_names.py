@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 
@@ -20,14 +21,17 @@ def names_of(places: Sequence[str]) -> list[str]:
     Raises ConvertError where a capture is given twice.
     """
     plain = [plain_name(place) for place in places]
+    times = Counter(plain)
     names = [
-        name if plain.count(name) == 1 else _long_name(place)
+        name if times[name] == 1 else _long_name(place)
         for name, place in zip(plain, places, strict=True)
     ]
-    for index, name in enumerate(names):
-        if name not in names[:index]:
+    first: dict[str, str] = {}
+    for name, place in zip(names, places, strict=True):
+        if name not in first:
+            first[name] = place
             continue
-        place, other = places[index], places[names.index(name)]
+        other = first[name]
         if os.path.normpath(place) == os.path.normpath(other):
             raise ConvertError(f"{place} is given twice")
         raise ConvertError(

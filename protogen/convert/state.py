@@ -38,11 +38,18 @@ class State:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._path = folder / RECORD
+        self._version = _version(self._path)
         self._done = _read(self._path)
+        self._texts: dict[str, str] = {}
+        """Of those in `_done`, what is written of them, where that is known."""
 
     def refresh(self) -> None:
         """Take note of what other runs have done."""
-        self._done = _read(self._path)
+        version = _version(self._path)
+        if version != self._version:
+            self._version = version
+            self._done = _read(self._path)
+            self._texts = {}
 
     def finished(self, key: str, stamp: Mapping[str, Any]) -> Done | None:
         """What became of a capture, if nothing has changed since and its files are there.
@@ -77,9 +84,17 @@ class State:
         with one_after_another(self._folder):
             self.refresh()
             self._done[key] = done
-            captures = {name: _as_json(item) for name, item in sorted(self._done.items())}
-            text = json.dumps({"version": _VERSION, "captures": captures}, indent=1) + "\n"
-            write_whole(self._path, text.encode())
+            self._texts[key] = _text(done)
+            write_whole(self._path, self._text().encode())
+            self._version = _version(self._path)
+
+    def _text(self) -> str:
+        """The record, a line for each capture: there may be thousands, and one is new."""
+        texts = self._texts
+        for name in self._done.keys() - texts.keys():
+            texts[name] = _text(self._done[name])
+        lines = ",\n".join(f"{json.dumps(name)}: {texts[name]}" for name in sorted(self._done))
+        return f'{{"version": {_VERSION}, "captures": {{\n{lines}\n}}}}\n'
 
     def expect(self, key: str, files: Sequence[str], origin: Mapping[str, Any]) -> None:
         """Take note that files are about to come, so that they are known to be ours if they do.
@@ -90,14 +105,25 @@ class State:
         self.record(key, Done(origin, both, Tally(), ""))
 
 
-def _as_json(done: Done) -> dict[str, Any]:
-    return {
-        "stamp": dict(done.stamp),
-        "files": list(done.files),
-        "tally": done.tally.as_json(),
-        "format": done.format,
-        "lost_lines": done.lost_lines,
-    }
+def _version(path: Path) -> tuple[int, int] | None:
+    """What differs when somebody writes the record, which is a new file then."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_mtime_ns
+
+
+def _text(done: Done) -> str:
+    return json.dumps(
+        {
+            "stamp": dict(done.stamp),
+            "files": list(done.files),
+            "tally": done.tally.as_json(),
+            "format": done.format,
+            "lost_lines": done.lost_lines,
+        }
+    )
 
 
 def _read(path: Path) -> dict[str, Done]:
