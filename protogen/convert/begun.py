@@ -6,7 +6,7 @@ whatever run comes next, which would otherwise leave their rows beside its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -39,13 +39,25 @@ def begin(folder: Path, capture: str, parts: int) -> None:
     write_whole(_note(folder, capture), str(most).encode())
 
 
-def finish(folder: Path, capture: str, parts: Iterable[str], files: Iterable[str]) -> None:
-    """Remove all that is left of parts, those of earlier runs included, but for these files."""
-    names = {*parts, *(part_name(capture, n) for n in range(_parts(folder, capture)))}
-    sweep(folder, [f"{name}{_SUFFIX}" for name in names], files)
+def finish(folder: Path, captures: Mapping[str, Iterable[str]], files: Iterable[str]) -> None:
+    """Remove all that is left of the parts of captures but for these files.
+
+    `captures` has the names of the parts of this run; those of earlier ones are known. All of them
+    at once, as it takes a look at everything that is in the folders.
+    """
+    names, notes = set[str](), list[str]()
+    for capture, parts in captures.items():
+        names.update(parts)
+        names.update(part_name(capture, number) for number in range(_parts(folder, capture)))
+        notes.append(_note(folder, capture).name)
+    if not captures:
+        return
+    # A capture that could not be cut was a part itself, but its files may be another's.
+    torn = [f"{capture}{_SUFFIX}" for capture in captures]
+    sweep(folder, [f"{name}{_SUFFIX}" for name in names], files, torn=torn)
     # A worker that was killed may have left a marker that is not whole.
-    markers = [*(marker_of(folder, name) for name in names), _note(folder, capture)]
-    sweep(folder, [path.name for path in markers], within=MARKERS)
+    markers = [marker_of(folder, name).name for name in (*names, *captures)]
+    sweep(folder, [*markers, *notes], within=MARKERS)
     with suppress(OSError):  # It is not there, or has markers of other captures.
         (folder / MARKERS).rmdir()
 

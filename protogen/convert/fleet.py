@@ -108,8 +108,16 @@ def convert_fleet(
         for capture in waiting:
             _begin(job, state, capture)
         with _client(fleet) as client:
-            for capture in _Workers(client, work, advance).run(waiting, fresh=job.force):
-                yield _finished(job, state, capture, complain)
+            done: dict[str, Result] = {}
+            parts = {it.name: [part.name for part in it.parts] for it in waiting}
+            try:
+                for capture in _Workers(client, work, advance).run(waiting, fresh=job.force):
+                    done[capture.name] = _finished(job, state, capture, complain)
+                    yield done[capture.name]
+            finally:
+                # Of all at once: it takes a look at every file that there is.
+                files = [file for result in done.values() for file in result.files]
+                finish(job.folder, {name: parts[name] for name in done}, files)
 
 
 def _planned(
@@ -153,7 +161,6 @@ def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> 
     stale = [file for file in state.files(key) if file not in files]
     remove(job.folder, stale)
     state.record(key, Done(capture.stamp, files, tally, capture.format, lost))
-    finish(job.folder, capture.name, [part.name for part in capture.parts], files)
     return Result(capture.source.place, capture.format, tally, files, lost_lines=lost)
 
 
@@ -224,9 +231,9 @@ class _Workers:
 
     def _mend(self, capture: _Capture) -> None:
         """Have a part that began at the wrong place done again, unless that is under way."""
-        under_way = [place for other, place in self._running.values() if other is capture]
         for place, part in capture.wrong():
-            if place not in under_way:
+            # To look there takes a while when there are many captures: not for what is right.
+            if not any(it[0] is capture and it[1] == place for it in self._running.values()):
                 self._submit(capture, place, part)
 
 

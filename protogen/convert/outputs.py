@@ -88,18 +88,27 @@ def forget_torn(folder: Path, relatives: Iterable[str]) -> None:
                 _remove_empty(hidden.parent, folder)
 
 
-def sweep(folder: Path, names: Iterable[str], keep: Iterable[str] = (), within: str = "*") -> None:
+def sweep(
+    folder: Path,
+    names: Iterable[str],
+    keep: Iterable[str] = (),
+    within: str = "*",
+    torn: Iterable[str] = (),
+) -> None:
     """Remove what attempts at files of these names left in the folder's folders, but for `keep`.
 
-    Those go along in which such files go on. With `within`, only that folder's are removed.
+    Those go along in which such files go on. With `within`, only that folder's are removed. Of the
+    names in `torn`, only what is half written goes.
     """
-    ours, kept = set(names), set(keep)
+    ours, kept, half = set(names), set(keep), set(torn)
     for path in list(folder.glob(f"{within}/*")):
         name, is_partial = path.name, path.name.endswith(_PARTIAL)
         if is_partial:
             name = name[1:].removesuffix(_PARTIAL).rpartition(".")[0]
         relative = path.relative_to(folder).as_posix()
-        if _CONTINUED.sub("", name) in ours and (is_partial or relative not in kept):
+        first = _CONTINUED.sub("", name)
+        is_ours = first in ours and (is_partial or relative not in kept)
+        if is_ours or (is_partial and first in half):
             path.unlink(missing_ok=True)
             _remove_empty(path.parent, folder)
 

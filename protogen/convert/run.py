@@ -149,7 +149,7 @@ def _convert_one(
 def forget_parts(job: Job, name: str, files: Sequence[str]) -> None:
     """Remove what a fleet left that was ended while it made a capture, but for these files."""
     if job.format is OutputFormat.PARQUET and is_begun(job.folder, name):
-        finish(job.folder, name, (), files)
+        finish(job.folder, {name: ()}, files)
 
 
 def check_room(job: Job, state: State, files: Iterable[str]) -> None:
