@@ -514,6 +514,38 @@ def test_messages_of_others_have_the_same_outcome(tmp_path: Path) -> None:
     assert outcome(twin.encode, twin.Gps(**gps)) == outcome(module.encode, module.Gps(**gps))
 
 
+OF_ONE_SIZE = """
+protocol: unsaid
+byte_order: big
+endpoints: {robot: Robot, host: Host}
+frame:
+  start: {literal: {hex: C0}, unprotected: start_in_data}
+  sort: {type: TYPE, id: true}
+  payload: {}
+decisions:
+  start_in_data:
+    question: What keeps the start out of the data?
+    document: Nothing does.
+    choice: The size says where a frame ends.
+    because: Nothing else would.
+messages:
+  blob: {id: 1, from: robot, fields: unspecified, min_size: 4, max_size: 4}
+"""
+
+
+@pytest.mark.parametrize("type_", ["uint8", "uint24"])
+def test_data_of_one_size_have_the_same_outcome(type_: str, tmp_path: Path) -> None:
+    """The bytes are as many as there are, so it is the payload whose size is wrong."""
+    path = tmp_path / "unsaid.yaml"
+    path.write_text(OF_ONE_SIZE.replace("TYPE", type_), encoding="utf-8")
+    module = module_at(path)
+    for size in range(7):
+        item = module.Blob(data=bytes(size))
+        due = outcome(module.encode, item, engine="construct")
+        assert outcome(module.encode, item) == due
+        assert (due[0] == "frame") == (size == 4)
+
+
 @pytest.mark.parametrize(
     "value",
     [*STRANGE, 255, 256, 2**31, 2**32],

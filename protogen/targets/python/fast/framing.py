@@ -22,7 +22,12 @@ from protogen.targets.python import frames as tables
 from protogen.targets.python.fast.cutting import FOLDED, checksum, folded
 from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.fast.writing import Packed, content_writer, payload_writer
+from protogen.targets.python.fast.writing import (
+    Packed,
+    content_writer,
+    is_of_one_size,
+    payload_writer,
+)
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import text
 
@@ -58,7 +63,7 @@ def encoder(
         name = text(frames[0].sender.name)
         is_other = f"(sender is not None and sender != {name})"
         lines.refuse_if(f"module is not _ENCODERS or {is_other}")
-        if message.sizes.fixed is not None and _goes_together(frames[0]):
+        if is_of_one_size(message) and _goes_together(frames[0]):
             return _Framer(frames[0], of_caller, lines, message).whole(message)
     if len(frames) > 1:
         lines.refuse_if("module is not _ENCODERS")

@@ -20,6 +20,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    total,
 )
 from protogen.targets.python.fast.layout import (
     array_code,
@@ -46,8 +47,13 @@ def payload_writer(message: Message, lines: Lines) -> None:
     What an integer may be, and how great, is left to `struct` wherever it writes the value itself.
     """
     lines.add(f"payload = {_Writer(lines).record('item', message.fields)}")
-    if message.sizes.fixed is None and not holds_records(message.fields, message.sizes):
+    if not is_of_one_size(message) and not holds_records(message.fields, message.sizes):
         lines.refuse_if(outside(message.sizes, "payload"))
+
+
+def is_of_one_size(message: Message) -> bool:
+    """Whether its fields can't take more bytes or fewer than a payload may have."""
+    return total(message.fields).fixed is not None
 
 
 def content_writer(
