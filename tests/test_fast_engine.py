@@ -174,6 +174,51 @@ def test_the_payload_of_a_frame_that_is_stuffed_in_part(
     assert event.payload == b"\xc0\x05"
 
 
+CHECKED_WITH_PAYLOAD = """
+protocol: sparse
+byte_bits: 7
+endpoints: {robot: Robot, host: Host}
+frame:
+  start: {literal: {hex: C0}}
+  sort: {type: uint7, id: true}
+  length: {type: uint7, counts: payload}
+  number: {type: uint7}
+  payload: {}
+  inner: {type: uint7, algorithm: {width: 7, poly: 9}, covers: [sort, length, payload]INNER}
+  check: {type: uint7, algorithm: {width: 7, poly: 9}, covers: [sort, inner]OUTER}
+  end: {literal: {hex: FF}}
+transparency: {covers: COVERS, preset: hdlc}
+messages:
+  ping: {id: 9, from: robot, fields: {}}
+  note: {id: 1, from: robot, fields: {text: {type: bytes, size: {fill: true, max: 8}}}}
+"""
+WITH_PAYLOAD = ", when: payload"
+
+
+@pytest.mark.parametrize("covers", ["sort..payload", "payload..inner", "length..check"])
+@pytest.mark.parametrize("inner", ["", WITH_PAYLOAD])
+@pytest.mark.parametrize("outer", ["", WITH_PAYLOAD])
+def test_frames_whose_checksums_come_with_a_payload(
+    outer: str, inner: str, covers: str, tmp_path: Path
+) -> None:
+    """Where some parts are absent, those in front of them are where these would be."""
+    path = tmp_path / "sparse.yaml"
+    text = CHECKED_WITH_PAYLOAD.replace("INNER", inner).replace("OUTER", outer)
+    path.write_text(text.replace("COVERS", covers), encoding="utf-8")
+    module = module_at(path)
+    data = b""
+    for item in (module.Ping(), *(module.Note(text=text) for text in (b"", b"}", b"~~", b"abc"))):
+        for number in (5, 0x7D, 0x7E):
+            frame = module.encode(item, number=number, engine="construct")
+            assert module.encode(item, number=number) == frame
+            # Whole, without stuffing, without the byte in front of the end.
+            data += frame + frame.replace(b"}]", b"}").replace(b"}^", b"~") + frame[:-2] + b"\xff"
+    for split in ([data], single_bytes(data)):
+        pieces = list(split)
+        due = shown(events_of(path, "robot", "construct", pieces))
+        assert shown(events_of(path, "robot", "fast", pieces)) == due
+
+
 class TestChecksumsOfManyFrames:
     """An exclusive or is compared for many frames at once, after their events were made."""
 

@@ -141,8 +141,9 @@ class FastFrame:
             and (self.length is None or self.length in self.head)
             and all(isinstance(part, ChecksumPart) for part in self.tail)
             and not any(part.over_wire for part in self.checksums if self.stuffed)
-            and len({part.when_payload for part in self.checksums}) < 2
+            and self._checksums_are_alike
             and not (self.optional and any(part in self.head for part in self.checksums))
+            and not (self.optional and self.behind and self.before < self.head_size)
             and self._region_is_plain
             and (not self.shares or self._shares_plainly)
         )
@@ -180,8 +181,14 @@ class FastFrame:
             (self.can_cut or not self.framing.cut_ambiguous)
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
+            and self._checksums_are_alike
             and self._region_is_plain
         )
+
+    @property
+    def _checksums_are_alike(self) -> bool:
+        """Whether all of them are absent where the payload is empty, or none is."""
+        return len({part.when_payload for part in self.checksums}) < 2
 
     @property
     def optional(self) -> bool:

@@ -133,7 +133,7 @@ class _Framer:
         self.lines.add(f"content = {content_writer(message, head, integers, self.lines)}")
         for part in self.frame.checksums:
             self._insert(part)
-        self._return()
+        self._return(bare=False)
         return self.lines.text
 
     def _own_payload(self) -> str:
@@ -200,7 +200,7 @@ class _Framer:
         self.lines.add(f"content = {self._joined([p for p in parts if p not in checked], bare)}")
         for part in checked:
             self._insert(part)
-        self._return()
+        self._return(bare)
 
     def _is_skipped(self, part: Part) -> bool:
         """Whether a part is a literal in front of the content."""
@@ -283,9 +283,9 @@ class _Framer:
         covered = frame.covered(part, "content", missing)
         return "payload" if self._has_payload and covered == self._own_payload() else covered
 
-    def _return(self) -> None:
+    def _return(self, bare: bool) -> None:
         frame = self.frame
-        wire = self._stuffed() if frame.stuffed else "content"
+        wire = self._stuffed(0 if bare else frame.behind) if frame.stuffed else "content"
         skipped = b"".join(
             part.bytes
             for part in frame.parts
@@ -302,16 +302,16 @@ class _Framer:
         self.lines.add(f"wire = {wire}")
         self.lines.add(f"return _fast.checked(wire, _cut_{frame.sender.name})")
 
-    def _stuffed(self) -> str:
-        """The content, stuffed unless it stands for itself."""
+    def _stuffed(self, size_behind: int) -> str:
+        """The content, stuffed but for its last bytes unless it stands for itself."""
         frame = self.frame
         front = frame.before - frame.skipped
-        inner = frame.slice_of("content", front, -frame.behind)
+        inner = frame.slice_of("content", front, -size_behind)
         assert frame.sender.frame.transparency is not None
         stuffing = tables.encoding(frame.sender.frame.transparency.encoding)
         encode = f"{self.lines.constants.named('STUFFING', stuffing)}.encode"
         before = f"content[:{front}] + " if front else ""
-        behind = f" + content[{-frame.behind}:]" if frame.behind else ""
+        behind = f" + content[{-size_behind}:]" if size_behind else ""
         specials = frame.specials(sending=True)
         if specials is None or before or behind:
             return f"{before}{encode}({inner}){behind}"
