@@ -18,6 +18,7 @@ from pathlib import Path
 from random import Random
 from threading import Thread
 from typing import Any
+from unittest.mock import MagicMock, Mock
 
 import numpy
 import pytest
@@ -547,16 +548,37 @@ def test_messages_of_others_have_the_same_outcome(tmp_path: Path) -> None:
         """Not a module's."""
 
     class Odd:
-        def _encode(self, *_: Any) -> bytes:
+        def __encode__(self, *_: Any) -> bytes:
             raise AssertionError("it is no message")
 
     gps = {"nmea": "$GPRMC"}
     gyro = module_at(RN1).Gyro(status=1, int_x=0, int_y=0, int_z=0)
-    for other in (Own(**gps), twin.Gps(**gps), gyro, Odd(), None, module.Gps):
+    mocks = (Mock(), MagicMock())
+    for other in (Own(**gps), twin.Gps(**gps), gyro, Odd(), None, module.Gps, *mocks):
         due = outcome(module.encode, other, engine="construct")
         assert due[0] != "frame"
         assert outcome(module.encode, other) == due
     assert outcome(twin.encode, twin.Gps(**gps)) == outcome(module.encode, module.Gps(**gps))
+
+
+def test_classes_of_ones_own_have_the_other_bases_they_are_given() -> None:
+    module = module_at(MATTY)
+    told: dict[str, str] = {}
+
+    class Registered:
+        def __init_subclass__(cls, under: str = "", **others: Any) -> None:
+            super().__init_subclass__(**others)
+            told[cls.__name__] = under
+
+    class First(Registered, module.Gps, under="a"):  # type: ignore[name-defined,misc]
+        pass
+
+    class Last(module.Gps, Registered, under="b"):  # type: ignore[name-defined,misc]
+        pass
+
+    assert told == {"First": "a", "Last": "b"}
+    for own in (First, Last):
+        assert outcome(module.encode, own(nmea="$GPRMC"))[0] == "refused"
 
 
 OF_ONE_SIZE = """

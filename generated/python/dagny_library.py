@@ -1133,7 +1133,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return message._encode(_ENCODERS, sender)
+            return message.__encode__(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine)

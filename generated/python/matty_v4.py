@@ -1230,7 +1230,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return message._encode(_ENCODERS, sender, counter)
+            return message.__encode__(_ENCODERS, sender, counter)
         except _fast.ANYTHING:  # The reference says what is wrong.
             engine = "construct"
     return PROTOCOL.encode(message, sender, strict, engine, counter=counter)

@@ -1253,7 +1253,7 @@ def encode(
     """
     if strict and engine == "fast":
         try:
-            return message._encode(_ENCODERS, sender)
+            return message.__encode__(_ENCODERS, sender)
         except _fast.ANYTHING:  # The reference says what is wrong.
             if not _CODES.are_filled:  # Nothing is: its tables were empty.
                 _CODES.fill()

@@ -87,7 +87,7 @@ def checked(wire: bytes, cut: Cutter) -> bytes:
 def add_encoders(encoders: Mapping[type[Message], Callable[..., bytes]]) -> None:
     """Give each message of a module its encoder as a method: the shortest way from one to it."""
     for message, encoder in encoders.items():
-        message._encode = encoder  # type: ignore[method-assign]
+        message.__encode__ = encoder  # type: ignore[method-assign]
 
 
 class Runs:

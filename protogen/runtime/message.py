@@ -91,14 +91,19 @@ class Message(Record):
     SIZES: ClassVar[Sizes]
     """The sizes that its payload can have."""
 
-    def __init_subclass__(cls) -> None:
-        """No class encodes as its base does: only a module's own classes are its messages."""
-        cls._encode = Message._encode  # type: ignore[method-assign]
+    def __init_subclass__(cls, **others: Any) -> None:
+        """No class encodes as its base does: only a module's own classes are its messages.
 
-    def _encode(self, module: object, sender: str | None, *parts: int | None) -> bytes:
+        What `others` say is for other bases.
+        """
+        super().__init_subclass__(**others)
+        cls.__encode__ = Message.__encode__  # type: ignore[method-assign]
+
+    def __encode__(self, module: object, sender: str | None, *parts: int | None) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.
 
-        A module gives each of its messages its own.
+        A module gives each of its messages its own. Mocks, which have whatever they are asked for,
+        have nothing that is called in this way.
         """
         raise Unclear
 
