@@ -220,6 +220,37 @@ def test_frames_whose_checksums_come_with_a_payload(
         assert shown(events_of(path, "robot", "fast", pieces)) == due
 
 
+STARTS_WITH_A_VALUE = """
+protocol: counted
+endpoints: {robot: Robot, host: Host}
+frame:
+  number: {type: uint8, range: [26, 211]}
+  sort: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: payload}
+messages:
+  note: {id: 1, from: robot, fields: {a: uint8}}
+"""
+
+
+def test_frames_that_start_with_a_value_start_in_its_range(tmp_path: Path) -> None:
+    path = tmp_path / "counted.yaml"
+    path.write_text(STARTS_WITH_A_VALUE, encoding="utf-8")
+    module = module_at(path)
+    for number in (0, 25, 26, 211, 212, 255):
+        frame = bytes((number, 1, 5, 5))
+        fast, due = (
+            events_of(path, "robot", engine, [frame, frame]) for engine in ("fast", "construct")
+        )
+        assert shown(fast) == shown(due)
+        assert {event.kind for event in due} == {"message" if 26 <= number < 212 else "invalid"}
+        if 26 <= number < 212:
+            assert module.decode(frame, "robot") == module.Note(a=5)
+        else:
+            with pytest.raises(DecodeError, match="no frame starts so"):
+                module.decode(frame, "robot")
+
+
 class TestChecksumsOfManyFrames:
     """An exclusive or is compared for many frames at once, after their events were made."""
 

@@ -226,7 +226,7 @@ class _Cutter(FrameFunction):
         if isinstance(start, AfterEnd) and self.frame.ended_by != "end":
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
             self._stop_if(f"data.startswith({literal(self.frame.end)}{self._from})")
-        elif isinstance(start, StartSet) and self.frame.ended_by != "kind":
+        elif isinstance(start, StartSet) and not self._identity_starts:
             first = f"data[{self._place(0)}]"
             self._stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
         elif isinstance(start, StartLiteral):
@@ -237,6 +237,11 @@ class _Cutter(FrameFunction):
                 self._stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
             else:
                 self._stop_if(f"not {begins}")
+
+    @property
+    def _identity_starts(self) -> bool:
+        """Whether the first byte is the identity's, which is looked up to find the end."""
+        return self.frame.ended_by == "kind" and self.frame.parts[0] in self.frame.identity
 
     @property
     def _from(self) -> str:
