@@ -14,6 +14,7 @@ from decimal import Decimal
 from enum import IntEnum
 from fractions import Fraction
 from functools import cache, partial
+from itertools import product
 from pathlib import Path
 from random import Random
 from threading import Thread
@@ -249,6 +250,48 @@ def test_frames_that_start_with_a_value_start_in_its_range(tmp_path: Path) -> No
         else:
             with pytest.raises(DecodeError, match="no frame starts so"):
                 module.decode(frame, "robot")
+
+
+STUFFED_INSIDE = """
+protocol: inside
+byte_bits: 7
+endpoints: {robot: Robot, host: Host}
+frame: {PARTS}
+transparency: {covers: payload..payload, preset: hdlc}
+messages:
+  note: {id: 9, from: robot, fields: {text: {type: bytes, size: {fill: true, max: 2}}}}
+"""
+START, END = "start: {literal: {hex: C0}}", "end: {literal: {hex: FF}}"
+SORT = "sort: {type: uint7, id: true}"
+NUMBER = "number: {type: byte, range: [64, 191]}"
+LENGTH = "length: {type: uint7, counts: payload}"
+PAYLOAD = "payload: {}"
+CHECK = "check: {type: uint7, algorithm: {width: 7, poly: 9}, covers: [length, payload]}"
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (START, SORT, LENGTH, PAYLOAD, CHECK),
+        (START, SORT, LENGTH, PAYLOAD, CHECK, END),
+        (SORT, LENGTH, PAYLOAD, CHECK, END),
+        (SORT, NUMBER, PAYLOAD, END),
+        (START, SORT, NUMBER, PAYLOAD, END),
+    ],
+    ids=range(5),
+)
+def test_what_is_too_short_for_a_frame_is_none(parts: tuple[str, ...], tmp_path: Path) -> None:
+    """No byte is in front of what is stuffed and behind it, or in the end, at once."""
+    path = tmp_path / "inside.yaml"
+    path.write_text(STUFFED_INSIDE.replace("PARTS", ", ".join(parts)), encoding="utf-8")
+    module = module_at(path)
+    assert module.PROTOCOL.sender("robot").cut is not None
+    start, end = b"\xc0" if START in parts else b"", b"\xff" if END in parts else b"\xc0"
+    for size in range(5):
+        for between in product((0, 1, 9, 0x40, 0x5D), repeat=size):
+            data = start + bytes(between) + end
+            due = shown(events_of(path, "robot", "construct", [data]))
+            assert shown(events_of(path, "robot", "fast", [data])) == due
 
 
 class TestChecksumsOfManyFrames:

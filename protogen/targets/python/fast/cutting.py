@@ -386,6 +386,11 @@ class _Cutter(FrameFunction):
             return
         first = self._begun if frame.shares else str(frame.before or "")
         last = str(-(len(frame.end) + frame.behind) or "")
+        if frame.stuffed and (frame.before > len(frame.start_bytes) or frame.behind):
+            # Else what is in front of the stuffed bytes and what is behind them would overlap.
+            around = len(frame.end) + frame.behind
+            least = f"{first} + {around}" if frame.shares else f"{frame.before + around}"
+            self._stop_if(f"len({self.raw}) < {least}")
         self.lines.add(f"content = {self.raw}[{first}:{last}]")
         if not frame.stuffed:
             return
