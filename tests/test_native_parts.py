@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import runpy
+import subprocess
 import sys
+import threading
 from pathlib import Path
 from random import Random
-from threading import Event
+from threading import Event, current_thread, main_thread
 from time import sleep
 
 import handwritten_streams
@@ -22,7 +24,7 @@ from hypothesis import strategies as st
 from test_recovery import drawn_pieces
 from tooling import require_tool
 
-from protogen.capture import batches, columns, gather, native
+from protogen.capture import batches, columns, gather, native, parallel
 from protogen.capture.gather import gathered
 from protogen.capture.native import Blocks, Memory, NativeEngine, library_of
 from protogen.capture.parallel import ROOM, Parts
@@ -108,6 +110,97 @@ def test_a_reader_that_stops_early_waits_for_nobody() -> None:
     reading = batches(data, protocol_of(RN1), "brain", chunk=1000, workers=2)
     assert next(reading).events
     reading.close()
+
+
+def ended(program: str) -> str:
+    """What a program says that begins to read a capture, and comes to its end."""
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    before = f"""
+from threading import Thread, main_thread
+from protogen.capture import batches, columns
+data = {frame!r} * 400_000
+RN1 = {str(RN1)!r}
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", before + program],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=True,
+    )
+    assert not done.stderr
+    return done.stdout
+
+
+def test_python_ends_in_the_middle_of_a_reading() -> None:
+    program = """
+reading = batches(data, RN1, "brain", chunk=1000, workers=2)
+print(next(reading).events > 0)
+"""
+    assert ended(program) == "True\n"
+
+
+def test_a_reading_goes_on_where_python_begins_no_threads_any_more() -> None:
+    """Those that the user began may still be reading while Python waits for them to end."""
+    program = """
+def read():
+    main_thread().join()
+    reading = batches(data, RN1, "brain", chunk=100_000, workers=2)
+    print(sum(tables.events for tables in reading))
+    print(columns(data, RN1, "brain", workers=2).events)
+
+Thread(target=read).start()
+"""
+    assert ended(program) == "400000\n400000\n"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
+    """Python finds what nobody refers to wherever it looks for it."""
+
+    class Closing(NativeEngine):
+        def run(self, data: memoryview, part: int, end: int) -> int:
+            if end >= 3000:
+                assert suspended.wait(PATIENCE)
+            return super().run(data, part, end)
+
+        def start(self, offset: int, sequence: int = 0) -> None:
+            super().start(offset, sequence)
+            if suspended.is_set() and not threads:  # The thread has the lock.
+                threads.append(current_thread())
+                reading.close()
+                closed.set()
+
+    suspended, closed, threads = Event(), Event(), []
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    data = min(material_of(RN1, "brain").frames, key=len) * 5000
+    reading = Parts(memoryview(data), [Closing(library) for _ in range(6)], 1000).tables(2)
+    assert next(reading).events
+    suspended.set()
+    assert closed.wait(PATIENCE)
+    assert threads[0] is not main_thread()
+    for thread in threading.enumerate():
+        if thread.name.startswith("protogen-capture"):
+            thread.join(PATIENCE)
+    assert not list(reading)
+
+
+def test_pages_of_a_part_are_given_back_also_where_it_has_no_frame(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else a mapped capture that is all noise would come to be in memory as a whole."""
+    places: list[tuple[int, int]] = []
+    monkeypatch.setattr(parallel, "forget", lambda _, *place: places.append(place))
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    for data in (bytes(20_500), frame * 5000, bytes(5500) + frame * 2000 + bytes(5000)):
+        places.clear()
+        for _ in Parts(memoryview(data), [NativeEngine(library) for _ in range(4)], 1000).tables(2):
+            behind = max((stop for _, stop in places), default=0)
+        assert behind >= len(data) - 5000
+        given = {place for start, stop in places for place in range(start, stop)}
+        assert given == set(range(len(data)))
 
 
 def test_memory_is_used_again_when_nobody_looks_at_it() -> None:

@@ -118,7 +118,10 @@ def _add(
             if rows.nbytes < _LITTLE:
                 _copy(*work)
             else:
-                copies.append(pool.submit(_copy, *work))
+                try:
+                    copies.append(pool.submit(_copy, *work))
+                except RuntimeError:  # Python ends, and begins no threads any more.
+                    _copy(*work)
     return copies
 
 

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
-from threading import Condition, Lock
+from threading import Lock, get_ident
 from typing import Any, Protocol
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
@@ -94,6 +94,7 @@ class _Run:
     """A part of the capture: its decoder, and what that found."""
 
     engine: Engine
+    start: int
     end: int
     position: int
     """How far the decoder has come."""
@@ -132,7 +133,8 @@ class Parts:
     """Reads a capture in parts, some of them ahead.
 
     The threads that decode also fit the parts together, each whenever it has decoded one: whoever
-    takes the tables waits for them, and does little else.
+    takes the tables waits for them, and does little else. They never wait for whoever takes the
+    tables, who may never come back: without a decoder for the next part they end, to be begun anew.
     """
 
     def __init__(
@@ -154,9 +156,9 @@ class Parts:
         self._known = _Known(0, 0)
         self._rate = (0, 1)  # Events, and the bytes that they cover.
         self._lock = Lock()  # For what follows, and for what runs say of themselves.
-        self._spare = Condition(self._lock)  # There is a decoder again, or nothing to do.
         self._free = list(engines)
-        self._starts: Iterator[int] = iter(())
+        self._starts = range(0)  # Of the parts that are not begun.
+        self._ended = 0  # Threads that had no decoder for a part.
         self._runs: deque[_Run] = deque()  # Those that were begun, until all is delivered.
         self._awaited: Callable[[], bool] | None = None
         self._come = Lock()  # Held until what is awaited has come: less work than a condition.
@@ -168,16 +170,18 @@ class Parts:
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
         self._sample()
-        self._starts = iter(range(0, max(1, len(self._data)), self._part))
-        with ThreadPoolExecutor(workers, "protogen-capture") as pool:
-            try:
-                for _ in range(workers):
-                    pool.submit(self._work)
-                yield from self._in_order()
-            finally:
-                with self._spare:
-                    self._is_over = True
-                    self._spare.notify_all()
+        self._starts = range(0, max(1, len(self._data)), self._part)
+        own: set[int] = set()
+        pool = ThreadPoolExecutor(workers, "protogen-capture", lambda: own.add(get_ident()))
+        try:
+            for _ in range(workers):
+                self._let_work(pool)
+            yield from self._in_order(pool)
+        finally:
+            # Python may find a reading that nobody refers to any more in one of its own threads, in
+            # the middle of anything: that has the lock, perhaps, and can't wait for itself.
+            self._is_over = True
+            pool.shutdown(wait=get_ident() not in own)
 
     def _sample(self) -> None:
         """Let a decoder see how many rows there will be, before memory is got for all."""
@@ -192,22 +196,21 @@ class Parts:
 
     # --- whoever takes the tables ----------------------------------------------------------------
 
-    def _in_order(self) -> Iterator[Tables]:
+    def _in_order(self, pool: ThreadPoolExecutor) -> Iterator[Tables]:
         is_last = False
         while not is_last:
             self._await(self._is_due)
             run = self._runs[0]
             while run.found:
                 yield run.found.popleft()
-            forget(self._data, max(0, run.position - self._part), run.position)
             if run.is_whole:
-                self._leave(0)
+                self._leave(0, pool)
                 continue
-            yield from self._go_on(run)
+            yield from self._go_on(run, pool)
             is_last = run.end == len(self._data)
             if is_last:
                 yield from run.engine.flush()
-            self._leave(0)
+            self._leave(0, pool)
             self._join()
 
     def _is_due(self) -> bool:
@@ -232,20 +235,35 @@ class Parts:
         if self._error is not None:
             raise self._error
 
-    def _leave(self, place: int) -> None:
-        """Let go of a part."""
-        with self._spare:
-            self._free.append(self._runs[place].engine)
+    def _leave(self, place: int, pool: ThreadPoolExecutor) -> None:
+        """Let go of a part, whose bytes nobody reads again."""
+        run = self._runs[place]
+        forget(self._data, run.start, run.end)
+        with self._lock:
+            self._free.append(run.engine)
             del self._runs[place]
-            self._spare.notify()
+            is_wanted = bool(self._ended and self._starts)
+            self._ended -= is_wanted
+        if is_wanted:
+            self._let_work(pool)
 
-    def _go_on(self, run: _Run) -> Iterator[Tables]:
+    def _let_work(self, pool: ThreadPoolExecutor) -> None:
+        """Begin a thread; or do its work here, where Python ends and begins none any more."""
+        try:
+            pool.submit(self._work)
+        except RuntimeError:
+            self._work()
+
+    def _go_on(self, run: _Run, pool: ThreadPoolExecutor) -> Iterator[Tables]:
         """The rest of a part, and what its decoder finds until it agrees with a part behind it."""
         while run.position < run.end:
             yield self._step(run, run.end)
         while run.end < len(self._data) and not run.is_whole:
             self._await(self._is_next_decoded)
             yield from self._seam(run, self._runs[1])
+            if not run.is_whole:
+                run.end = self._runs[1].end
+                self._leave(1, pool)
 
     def _seam(self, run: _Run, other: _Run) -> Iterator[Tables]:
         """Run on to where both agree, or through the part, which is dropped then."""
@@ -264,8 +282,6 @@ class Parts:
                     return
                 yield tables
             window *= 2
-        run.end = other.end
-        self._leave(1)
 
     # --- the threads -----------------------------------------------------------------------------
 
@@ -290,16 +306,14 @@ class Parts:
             self._come.release()
 
     def _begin(self) -> _Run | None:
-        """The next part, once there is a decoder for it; None if none is left, or wanted."""
-        with self._spare:
-            while not (self._free or self._is_over):
-                self._spare.wait()
-            start = None if self._is_over else next(self._starts, None)
-            if start is None:
-                self._spare.notify()  # So that the others end, too.
+        """The next part; None if none is left, or wanted, or there is no decoder for it now."""
+        with self._lock:
+            if self._is_over or not (self._free and self._starts):
+                self._ended += 1
                 return None
+            start, self._starts = self._starts[0], self._starts[1:]
             end = min(len(self._data), start + self._part)
-            run = _Run(self._free.pop(), end, start, is_placed=start == 0)
+            run = _Run(self._free.pop(), start, end, start, is_placed=start == 0)
             run.engine.start(start, self._foreseen(start))
             self._runs.append(run)
             return run
