@@ -9,8 +9,9 @@ import sys
 import threading
 from pathlib import Path
 from random import Random
-from threading import Event, current_thread, main_thread
+from threading import Event, Thread, current_thread, main_thread
 from time import sleep
+from weakref import ref
 
 import handwritten_streams
 import pytest
@@ -402,6 +403,50 @@ def test_blocks_are_given_back_but_for_some() -> None:
     again = [blocks.rows(dtype, 1 << 18) for _ in range(3)]
     assert len(places & {rows.ctypes.data for rows in again[:2]}) == 2
     assert used.ctypes.data not in {rows.ctypes.data for rows in again}
+
+
+def test_blocks_are_not_kept_for_whoever_looks_at_them_last() -> None:
+    """A list of all tables of a great capture is gone once it is."""
+    blocks, dtype = Blocks(), material_dtype()
+    views = [blocks.rows(dtype, 1 << 18)[5:] for _ in range(4)]
+    bases = [ref(view.base) for view in views]
+    unused = blocks.rows(dtype, 1 << 18).ctypes.data
+    blocks.trim(3 << 20)
+    assert all(base() is not None for base in bases)
+    del views
+    assert [base() is not None for base in bases].count(True) == 1
+    assert blocks.rows(dtype, 1 << 18).ctypes.data == unused
+
+
+def test_one_block_that_suits_nobody_is_given_back() -> None:
+    blocks, dtype = Blocks(), material_dtype()
+    base = ref(blocks.rows(dtype, 1 << 18).base)
+    blocks.rows(dtype, 1 << 20)
+    assert base() is None
+
+
+def test_blocks_may_be_trimmed_and_asked_for_in_the_middle_of_looking_for_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """By Python, which comes upon a reading that is over, and waits for the threads of another."""
+    blocks, dtype = Blocks(), material_dtype()
+    views = [blocks.rows(dtype, 1 << 18) for _ in range(4)]
+    views[1:] = []
+    count, asked = sys.getrefcount, []
+
+    def interrupted(item: object) -> int:
+        if not asked:
+            asked.append(None)
+            other = Thread(target=lambda: asked.append(blocks.rows(dtype, 1 << 18)))
+            other.start()
+            other.join(PATIENCE)
+            blocks.trim(0)
+        return count(item)
+
+    monkeypatch.setattr(sys, "getrefcount", interrupted)
+    views.append(blocks.rows(dtype, 1 << 18))
+    views.append(asked[1])
+    assert len({view.ctypes.data for view in views}) == 3
 
 
 def test_what_goes_wrong_in_a_thread_is_raised() -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
-from threading import RLock
 from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
@@ -54,41 +54,61 @@ class Dtypes:
 class Blocks:
     """Blocks of memory. What nobody looks at any more is used again.
 
-    Fresh pages cost more than decoding into them does.
+    Fresh pages cost more than decoding into them does. No thread waits here for another: whoever
+    looks at a block takes it out of the queue for as long. In the middle of that, Python may come
+    upon a reading that is over, and trim; or upon one that nobody goes on with, and wait for its
+    threads, which need blocks.
     """
 
     def __init__(self) -> None:
-        self._blocks: list[Rows] = []
-        self._lock = RLock()  # Python may come upon a reading that is over at any time, and trim.
+        self._blocks: deque[Rows] = deque()
 
     def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
         """Rows of any content."""
         size = count * dtype.itemsize
-        with self._lock:
-            found: Rows = self._block(size)[:size].view(dtype)
-        return found
+        found = self._unused(size)
+        if found is None:
+            self._forget_unused()
+            block = numpy().empty(size + size // 8, "u1")
+            self._blocks.append(block)
+            found = block[:size]
+        return found.view(dtype)
+
+    def _unused(self, size: int) -> Rows | None:
+        """So many bytes of a block."""
+        for block, references in _each(self._blocks):
+            suits = references == _UNUSED and size <= block.nbytes <= 4 * size
+            found: Rows | None = block[:size] if suits else None
+            self._blocks.append(block)
+            if found is not None:
+                return found
+        return None
+
+    def _forget_unused(self) -> None:
+        for block, references in _each(self._blocks):
+            if references > _UNUSED:
+                self._blocks.append(block)
 
     def trim(self, most: int) -> None:
-        """Give memory back, but for so many bytes. What somebody looks at is not counted."""
-        with self._lock:
-            counts = _references(self._blocks)
-            kept = []
-            for block, count in zip(self._blocks, counts, strict=True):
-                most -= block.nbytes if count == _UNUSED else 0
-                if count > _UNUSED or most >= 0:
-                    kept.append(block)
-            self._blocks = kept
+        """Keep so many bytes. What somebody looks at still is the first to be forgotten."""
+        for block, _ in sorted(_each(self._blocks), key=lambda item: item[1]):
+            if block.nbytes <= most:
+                most -= block.nbytes
+                self._blocks.append(block)
 
-    def _block(self, size: int) -> Rows:
-        counts = _references(self._blocks)
-        for block, count in zip(self._blocks, counts, strict=True):
-            if count == _UNUSED and size <= block.nbytes <= 4 * size:
-                return block
-        each = zip(self._blocks, counts, strict=True)
-        self._blocks = [block for block, count in each if count > _UNUSED]
-        fresh: Rows = numpy().empty(size + size // 8, "u1")
-        self._blocks.append(fresh)
-        return fresh
+
+def _each(blocks: deque[Any]) -> Iterator[tuple[Any, int]]:
+    """Takes each block out of the queue, and counts who refers to it."""
+    for _ in range(len(blocks)):
+        try:
+            block = blocks.popleft()
+        except IndexError:  # Another thread looks at the rest.
+            return
+        yield block, sys.getrefcount(block)
+
+
+_UNUSED = next(_each(deque([bytearray()])))[1]
+"""What is counted where nobody uses a block. It was asked: from 3.14 on, Python counts fewer."""
 
 
 KEPT = Blocks()
@@ -113,13 +133,6 @@ class Memory:
         return self._blocks.rows(dtype, count)
 
 
-def _references(blocks: list[Any]) -> list[int]:
-    """How many refer to each block: the list, and what Python counts of this question."""
-    return [sys.getrefcount(block) for block in blocks]
-
-
-_UNUSED = _references([bytearray()])[0]
-"""What is counted where nobody uses a block. It was asked: from 3.14 on, Python counts fewer."""
 _LITTLE = 1 << 17
 """Bytes that come out of the process's own heap."""
 _FEW = 1 << 12
