@@ -156,6 +156,22 @@ Thread(target=read).start()
     assert ended(program) == "400000\n400000\n"
 
 
+def test_a_decoder_that_is_at_work_when_python_ends_keeps_its_memory() -> None:
+    """As in a thread that Python does not wait for, whose objects it never lets go."""
+    program = """
+from ctypes import py_object, pythonapi
+from protogen.api import load
+from protogen.capture.native import NativeEngine, library_of
+
+protocol = load(RN1)
+library = library_of(protocol, protocol.sender("brain"))
+library.free = print
+engine = NativeEngine(library)
+pythonapi.Py_IncRef(py_object(engine))
+"""
+    assert not ended(program)
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
     """Python finds what nobody refers to wherever it looks for it."""

@@ -117,7 +117,8 @@ class Decoder:
         self._pointer = library.new(budget)
         if not self._pointer:
             raise MemoryError
-        finalize(self, library.free, self._pointer)
+        # When Python ends, threads that nobody waits for may be decoding still.
+        finalize(self, library.free, self._pointer).atexit = False
         self._state = State.from_address(self._pointer)
         words = ctypes.c_size_t * (library.tables * WORDS)
         memory = words.from_address(self._pointer + ctypes.sizeof(State))
