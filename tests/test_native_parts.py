@@ -172,6 +172,15 @@ pythonapi.Py_IncRef(py_object(engine))
     assert not ended(program)
 
 
+def test_a_reading_may_be_closed_where_a_thread_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python may come upon it wherever it looks for what nobody refers to."""
+    data = stream_of(material_of(RN1, "brain"), Random(5), 2000).data
+    reading = batches(data, protocol_of(RN1), "brain", chunk=1000, workers=2)
+    assert next(reading).events
+    monkeypatch.setattr(Thread, "join", lambda *_: pytest.fail("what is held there is needed here"))
+    reading.close()
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
     """Python finds what nobody refers to wherever it looks for it."""

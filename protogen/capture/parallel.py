@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import pairwise
 from threading import Lock, get_ident
@@ -159,6 +159,7 @@ class Parts:
         self._free = list(engines)
         self._starts = range(0)  # Of the parts that are not begun.
         self._ended = 0  # Threads that had no decoder for a part.
+        self._tasks: list[Future[None]] = []  # What threads are at, if they are not done yet.
         self._runs: deque[_Run] = deque()  # Those that were begun, until all is delivered.
         self._awaited: Callable[[], bool] | None = None
         self._come = Lock()  # Held until what is awaited has come: less work than a condition.
@@ -173,15 +174,22 @@ class Parts:
         self._starts = range(0, max(1, len(self._data)), self._part)
         own: set[int] = set()
         pool = ThreadPoolExecutor(workers, "protogen-capture", lambda: own.add(get_ident()))
+        is_closed = False
         try:
             for _ in range(workers):
                 self._let_work(pool)
             yield from self._in_order(pool)
+        except GeneratorExit:
+            is_closed = True
+            raise
         finally:
-            # Python may find a reading that nobody refers to any more in one of its own threads, in
-            # the middle of anything: that has the lock, perhaps, and can't wait for itself.
+            # Python may find a reading that nobody refers to any more in any thread, in the middle
+            # of anything: as where threads begin, whose end can't be waited for then; or in one of
+            # the reading's own, which can't wait for itself, and has the lock, perhaps.
             self._is_over = True
-            pool.shutdown(wait=get_ident() not in own)
+            pool.shutdown(wait=not is_closed, cancel_futures=True)
+            if is_closed and get_ident() not in own:
+                wait([task for task in self._tasks if not task.cancelled()])
 
     def _sample(self) -> None:
         """Let a decoder see how many rows there will be, before memory is got for all."""
@@ -250,9 +258,11 @@ class Parts:
     def _let_work(self, pool: ThreadPoolExecutor) -> None:
         """Begin a thread; or do its work here, where Python ends and begins none any more."""
         try:
-            pool.submit(self._work)
+            task = pool.submit(self._work)
         except RuntimeError:
             self._work()
+        else:
+            self._tasks = [task, *(task for task in self._tasks if not task.done())]
 
     def _go_on(self, run: _Run, pool: ThreadPoolExecutor) -> Iterator[Tables]:
         """The rest of a part, and what its decoder finds until it agrees with a part behind it."""
