@@ -317,6 +317,9 @@ class Watched(NativeEngine):
         self._seen.append(more)
         super().renumber(more)
 
+    def tell(self, front: NativeEngine) -> None:
+        """It is told by `join`: else it depends on the threads whether that sees anything."""
+
     def join(self, front: NativeEngine) -> bool:
         before = self.place[1]
         found = super().join(front)
