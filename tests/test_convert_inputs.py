@@ -5,10 +5,13 @@ from __future__ import annotations
 import gzip
 import io
 import json
+import os
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -101,6 +104,51 @@ class TestDetection:
     def test_digits_of_any_text(self, tmp_path: Path, encoding: str) -> None:
         (tmp_path / "run.hex").write_bytes(f"{FRAME.hex(' ')}\r\n".encode(encoding))
         assert read(tmp_path / "run.hex")[:2] == ("hex digits", FRAME)
+
+    @pytest.mark.parametrize("pack", [packed, zstd], ids=["gzip", "zstd"])
+    @pytest.mark.parametrize(
+        ("expected", "content"),
+        [
+            ("a recorded capture", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME),
+            ("a text log with times", b"# note\n(1.5) can0 123#" + FRAME.hex().encode()),
+        ],
+        ids=["record", "log"],
+    )
+    def test_by_more_than_the_first_member(
+        self, expected: str, content: bytes, pack: Callable[[bytes], bytes], tmp_path: Path
+    ) -> None:
+        for cut in (1, 7, len(content) - 1):
+            (tmp_path / "run").write_bytes(pack(content[:cut]) + pack(content[cut:]))
+            kind, data, *_ = read(tmp_path / "run")
+            assert (kind.partition(",")[0], data) == (expected, FRAME)
+
+    @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+    @pytest.mark.parametrize(
+        ("expected", "content"),
+        [
+            ("a recorded capture", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME),
+            ("a text log with times", f"(1) {FRAME.hex()}".encode("utf-16")),
+            ("raw bytes, gzip", packed(FRAME)),
+            ("raw bytes", FRAME),
+        ],
+        ids=["record", "log", "gzip", "raw"],
+    )
+    def test_by_more_than_the_first_bytes_of_a_pipe(
+        self, expected: str, content: bytes, tmp_path: Path
+    ) -> None:
+        pipe = tmp_path / "run"
+        os.mkfifo(pipe)
+
+        def write() -> None:
+            with pipe.open("wb", buffering=0) as stream:
+                for byte in content:
+                    stream.write(bytes((byte,)))
+                    time.sleep(0.001)  # So that whoever reads gets it alone.
+
+        writer = Thread(target=write)
+        writer.start()
+        assert read(pipe)[:2] == (expected, FRAME)
+        writer.join()
 
     def test_text_in_single_bytes(self) -> None:
         for text in ("", "1", "1B 03"):

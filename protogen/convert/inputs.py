@@ -19,7 +19,7 @@ import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from io import BufferedReader
+from io import BufferedReader, RawIOBase
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO, cast
 
@@ -190,13 +190,38 @@ def format_of(source: Source, kind: InputKind | None) -> Format:
         return capture.format
 
 
+class _HeadFirst(RawIOBase):
+    """A stream whose first piece is not shorter than what is looked at, unless it is all there is.
+
+    Pipes give what has been written so far, and unpacking what one member holds: less than what
+    shows what a capture is.
+    """
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+        self._least = _HEAD
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: object, /) -> int:
+        target = memoryview(cast(bytearray, buffer)).cast("B")
+        size = 0
+        while more := self._stream.readinto(target[size:]):  # type: ignore[attr-defined]
+            size += more
+            if size >= self._least:
+                break
+        self._least = 0
+        return size
+
+
 class _Counted(BufferedReader):
     """A stream that can be looked at before it is read, and tells how much was read."""
 
     def __init__(
         self, stream: BinaryIO, advance: Callable[[int], None] = lambda amount: None
     ) -> None:
-        super().__init__(stream, _READ)  # type: ignore[arg-type]
+        super().__init__(_HeadFirst(stream), _READ)
         self._advance = advance
 
     def read1(self, size: int = -1, /) -> bytes:
