@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import struct
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -275,6 +276,26 @@ def test_lists_that_are_long_and_short_by_turns_take_no_room() -> None:
     found, expected, asked = csv_of_lists(ListsOf(Numbers(np.arange(300)), counts))
     assert found == expected
     assert asked == 1
+
+
+def test_lists_in_lists_of_any_length_take_little_memory() -> None:
+    """Each may need many times the room of what it holds, and those inside of it as well."""
+    values: Any = Numbers(np.arange(100_000, dtype="u8"))
+    for _ in range(3):
+        counts = np.ones(len(values), "i4")
+        counts[::14] = 256
+        counts = counts[: np.searchsorted(np.cumsum(counts), len(values)) + 1]
+        counts[-1] -= counts.sum() - len(values)
+        values = ListsOf(values, counts)
+    tracemalloc.start()
+    try:
+        found, expected, asked = csv_of_lists(values)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert found == expected
+    assert asked == 1
+    assert most < 150_000_000
 
 
 def test_lists_in_lists_are_printed_as_deep_as_there_is_room() -> None:

@@ -27,6 +27,8 @@ _MOST_ROOM = 16
 """Room for elements to each that is there, where lists are long and short by turns."""
 _SMALL = 1 << 16
 """Elements that may have any room."""
+_MOST_BYTES = 1 << 25
+"""Of the room, as lists in lists multiply it: several times what a batch of one size takes."""
 
 Step = Callable[[Programs, int], None]
 """Print what lies so many bytes behind the start of the element at hand."""
@@ -67,7 +69,12 @@ def spread(elements: Laid | None, counts: Array) -> Laid | None:
     Rows have room for a power of two, so that programs for them can be used again.
     """
     most = 1 << max(0, int(counts.max(initial=0)) - 1).bit_length()
-    if elements is None or most * len(counts) > max(_SMALL, _MOST_ROOM * len(elements.values)):
+    if elements is None:
+        return None
+    room = most * len(counts)
+    if room > max(_SMALL, _MOST_ROOM * len(elements.values)):
+        return None
+    if room * elements.values.itemsize > _MOST_BYTES:
         return None
     found = np.zeros((len(counts), most), elements.values.dtype)
     found[np.arange(most) < counts.reshape(-1, 1)] = elements.values
