@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 from random import Random
@@ -206,44 +205,62 @@ def test_a_fleet_gives_the_rows_of_one_machine(captures: Path, whole: Path, tmp_
     assert kept == [line for line in again.output.splitlines() if line.startswith("  ")]
 
 
+_DYING = """
+import os, signal, threading
+from protogen.convert import parts
+
+def is_first(name):
+    try:
+        os.close(os.open(os.path.join({folder!r}, name), os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return False
+    return True
+
+def die():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+def commit(pending):
+    if is_first("in_front_of_files"):
+        die()
+    return settle(pending)
+
+def write_marker(*arguments, **options):
+    if is_first("in_front_of_marker"):
+        die()
+    write(*arguments, **options)
+    if is_first("behind_marker"):  # While the result is on its way, or with the next part begun.
+        threading.Timer(0.02, die).start()
+
+if not hasattr(parts, "is_dying"):  # Dask may run it twice.
+    parts.is_dying = True
+    settle, write = parts.Pending.commit, parts.write_whole
+    parts.Pending.commit, parts.write_whole = commit, write_marker
+"""
+"""What a worker runs first: the first ones that come so far end, as if they had been killed."""
+
+
 def test_a_worker_that_is_killed_loses_and_doubles_nothing(
     captures: Path, whole: Path, tmp_path: Path
 ) -> None:
     distributed = pytest.importorskip("distributed")
-    killed = []
-    is_over = threading.Event()
+    died, fleets, single = (tmp_path / name for name in ("died", "fleet", "single"))
+    died.mkdir()
+    preload = tmp_path / "dying.py"
+    preload.write_text(_DYING.format(folder=str(died)))
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None
+        n_workers=2, threads_per_worker=1, dashboard_address=None, preload=[str(preload)]
     ) as cluster:
-
-        def kill() -> None:
-            """End a worker's process when some parts are done, twice."""
-            for parts in (3, 8):
-                while len(list((tmp_path / MARKERS).glob("large.*.json"))) < parts:
-                    if is_over.wait(0.005):
-                        return
-                # The nanny knows it: a worker that starts just now would not answer.
-                nannies = cluster.workers.values()
-                process = next(filter(None, (nanny.pid for nanny in nannies)))
-                os.kill(process, signal.SIGKILL)
-                killed.append(process)
-
-        killer = threading.Thread(target=kill, daemon=True)
-        killer.start()
         fleet = ["--dask", cluster.scheduler_address, "--part-size", "1"]
-        done = run(*arguments(captures, tmp_path, "large.bin"), *fleet)
-        is_over.set()
-        killer.join(timeout=PATIENCE)
+        done = run(*arguments(captures, fleets, "large.bin"), *fleet)
     assert done.exit_code == 0, done.output
-    assert len(killed) == 2
-    single = tmp_path / "single"
+    assert sorted(path.name for path in died.iterdir()) == [
+        "behind_marker", "in_front_of_files", "in_front_of_marker",
+    ]  # fmt: skip
     assert run(*arguments(captures, single, "large.bin")).exit_code == 0
-    for table in single.iterdir():
-        if table.is_dir():
-            parts = [str(path) for path in sorted((tmp_path / table.name).glob("large.0*.parquet"))]
-            expected = parquet.read_table(table / "large.parquet")
-            assert dataset.dataset(parts).to_table().equals(expected), table.name
-    assert not list(tmp_path.rglob("*.partial"))
+    assert len(list(fleets.glob("lidar/large.*"))) == 8
+    assert_same_rows(single, fleets, ("large.bin",))
+    assert not list(fleets.rglob("*.partial"))
+    assert not (fleets / MARKERS).exists()
 
 
 def test_a_fleet_goes_on_where_another_was_ended(
