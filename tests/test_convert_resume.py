@@ -388,6 +388,29 @@ class TestPending:
         pending.discard()
         assert list(tmp_path.iterdir()) == []
 
+    def test_what_has_too_long_a_name_leaves_nothing(self, tmp_path: Path) -> None:
+        pending = Pending(tmp_path)
+        with pytest.raises(OSError, match="too long") as found:
+            pending.path(f"a/{'x' * 300}").write_text("")
+        pending.discard()
+        assert found.value.errno == errno.ENAMETOOLONG
+        assert list(tmp_path.iterdir()) == []
+
+    def test_what_is_not_whole_leaves_nothing_and_is_told_by_name(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def fill(path: Path, data: bytes) -> None:
+            path.touch()
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        write_whole(tmp_path / "file", b"before")
+        monkeypatch.setattr(Path, "write_bytes", fill)
+        with pytest.raises(OSError, match=r"file'$") as found:
+            write_whole(tmp_path / "file", b"after")
+        assert found.value.filename == str(tmp_path / "file")
+        assert [path.name for path in tmp_path.iterdir()] == ["file"]
+        assert (tmp_path / "file").read_bytes() == b"before"
+
     def test_a_whole_file_replaces_another(self, tmp_path: Path) -> None:
         for text in (b"one", b"two"):
             write_whole(tmp_path / "deep" / "file", text)

@@ -54,9 +54,10 @@ class Pending:
         return self.relatives
 
     def discard(self) -> None:
-        """Remove what was written."""
+        """Remove what was written, as far as that can be done."""
         for path in self._paths:
-            _hidden(path, self._token).unlink(missing_ok=True)
+            with suppress(OSError):  # What could not be written may have no name to remove.
+                _hidden(path, self._token).unlink()
             _remove_empty(path.parent, self._folder)
 
 
@@ -64,9 +65,16 @@ def write_whole(path: Path, data: bytes, token: str = "") -> None:
     """Write a file that appears whole or not at all. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
     hidden = _hidden(path, token)
-    hidden.write_bytes(data)
-    _settle(hidden)
-    hidden.replace(path)
+    try:
+        hidden.write_bytes(data)
+        _settle(hidden)
+        hidden.replace(path)
+    except BaseException as error:
+        if isinstance(error, OSError) and error.filename is None:
+            error.filename = str(path)  # As when the disk is full.
+        with suppress(OSError):
+            hidden.unlink()
+        raise
 
 
 def remove(folder: Path, relatives: Iterable[str]) -> None:
