@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import struct
@@ -25,9 +26,10 @@ from protogen.convert.arrays import Lists, Numbers, Octets  # noqa: E402
 from protogen.convert.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
 from protogen.convert.batches import Batch, Tally  # noqa: E402
 from protogen.convert.chunks import Chunk  # noqa: E402
+from protogen.convert.composed import Scattered, Structs  # noqa: E402
 from protogen.convert.decoding import open_decoder  # noqa: E402
 from protogen.convert.meanings import NameFinder, physical  # noqa: E402
-from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Scalar, tables_of  # noqa: E402
+from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Record, Scalar, tables_of  # noqa: E402
 from protogen.convert.values import as_list  # noqa: E402
 
 ENGINES = ["python", None]
@@ -349,3 +351,14 @@ class TestCells:
 
 def texts_of(matrix: Any) -> list[str]:
     return [row.tobytes().replace(b"\0", b"").decode() for row in matrix]
+
+
+def test_what_is_missing_has_members_that_parquet_takes() -> None:
+    pa = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    values = Scattered(Structs({"a": Numbers(np.arange(2, dtype="u2"))}, 2), np.array([0, -1, 1]))
+    found = values.to_arrow(Record((("a", Scalar("uint16")),), gaps=False))
+    assert found.to_pylist() == [{"a": 0}, None, {"a": 1}]
+    assert found.field(0).null_count == 0
+    lists = pa.FixedSizeListArray.from_arrays(found, 3)
+    parquet.write_table(pa.table({"lists": lists}), io.BytesIO())

@@ -54,7 +54,17 @@ class Scattered:
 
     def to_arrow(self, type: ColumnType) -> pa.Array:
         """The Arrow array."""
-        return _arrow(type, self.values).take(_indices(self.places))
+        import pyarrow as pa
+
+        from protogen.convert.arrow_tables import type_of
+
+        values = _arrow(type, self.values)
+        if not isinstance(type, Record) or not type.members or not len(values):
+            return values.take(_indices(self.places))
+        # Parquet refuses members of what is missing that are missing, too, and never are elsewhere.
+        there = values.take(pa.array(np.maximum(self.places, 0)))
+        missing = pa.array(self.places < 0)
+        return pa.StructArray.from_arrays(there.flatten(), fields=list(type_of(type)), mask=missing)
 
 
 @dataclass(frozen=True, slots=True)
