@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import sys
-from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
@@ -51,64 +51,85 @@ class Dtypes:
         self.empty: list[Rows] = [numpy().zeros(0, dtype) for dtype in self.each]
 
 
-class Blocks:
-    """Blocks of memory. What nobody looks at any more is used again.
+class _Holder:
+    """What refers to memory."""
 
-    Fresh pages cost more than decoding into them does. No thread waits here for another: whoever
-    looks at a block takes it out of the queue for as long. In the middle of that, Python may come
-    upon a reading that is over, and trim; or upon one that nobody goes on with, and wait for its
-    threads, which need blocks.
+    __slots__ = ("memory",)
+
+    def __init__(self, memory: Any) -> None:
+        self.memory = memory
+
+    @property
+    def references(self) -> int:
+        """How many there are to the memory, as Python counts."""
+        return sys.getrefcount(self.memory)
+
+
+_UNUSED = _Holder(bytearray()).references
+"""What is counted where nobody else uses memory. From 3.14 on, Python counts fewer."""
+
+
+class _Block(_Holder):
+    """Memory that is lent, over and over. No thread waits here for another that looks at it."""
+
+    __slots__ = ("_busy", "size")
+    memory: Rows
+
+    def __init__(self, size: int) -> None:
+        super().__init__(numpy().empty(size, "u1"))
+        self._busy = Lock()
+        self.size = size
+
+    @property
+    def is_used(self) -> bool:
+        """Whether anybody refers to it."""
+        return self.references > _UNUSED
+
+    def lent(self, size: int) -> Rows | None:
+        """So many bytes of it; None if it is used, or of quite another size."""
+        if not size <= self.size <= 4 * size or not self._busy.acquire(blocking=False):
+            return None
+        try:
+            return None if self.is_used else self.memory[:size]
+        finally:
+            self._busy.release()
+
+
+class Blocks:
+    """Blocks of memory. What nobody looks at any more is used again, the oldest block first.
+
+    Fresh pages cost more than decoding into them does; and the fewer are used in turn, the more of
+    them are in a cache still. No thread waits here for another: in the middle of this, Python may
+    come upon a reading that is over, and trim; or upon one that nobody goes on with, and wait for
+    its threads, which need blocks. A block that gets lost to the list by that is not used again.
     """
 
     def __init__(self) -> None:
-        self._blocks: deque[Rows] = deque()
+        self._blocks: list[_Block] = []
 
     def rows(self, dtype: np.dtype[Any], count: int) -> Rows:
         """Rows of any content."""
         size = count * dtype.itemsize
-        found = self._unused(size)
-        if found is None:
-            self._forget_unused()
-            block = numpy().empty(size + size // 8, "u1")
-            self._blocks.append(block)
-            found = block[:size]
-        return found.view(dtype)
-
-    def _unused(self, size: int) -> Rows | None:
-        """So many bytes of a block."""
-        for block, references in _each(self._blocks):
-            suits = references == _UNUSED and size <= block.nbytes <= 4 * size
-            found: Rows | None = block[:size] if suits else None
-            self._blocks.append(block)
+        for block in self._blocks:
+            found = block.lent(size)
             if found is not None:
-                return found
-        return None
+                return found.view(dtype)
+        return self._added(size + size // 8)[:size].view(dtype)
 
-    def _forget_unused(self) -> None:
-        for block, references in _each(self._blocks):
-            if references > _UNUSED:
-                self._blocks.append(block)
+    def _added(self, size: int) -> Rows:
+        """All of a new block. Those that suited nobody are given back."""
+        block = _Block(size)
+        self._blocks = [*(other for other in self._blocks if other.is_used), block]
+        return block.memory
 
     def trim(self, most: int) -> None:
         """Keep so many bytes. What somebody looks at still is the first to be forgotten."""
-        for block, _ in sorted(_each(self._blocks), key=lambda item: item[1]):
-            if block.nbytes <= most:
-                most -= block.nbytes
-                self._blocks.append(block)
-
-
-def _each(blocks: deque[Any]) -> Iterator[tuple[Any, int]]:
-    """Takes each block out of the queue, and counts who refers to it."""
-    for _ in range(len(blocks)):
-        try:
-            block = blocks.popleft()
-        except IndexError:  # Another thread looks at the rest.
-            return
-        yield block, sys.getrefcount(block)
-
-
-_UNUSED = next(_each(deque([bytearray()])))[1]
-"""What is counted where nobody uses a block. It was asked: from 3.14 on, Python counts fewer."""
+        kept = []
+        for block in sorted(self._blocks, key=lambda block: block.is_used):
+            if block.size <= most:
+                most -= block.size
+                kept.append(block)
+        self._blocks = kept
 
 
 KEPT = Blocks()
@@ -156,7 +177,7 @@ class NativeEngine:
         self._decoder = Decoder(library, budget)
         self._dtypes = Dtypes(library.schema)
         self._budget = budget
-        self._memory = memory or Memory()
+        self.memory = memory or Memory()
         self._held: dict[int, Rows] = {}
         self._offset = 0
         self._sequence = 0
@@ -242,11 +263,11 @@ class NativeEngine:
     def _lend(self, size: int) -> dict[int, Rows]:
         """Memory for what so many bytes may bring."""
         found: dict[int, Rows] = {}
-        for number, rate in self._memory.rates.items():
+        for number, rate in self.memory.rates.items():
             dtype = self._dtypes.each[number]
             if rate * size * dtype.itemsize > _FEW:
                 most = max(1, self._budget // dtype.itemsize)
-                found[number] = self._memory.rows(dtype, min(most, int(rate * size * 1.1) + 8))
+                found[number] = self.memory.rows(dtype, min(most, int(rate * size * 1.1) + 8))
                 self._decoder.lend(number, found[number])
         return found
 
@@ -263,7 +284,7 @@ class NativeEngine:
             every[number] = rows
             rates[number] = len(rows) / max(1, taken)
         if taken >= _TELLING:
-            self._memory.rates = rates
+            self.memory.rates = rates
         found = tables_of(
             self._schema,
             every,

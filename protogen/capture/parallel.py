@@ -26,7 +26,7 @@ from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
-ROWS = 12 << 20
+ROWS = 6 << 20
 """Bytes of rows that a part should have: many for what a part costs by itself, and few for what all
 parts at hand take."""
 PARTS = range(1 << 20, (8 << 20) + 1)

@@ -18,7 +18,7 @@ from protogen.capture.source import Source, opened, pieces
 from protogen.capture.tables import Tables
 from protogen.model.protocol import Protocol
 
-CHUNK = 1 << 20
+CHUNK = 2 << 20
 """Bytes of a capture that are decoded at once."""
 
 
