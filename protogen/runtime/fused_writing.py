@@ -98,30 +98,27 @@ class Writing:
                 self.function.refuse_if(step.wrong.format(v=value, **uses))
 
     def _record(self, record: Record, values: str, scope: Scope) -> None:
-        values = self._fields(record, values)
+        self._check_fields(record, values)
         inner: dict[str, tuple[Part, str]] = {}
         for name, part in record.fields:
             text = f"{values}.get({name!r})" if _may_be_missing(part) else f"{values}[{name!r}]"
             inner[name] = part, self.part(part, text, (inner, *scope))
 
-    def _fields(self, record: Record, values: str) -> str:
-        """Check what the fields are in; the text for them."""
+    def _check_fields(self, record: Record, values: str) -> None:
+        """Check what the fields are in, and that no others are."""
         lines, names = self.function.lines, [name for name, _ in record.fields]
         if len(names) < COPIED:
             self.function.refuse_if(
                 f"type({values}) is not dict and type({values}) is not Container"
             )
         else:
-            fields = self.function.variable()
-            lines.append(f"if type({values}) is Container: {fields} = {{**{values}}}")
-            lines.append(f"elif type({values}) is dict: {fields} = {values}")
-            lines.append("else: raise Unclear")
-            values = fields
+            lines.append(f"if type({values}) is not dict:")
+            lines.append(f"    if type({values}) is not Container: raise Unclear")
+            lines.append(f"    {values} = {{**{values}}}")
         missing = [name for name, part in record.fields if _may_be_missing(part)]
         odd = [f"len({values}) != {len(names)}", *(f"{name!r} not in {values}" for name in missing)]
         check, known = self.function.name(check_names), self.function.name(frozenset(names))
         lines.append(f"if {' or '.join(odd)}: {check}({values}, {known})")
-        return values
 
     def _chunk(self, chunk: Chunk, value: str, scope: Scope) -> None:
         self.flush()
