@@ -182,15 +182,16 @@ def targets(results: Results) -> list[Target]:
             name = f"`FORMAT.{what}` of {case}"
             found.append(_least(f"{name}, compiled", times, formats.OURS, COMPILED, 5))
             found.append(_least(f"{name}, interpreted", times, formats.OURS, CONSTRUCT, 20))
-    for case, what, most in (
-        ("matty status", "parse", 750),
-        ("matty status", "build", 300),
-        ("rn1 lidar", "parse", 9000),
+    status = "matty status"
+    for what, times, name, most in (
+        (f"parse` of {status}", results.parse[status], formats.OURS, 750),
+        (f"build` of {status} in a `dict`", results.build[status], formats.OF_DICT, 300),
+        (f"build` of {status} in a `Container`", results.build[status], formats.OURS, 300),
+        ("parse` of rn1 lidar", results.parse["rn1 lidar"], formats.OURS, 9000),
     ):
-        value = median(getattr(results, what)[case][formats.OURS])
-        shown = f"{value / 1000:.2f} µs"
+        value = median(times[name])
         aim = f"at most {most / 1000:g} µs"
-        found.append(Target(f"`FORMAT.{what}` of {case}", aim, shown, value / most))
+        found.append(Target(f"`FORMAT.{what}", aim, f"{value / 1000:.2f} µs", value / most))
     found += [_in_bulk(case, results) for case in results.stream]
     found += [_native(case, results) for case in results.stream]
     return found
@@ -380,7 +381,8 @@ Encoding a frame of a message:
 ## FORMAT
 
 Payloads to construct's `Container`, and back, without frames: the generated `FORMAT` beside
-construct's own declaration of the same fields.
+construct's own declaration of the same fields. Python looks faster into a plain `dict` than into a
+`Container`, which is what a program has that changes what it parsed.
 
 {parse}
 
@@ -397,6 +399,7 @@ construct's own declaration of the same fields.
 def page(results: Results, rounds: int) -> str:
     any_case = next(iter(results.stream.values()))
     kinds = (formats.OURS, CONSTRUCT, COMPILED)
+    built = (formats.OURS, formats.OF_DICT, CONSTRUCT, COMPILED)
     values = {
         "rounds": rounds,
         "versions": versions(),
@@ -412,7 +415,7 @@ def page(results: Results, rounds: int) -> str:
         "decode": table(results.decode, OBJECTS),
         "encode": table(results.encode, [name for name in OBJECTS if name != KAITAI]),
         "parse": table(results.parse, kinds, formats.OURS).replace("ns per", "parse, ns per"),
-        "build": table(results.build, kinds, formats.OURS).replace("ns per", "build, ns per"),
+        "build": table(results.build, built, formats.OURS).replace("ns per", "build, ns per"),
         "targets": targets_table(results),
         "missing": missing_text(results),
     }

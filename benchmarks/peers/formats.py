@@ -9,6 +9,7 @@ from peers import with_construct
 from peers.cases import FEW, Case
 
 OURS = "protogen, `FORMAT`"
+OF_DICT = "protogen, `FORMAT`, of a `dict`"
 Runs = dict[str, Callable[[], list[Any]]]
 
 
@@ -24,10 +25,11 @@ def parsing(case: Case) -> Runs:
 
 
 def building(case: Case) -> Runs:
-    """Each builds a few payloads of containers. Raises ValueError where they differ."""
+    """Each builds a few payloads of containers, and ours of dicts. Raises as `parsing` does."""
     payloads = _payloads(case)
     items = [case.kind.FORMAT.parse(payload) for payload in payloads]
     runs = {name: _each(build, items) for name, (_, build) in _formats(case).items()}
+    runs[OF_DICT] = _each(case.kind.FORMAT.build, [dict(item) for item in items])
     for name, run in runs.items():
         if run() != payloads:
             raise ValueError(f"{name}, {case.title}: other bytes than the reference's")
