@@ -56,6 +56,9 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
 
 
 _warned: set[str] = set()
+_STACK = 6
+"""The warning is about the line that calls `columns` or goes through `batches`: behind this one are
+`makers`, the context manager of `read.py`, the library's, and `columns` or `batches`."""
 
 
 def _warn(why: str) -> None:
@@ -63,7 +66,7 @@ def _warn(why: str) -> None:
     if why not in _warned:
         _warned.add(why)
         text = f"captures are read in Python, which is slow: {why}"
-        warnings.warn(text, SlowCaptureWarning, stacklevel=5)
+        warnings.warn(text, SlowCaptureWarning, stacklevel=_STACK)
 
 
 def reading_of(protocol: Model, sender: Sender) -> Reading:
