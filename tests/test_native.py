@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import warnings
@@ -158,9 +159,14 @@ def test_without_a_compiler_python_fills_the_tables_and_says_so_once(
     data = stream_of(material_of(RN1, "brain"), Random(1), 50).data
     monkeypatch.setattr(engines, "_warned", set())
     monkeypatch.setenv("CC", "no-such-cc -m32")
-    with pytest.warns(SlowCaptureWarning, match="no C compiler 'no-such-cc'"):
+    with pytest.warns(SlowCaptureWarning, match="no C compiler 'no-such-cc'") as warned:
         found = columns(data, protocol_of(RN1), "brain")
     assert found.engine == "python"
+    assert [item.filename for item in warned] == [__file__]
+    monkeypatch.setattr(engines, "_warned", set())
+    with pytest.warns(SlowCaptureWarning) as warned:
+        next(batches(data, protocol_of(RN1), "brain"))
+    assert [item.filename for item in warned] == [__file__]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert next(batches(data, protocol_of(RN1), "brain")).engine == "python"
@@ -173,6 +179,7 @@ def test_without_a_compiler_python_fills_the_tables_and_says_so_once(
     [
         ("'", "CC is no command"),
         ("false", "false does not compile the decoder: exit code 1"),
+        ("true", "true ends without an error, but makes no library"),
         ("cc --no-such-option", "does not compile the decoder: .*no-such-option"),
     ],
 )
@@ -320,6 +327,43 @@ def test_a_library_is_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatc
     assert len(cache.libraries()) == 4
     assert cache.clean() == 4
     assert cache.libraries() == []
+
+
+def test_what_was_built_ahead_serves_where_no_compiler_is_any_more(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CC", raising=False)
+    first = build()
+    monkeypatch.setenv("PATH", "")
+    again = build()
+    assert (again.path, again.is_new) == (first.path, False)
+    with pytest.raises(NativeError, match="no cc, gcc or clang"):
+        build(sender="brain")
+    first.path.chmod(0o777)
+    with pytest.raises(NativeError, match="others can write to"):
+        build()
+    first.path.chmod(0o700)
+    with monkeypatch.context() as patch:
+        patch.setattr(building.platform, "machine", lambda: "another")
+        with pytest.raises(NativeError, match="no cc, gcc or clang"):
+            build()
+    assert build().path == first.path
+    monkeypatch.setenv("CC", "no-such-cc")
+    with pytest.raises(NativeError, match="'no-such-cc', as CC says"):
+        build()
+
+
+def test_of_several_built_ahead_the_newest_serves(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", "cc -O1")
+    newest = build().path
+    monkeypatch.delenv("CC")
+    older = build().path
+    assert older != newest
+    os.utime(older, (1, 1))
+    monkeypatch.setenv("PATH", "")
+    assert build().path == newest
 
 
 def test_two_processes_may_build_at_once(folder: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import platform
+import sys
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -11,7 +13,7 @@ from tempfile import TemporaryDirectory
 from protogen.model.protocol import Protocol, Sender
 from protogen.native.cache import SUFFIX, cache_folder, check, safe_folder
 from protogen.native.compiler import Compiler, compiler
-from protogen.native.errors import NativeError
+from protogen.native.errors import NativeError, NoCompilerError
 from protogen.native.source import Driver, driver_of
 from protogen.version import VERSION
 
@@ -50,9 +52,17 @@ def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]
 
     `words`: what else it depends on. Raises NativeError.
     """
-    found = compiler()
+    made_from = (VERSION, *words, sys.platform, platform.machine(), _digest(text))
+    stem = f"{name}-{_digest(*made_from)[:24]}"
+    try:
+        found = compiler()
+    except NoCompilerError:
+        path = _built_ahead(stem)
+        if path is None:
+            raise
+        return path, False
     folder = safe_folder(cache_folder())
-    path = folder / f"{name}-{_key(text, words, found)}{SUFFIX}"
+    path = folder / f"{stem}-{_digest(found.identity)[:8]}{SUFFIX}"
     is_new = not path.exists()
     if is_new:
         _compile(text, found, path)
@@ -60,11 +70,22 @@ def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]
     return path, is_new
 
 
-def _key(text: str, words: tuple[str, ...], found: Compiler) -> str:
-    """Of everything that the library is made from."""
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    every = (VERSION, *words, found.identity, digest)
-    return hashlib.sha256("\n".join(every).encode()).hexdigest()[:24]
+def _built_ahead(stem: str) -> Path | None:
+    """The library that a compiler made while there was one, the newest of several."""
+    if not cache_folder().is_dir():
+        return None
+    built = safe_folder(cache_folder()).glob(f"{stem}-*{SUFFIX}")
+    try:
+        path = max(built, key=lambda item: item.stat().st_mtime_ns, default=None)
+    except FileNotFoundError:  # Somebody cleans the cache.
+        return None
+    if path is not None:
+        check(path)
+    return path
+
+
+def _digest(*words: str) -> str:
+    return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
 
 def _compile(text: str, found: Compiler, path: Path) -> None:

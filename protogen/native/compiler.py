@@ -9,7 +9,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from protogen.native.errors import NativeError
+from protogen.native.errors import NativeError, NoCompilerError
 
 FLAGS = ("-std=c99", "-O3", "-w", "-fPIC", "-shared", "-fvisibility=hidden")
 _USUAL = ("cc", "gcc", "clang")
@@ -48,10 +48,15 @@ class Compiler:
         if done.returncode:
             first = next(iter(done.stderr.strip().splitlines()), f"exit code {done.returncode}")
             raise NativeError(f"{self.command[0]} does not compile the decoder: {first}")
+        if not library.exists():
+            raise NativeError(f"{self.command[0]} ends without an error, but makes no library")
 
 
 def compiler() -> Compiler:
-    """The one that `CC` names, else `cc`. Raises NativeError where there is none."""
+    """The one that `CC` names, else `cc`.
+
+    Raises NativeError where there is none, NoCompilerError where `CC` names none either.
+    """
     given = os.environ.get("CC", "")
     try:
         words = shlex.split(given)
@@ -66,4 +71,4 @@ def compiler() -> Compiler:
         program = shutil.which(name)
         if program is not None:
             return Compiler((program,))
-    raise NativeError("there is no C compiler: no cc, gcc or clang on the PATH")
+    raise NoCompilerError("there is no C compiler: no cc, gcc or clang on the PATH")

@@ -5,3 +5,7 @@ from __future__ import annotations
 
 class NativeError(Exception):
     """Native code can't be had here: the text says why."""
+
+
+class NoCompilerError(NativeError):
+    """There is no compiler, and nobody asked for a certain one."""
