@@ -14,6 +14,7 @@ from cli_support import SINK, run, start
 from compiled import DOCUMENTS, module_at, name_of, protocol_of
 from test_json_lines import capture_of
 
+from protogen.convert import errors
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.mcap_writer import McapWriter, json_schema
 from protogen.convert.outputs import Pending
@@ -367,6 +368,7 @@ def test_the_summary_counts_messages_and_invalid_bytes(sink: Path, tmp_path: Pat
     (tmp_path / "run.bin").write_bytes(data)
     lines = convert(sink, "pc", tmp_path / "run.bin", "jsonl", tmp_path / "out")
     assert lines[0] == f"{tmp_path / 'run.bin'}: raw bytes, {len(data)} bytes"
+    assert lines[-1] == f"  wrote 1 file in {tmp_path / 'out'}"
     events = events_of(sink, "pc", data)
     invalid: dict[str, int] = {}
     for event in events:
@@ -433,6 +435,14 @@ class TestErrors:
         with pytest.raises(ConvertError, match="package pyarrow") as caught:
             needed("pyarrow", "writing Parquet")
         assert caught.value.hint == "pip install 'protogen-serial[parquet]'"
+
+    def test_a_package_that_does_not_fit_is_not_called_missing(self, monkeypatch: Any) -> None:
+        def refuse(module: str) -> None:
+            raise ImportError("compiled for another NumPy")
+
+        monkeypatch.setattr(errors, "import_module", refuse)
+        with pytest.raises(ConvertError, match="package pyarrow: compiled for another NumPy"):
+            needed("pyarrow", "writing Parquet")
 
     def test_the_command_says_so_before_it_reads_anything(
         self, sink: Path, tmp_path: Path, monkeypatch: Any

@@ -6,12 +6,14 @@ import io
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from random import Random
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 from cli_support import PATIENCE, ROOT, SINK, run
@@ -29,11 +31,12 @@ from protogen.convert.errors import ConvertError  # noqa: E402
 from protogen.convert.fleet import convert_fleet  # noqa: E402
 from protogen.convert.parts import Part, PartDone, read_marker  # noqa: E402
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry  # noqa: E402
-from protogen.convert.run import Job, convert, plan  # noqa: E402
+from protogen.convert.run import Fleet, Job, convert, plan  # noqa: E402
 from protogen.convert.state import RECORD  # noqa: E402
 from protogen.convert.tables import tables_of  # noqa: E402
 from protogen.convert.values import as_list  # noqa: E402
 from protogen.convert.writers import OutputFormat  # noqa: E402
+from protogen.version import VERSION  # noqa: E402
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 RN1 = ROOT / "schemas" / "rn1.yaml"
@@ -298,7 +301,7 @@ def test_a_fleet_goes_on_where_another_was_ended(
 
 def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) -> None:
     distributed = pytest.importorskip("distributed")
-    from protogen.convert import fleet, parts
+    from protogen.convert import parts
 
     path, data = frames_in_frames()
     (tmp_path / "run.bin").write_bytes(data)
@@ -308,7 +311,7 @@ def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) 
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
     ) as cluster:
         job = job_of(path, "station", out)
-        scheduler = fleet.Fleet(cluster.scheduler_address, None, 97)
+        scheduler = Fleet(cluster.scheduler_address, None, 97)
         named = plan(job, [str(tmp_path / "run.bin")])
         (result,) = convert_fleet(job, named, scheduler, pytest.fail, lambda amount: None)
     assert dict(result.tally.messages) == {"dump": 60}
@@ -335,7 +338,7 @@ def test_what_a_fleet_did_not_finish_is_not_left_beside_it(
     ) as cluster:
 
         def convert_in_parts(size: int) -> list[Any]:
-            scheduler = fleet.Fleet(cluster.scheduler_address, None, size)
+            scheduler = Fleet(cluster.scheduler_address, None, size)
             return list(convert_fleet(job, named, scheduler, pytest.fail, lambda amount: None))
 
         def end(*arguments: Any) -> None:
@@ -378,8 +381,10 @@ class TestOptions:
                 ("--to", "parquet", "--dask", "tcp://127.0.0.1:1", "--workers", "2"),
                 "--workers is for workers on this machine",
             ),
+            (("--to", "parquet", "--workers", "2"), "--workers is for --dask"),
+            (("--to", "parquet", "--part-size", "2"), "--part-size is for --dask"),
         ],
-        ids=["csv", "workers"],
+        ids=["csv", "workers", "workers alone", "part size alone"],
     )
     def test_that_do_not_go_together(
         self, sink: Path, options: tuple[str, ...], problem: str
@@ -395,17 +400,38 @@ class TestOptions:
         done = run(*common, "--dask", "-o", str(sink / "out"))
         assert (done.exit_code, "give files or URLs" in done.output) == (2, True)
 
-    def test_no_scheduler(self, sink: Path, monkeypatch: Any) -> None:
+    @pytest.mark.parametrize("error", [OSError("timed out"), TypeError("no ssl_context")])
+    def test_no_scheduler(self, sink: Path, monkeypatch: Any, error: Exception) -> None:
         distributed = pytest.importorskip("distributed")
 
         def refuse(*arguments: object, **options: object) -> None:
-            raise OSError("timed out")
+            raise error
 
         monkeypatch.setattr(distributed, "Client", refuse)
         common = ["convert", str(sink / "sink.yaml"), str(sink / "run.bin"), "--sender", "pc"]
         done = run(*common, "--to", "parquet", "--dask", "nowhere:8786", "-o", str(sink / "out"))
         assert done.exit_code == 2
-        assert "no scheduler answers at nowhere:8786" in done.output
+        assert f"no scheduler answers at nowhere:8786: {error}" in done.output
+
+    @pytest.mark.parametrize("module", ["numpy", "pyarrow", "distributed"])
+    def test_a_missing_package_is_named(self, sink: Path, module: str) -> None:
+        """In a process of its own, as here all of them have been imported."""
+        code = f"import sys; sys.modules[{module!r}] = None; from protogen.cli import main; main()"
+        arguments = ["convert", "sink.yaml", "run.bin", "--sender", "pc", "--to", "parquet"]
+        for fleet in ((), ("--dask",)):
+            if (module, fleet) == ("distributed", ()):
+                continue
+            done = subprocess.run(
+                [sys.executable, "-c", code, *arguments, *fleet],
+                cwd=sink,
+                env={**os.environ, "PYTHONPATH": str(ROOT)},
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            assert done.returncode == 2, done.stderr
+            assert f"needs the package {module}, which is not installed" in done.stderr
+            assert "pip install 'protogen-serial[" in done.stderr
 
     def test_files_of_somebody_else_stay(self, sink: Path) -> None:
         pytest.importorskip("distributed")
@@ -417,6 +443,91 @@ class TestOptions:
         assert done.exit_code == 2
         assert "no earlier run made it" in done.output
         assert theirs.read_text() == "mine"
+
+
+# --- clusters of others ---------------------------------------------------------------------------
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> list[str]:
+    """The command that converts a little capture."""
+    (tmp_path / "small.bin").write_bytes(capture_of(RN1, "brain", 5, 20))
+    return arguments(tmp_path, tmp_path / "out", "small.bin")
+
+
+class _FakeClient:
+    """A scheduler's client whose workers say this."""
+
+    said: ClassVar[dict[str, Any]]
+
+    def __init__(self, address: str) -> None: ...
+
+    def __enter__(self) -> _FakeClient:
+        return self
+
+    def __exit__(self, *error: object) -> None: ...
+
+    def run(self, function: Any, *arguments: Any, on_error: str) -> dict[str, Any]:
+        assert function(*arguments) == VERSION
+        return self.said
+
+    def submit(self, *arguments: Any, **options: Any) -> None:
+        raise ConvertError("something was submitted")
+
+
+@pytest.mark.parametrize(
+    ("said", "problem"),
+    [
+        (ModuleNotFoundError("No module named 'protogen'"), "the worker tcp://b has no protogen"),
+        ("0.0.1", f"the worker tcp://b has protogen 0.0.1, not {VERSION}"),
+        (OSError("it has just gone"), "something was submitted"),
+    ],
+    ids=["none", "another", "not known"],
+)
+def test_workers_need_the_same_protogen(
+    small: list[str], monkeypatch: pytest.MonkeyPatch, said: Any, problem: str
+) -> None:
+    """Else each of them ends when it is given a part, and the command waits for ever."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(_FakeClient, "said", {"tcp://b": said, "tcp://a": VERSION}, raising=False)
+    monkeypatch.setattr(distributed, "Client", _FakeClient)
+    done = run(*small, "--dask", "anywhere:1")
+    assert (done.exit_code, problem in done.output) == (2, True), done.output
+
+
+def test_a_scheduler_without_workers_is_said(
+    small: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(_FakeClient, "said", {}, raising=False)
+    monkeypatch.setattr(distributed, "Client", _FakeClient)
+    done = run(*small, "--dask", "anywhere:1")
+    assert "warning: the scheduler at anywhere:1 has no workers; waiting for some" in done.output
+
+
+def test_a_scheduler_that_ends_is_said() -> None:
+    distributed = pytest.importorskip("distributed")
+    from protogen.convert import fleet
+
+    class Cancelled:
+        def result(self) -> None:
+            raise distributed.CancelledError("scheduler-connection-lost")
+
+    with pytest.raises(ConvertError, match="the scheduler is gone"):
+        fleet._result(Cancelled())
+
+
+def test_workers_on_this_machine_take_no_port_that_others_have(
+    small: list[str], recwarn: pytest.WarningsRecorder
+) -> None:
+    pytest.importorskip("distributed")
+    with socket.socket() as taken:
+        with suppress(OSError):  # Another one has it already.
+            taken.bind(("127.0.0.1", 8787))
+            taken.listen()
+        done = run(*small, "--dask", "--workers", "1")
+    assert done.exit_code == 0, done.output
+    assert not [item for item in recwarn if "already in use" in str(item.message)]
 
 
 def test_a_marker_holds_only_for_what_it_was_made_of(tmp_path: Path) -> None:

@@ -449,6 +449,9 @@ class TestCommand:
         wrong = run("convert", str(schema), "nowhere://x", *self.options(schema))
         assert wrong.exit_code == 2
         assert "nowhere://x: Protocol not known" in wrong.output
+        missing = run("convert", str(schema), "memory://missing.bin", *self.options(schema))
+        assert missing.exit_code == 2
+        assert "memory://missing.bin: No such file or directory" in missing.output
 
 
 def test_endless_lines_are_no_text() -> None:

@@ -17,8 +17,7 @@ from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
 from protogen.convert.kinds import InputKind, OutputFormat
 
 if TYPE_CHECKING:
-    from protogen.convert.fleet import Fleet
-    from protogen.convert.run import Job, Result
+    from protogen.convert.run import Fleet, Job, Result
 
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
 
@@ -69,9 +68,11 @@ def convert(  # noqa: PLR0913 - each option is one argument
         typer.Option("--workers", min=1, metavar="N", help="With --dask: how many here."),
     ] = None,
     part_size: Annotated[
-        int,
-        typer.Option("--part-size", min=1, metavar="MB", help="With --dask: megabytes of a part."),
-    ] = 256,
+        int | None,
+        typer.Option(
+            "--part-size", min=1, metavar="MB", help="With --dask: megabytes of a part, else 256."
+        ),
+    ] = None,
     quiet: Quiet = False,
 ) -> int:
     """Make tables of captures: one for each message, with raw and physical values.
@@ -88,7 +89,7 @@ def convert(  # noqa: PLR0913 - each option is one argument
     sent = codec.protocol.sender(name)
     job = Job(codec.protocol, codec.runtime, sent, to, output, input, force)
     complaints = _Complaints()
-    fleet = None if dask is None else _fleet(to, dask, workers, part_size)
+    fleet = _fleet(to, dask, workers, part_size)
     results = _run(job, captures, fleet, complaints)
     if not quiet:
         for result in results:
@@ -131,14 +132,22 @@ class ConvertCommand(Command):
         return super().parse_args(ctx, written)
 
 
-def _fleet(to: OutputFormat, address: str, workers: int | None, part_size: int) -> Fleet:
-    from protogen.convert.fleet import Fleet
+def _fleet(
+    to: OutputFormat, address: str | None, workers: int | None, part_size: int | None
+) -> Fleet | None:
+    if address is None:
+        for option, given in (("--workers", workers), ("--part-size", part_size)):
+            if given is not None:
+                raise UsageError(f"{option} is for --dask", "add --dask, or leave it out")
+        return None
+    from protogen.convert.run import PART_SIZE, Fleet
 
     if to is not OutputFormat.PARQUET:
         raise UsageError("--dask makes Parquet", "give --to parquet")
     if address != LOCAL and workers is not None:
         raise UsageError("--workers is for workers on this machine, not for a scheduler's")
-    return Fleet(None if address == LOCAL else address, workers, part_size * 1_000_000)
+    size = PART_SIZE if part_size is None else part_size * 1_000_000
+    return Fleet(None if address == LOCAL else address, workers, size)
 
 
 def _run(
@@ -205,7 +214,7 @@ def _print_result(result: Result, folder: Path) -> None:
         typer.echo(f"  {name:<{width}} {amount}")
     if not result.was_done:
         tables = [file for file in result.files if not file.endswith(".columns.json")]
-        typer.echo(f"  wrote {len(tables)} files in {folder}")
+        typer.echo(f"  wrote {len(tables)} {'file' if len(tables) == 1 else 'files'} in {folder}")
 
 
 def _amounts(result: Result) -> list[tuple[str, str]]:

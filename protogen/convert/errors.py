@@ -34,7 +34,9 @@ def needed(module: str, purpose: str) -> ModuleType:
     package = module.partition(".")[0]
     try:
         return import_module(module)
-    except ImportError:
+    except ImportError as error:
+        if not isinstance(error, ModuleNotFoundError):  # It is there, but does not fit the rest.
+            raise ConvertError(f"{purpose} needs the package {package}: {error}") from None
         raise ConvertError(
             f"{purpose} needs the package {package}, which is not installed",
             f"pip install 'protogen-serial[{_EXTRAS[package]}]'",

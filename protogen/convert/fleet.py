@@ -8,9 +8,11 @@ record of the folder says that it is done; then other files that earlier runs ma
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 from protogen.convert.batches import Tally
@@ -26,23 +28,12 @@ from protogen.convert.parts import (
     read_marker,
 )
 from protogen.convert.ranges import START
-from protogen.convert.run import Job, Result, check_origin, check_room, forget_parts
+from protogen.convert.run import Fleet, Job, Result, check_origin, check_room, forget_parts
 from protogen.convert.state import Done, State
-
-PART_SIZE = 256 << 20
-"""Bytes of a capture in a part, unless somebody says otherwise."""
+from protogen.version import VERSION
 
 Complain = Callable[[str], None]
 Advance = Callable[[int], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Fleet:
-    """Who does the work: a scheduler's address, or None for workers on this machine."""
-
-    address: str | None = None
-    workers: int | None = None
-    part_size: int = PART_SIZE
 
 
 @dataclass(slots=True)
@@ -107,7 +98,7 @@ def convert_fleet(
     if waiting:
         for capture in waiting:
             _begin(job, state, capture)
-        with _client(fleet) as client:
+        with _client(fleet, complain) as client:
             done: dict[str, Result] = {}
             parts = {it.name: [part.name for part in it.parts] for it in waiting}
             try:
@@ -168,24 +159,49 @@ def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> 
 
 
 @contextmanager
-def _client(fleet: Fleet) -> Iterator[Any]:
+def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
     distributed = needed("distributed", "--dask")
     if fleet.address is not None:
         try:
             client = distributed.Client(fleet.address)  # Waits as long as Dask's settings say.
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError, ImportError) as error:
+            # Dask tells a missing certificate or transport by a TypeError.
             raise ConvertError(f"no scheduler answers at {fleet.address}: {error}") from None
         with client:
+            _check_workers(client, fleet.address, complain)
             yield client
         return
     # A worker's memory is what its decoders and row groups hold: the same for parts of any size.
     with (
         distributed.LocalCluster(
-            n_workers=fleet.workers, threads_per_worker=1, dashboard_address=None
+            n_workers=fleet.workers,
+            threads_per_worker=1,
+            dashboard_address=None,
+            # Dask opens a port even so: any that is free, not one that it complains about.
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
         yield client
+
+
+def _check_workers(client: Any, address: str, complain: Complain) -> None:
+    """Complain where there are no workers yet. Raises ConvertError where one lacks this protogen.
+
+    A worker that can't import what it is given ends, and the rest of them would end like it.
+    """
+    found = client.run(resolve_name, "protogen.version:VERSION", on_error="return")
+    if not found:
+        complain(f"the scheduler at {address} has no workers; waiting for some")
+    for worker, version in sorted(found.items()):
+        if isinstance(version, ImportError):
+            problem = "has no protogen"
+        elif isinstance(version, str) and version != VERSION:
+            problem = f"has protogen {version}, not {VERSION}"
+        else:
+            continue
+        hint = f"install 'protogen-serial[dask]=={VERSION}' where the workers run"
+        raise ConvertError(f"the worker {worker} {problem}", hint)
 
 
 class _Workers:
@@ -266,5 +282,9 @@ def _result(future: Any) -> PartDone:
         raise ConvertError(
             f"workers died over and over at one part: {error}",
             "they may have too little memory: give fewer --workers",
+        ) from None
+    except CancelledError:
+        raise ConvertError(
+            "the scheduler is gone", "the same command goes on when it is there again"
         ) from None
     return found

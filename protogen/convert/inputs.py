@@ -12,6 +12,7 @@ bytes are hex digits. All else is the raw bytes of the line.
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import sys
@@ -93,6 +94,9 @@ class Source:
 def _translated(place: str) -> Iterator[None]:
     try:
         yield
+    except FileNotFoundError:
+        # File systems of fsspec say no more than the name.
+        raise ConvertError(f"{place}: {os.strerror(errno.ENOENT)}") from None
     except (OSError, EOFError) as error:
         reason = getattr(error, "strerror", None) or str(error) or "can't be read"
         raise ConvertError(f"{place}: {reason}") from None

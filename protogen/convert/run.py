@@ -23,6 +23,8 @@ from protogen.runtime.codec import Protocol as RuntimeProtocol
 
 _ORIGIN = ("capture", "protocol", "sender")
 """Of a stamp, what tables are made of, whatever becomes of it."""
+PART_SIZE = 256_000_000
+"""Bytes of a capture in a part, unless somebody says otherwise."""
 Complain = Callable[[str], None]
 Advance = Callable[[int], None]
 
@@ -67,6 +69,15 @@ class Job:
             "spec_hash": self.protocol.spec_hash,
             "version": self.tables.invalid.facts["protogen.version"],
         }
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """Who does the work: a scheduler's address, or None for workers on this machine."""
+
+    address: str | None = None
+    workers: int | None = None
+    part_size: int = PART_SIZE
 
 
 @dataclass(frozen=True, slots=True)

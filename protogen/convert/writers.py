@@ -13,10 +13,11 @@ from protogen.convert.outputs import Pending
 from protogen.convert.tables import Tables
 
 _NEEDS = {
-    OutputFormat.PARQUET: ("pyarrow", "writing Parquet"),
-    OutputFormat.ARROW: ("pyarrow", "writing Arrow"),
-    OutputFormat.MCAP: ("mcap", "writing MCAP"),
+    OutputFormat.PARQUET: (("pyarrow", "numpy"), "writing Parquet"),
+    OutputFormat.ARROW: (("pyarrow", "numpy"), "writing Arrow"),
+    OutputFormat.MCAP: (("mcap",), "writing MCAP"),
 }
+"""The packages that a format needs, and for what. PyArrow comes without NumPy."""
 
 
 class Writer(Protocol):
@@ -30,9 +31,10 @@ class Writer(Protocol):
 
 
 def require(format: OutputFormat) -> None:
-    """Raise ConvertError where the package that writes the format is missing."""
-    if format in _NEEDS:
-        needed(*_NEEDS[format])
+    """Raise ConvertError where a package that writes the format is missing."""
+    packages, purpose = _NEEDS.get(format, ((), ""))
+    for package in packages:
+        needed(package, purpose)
 
 
 def open_writer(format: OutputFormat, name: str, pending: Pending, tables: Tables) -> Writer:
