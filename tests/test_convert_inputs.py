@@ -449,6 +449,23 @@ class TestCommand:
         wrong = run("convert", str(schema), "nowhere://x", *self.options(schema))
         assert wrong.exit_code == 2
         assert "nowhere://x: Protocol not known" in wrong.output
+
+    def test_a_url_that_has_changed_is_read_again_whatever_its_size(self, schema: Path) -> None:
+        fsspec = pytest.importorskip("fsspec")
+        (schema.parent / "run.bin").write_bytes(FRAME)
+        fsspec.filesystem("memory").pipe_file("/run2.bin", FRAME)
+        for url in (f"file://{schema.parent / 'run.bin'}", "memory://run2.bin"):
+            command = ("convert", str(schema), url, *self.options(schema))
+            assert "done before" not in run(*command).output
+            assert "done before" in run(*command).output
+            with fsspec.open(url, "wb") as file:
+                file.write(bytes(len(FRAME)))
+            again = run(*command)
+            assert "done before" not in again.output
+            assert f"invalid:noise{len(FRAME)}bytes" in again.output.replace(" ", "")
+
+    def test_a_url_of_nothing(self, schema: Path) -> None:
+        pytest.importorskip("fsspec")
         missing = run("convert", str(schema), "memory://missing.bin", *self.options(schema))
         assert missing.exit_code == 2
         assert "memory://missing.bin: No such file or directory" in missing.output

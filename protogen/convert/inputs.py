@@ -75,8 +75,10 @@ class Source:
             return self.place
         return str(Path(os.path.normpath(self.place)).absolute())
 
-    def stamp(self) -> tuple[int | None, int | None]:
-        """Size in bytes, and the time in ns of the last change; None where that is not known.
+    def stamp(self) -> tuple[int | None, int | str | None]:
+        """Size in bytes, and what differs when the capture changes; None where that is not known.
+
+        That is the time in ns of the last change, and of a URL what tells its file system.
 
         Raises ConvertError where nothing is there.
         """
@@ -84,7 +86,7 @@ class Source:
             return None, None
         with _translated(self.place):
             if self.is_url:
-                return _url_size(self.place), None
+                return _url_stamp(self.place)
             status = Path(self.place).stat()
         known = stat.S_ISREG(status.st_mode)
         return (status.st_size, status.st_mtime_ns) if known else (None, None)
@@ -109,13 +111,19 @@ def _translated(place: str) -> Iterator[None]:
         raise ConvertError(f"{place}: its compression is damaged: {error}") from None
 
 
-def _url_size(url: str) -> int | None:
+_VERSIONS = ("ETag", "etag", "mtime", "LastModified", "last_modified", "updated", "created")
+"""What file systems call that which differs when a file changes, the most exact first."""
+
+
+def _url_stamp(url: str) -> tuple[int | None, str | None]:
     fsspec = needed("fsspec.core", f"reading {url}")
     try:
         filesystem, path = fsspec.url_to_fs(url)
-        return cast(int | None, filesystem.size(path))
+        known = filesystem.info(path)
     except (ValueError, ImportError) as error:
         raise ConvertError(f"{url}: {error}") from None
+    version = next((known[word] for word in _VERSIONS if known.get(word) is not None), None)
+    return known.get("size"), None if version is None else str(version)
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,7 +62,7 @@ class Job:
         return {
             "capture": source.identity,
             "size": size,
-            "changed_ns": changed,
+            "changed": changed,
             "input": self.input and self.input.value,
             "protocol": self.protocol.name,
             "sender": self.sender.name,
