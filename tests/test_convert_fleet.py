@@ -137,6 +137,26 @@ def test_a_wrong_guess_is_seen_and_put_right() -> None:
     assert splitter.repaired > 10
 
 
+class _Far(io.BytesIO):
+    """The end of a capture of terabytes."""
+
+    FRONT: ClassVar = 7 << 40
+
+    def seek(self, offset: int, whence: int = 0, /) -> int:
+        assert whence == 0
+        return super().seek(offset - self.FRONT) + self.FRONT
+
+
+def test_ranges_meet_terabytes_behind_the_start() -> None:
+    front, data = _Far.FRONT, capture_of(RN1, "brain", 5, 100)
+    splitter = Splitter(RN1, "brain", data)
+    size, middle = front + len(data), front + len(data) // 2
+    decoder = RangeDecoder(_Far(data), size, (front, middle), Frame(front, 0), splitter.make)
+    assert sum(batch.tally.bytes for batch in decoder.batches()) == decoder.exit.end - front
+    assert middle < decoder.exit.end < size
+    assert guess_entry(_Far(data), size, middle, 500, splitter.make) == decoder.exit
+
+
 def test_a_capture_that_became_shorter_is_an_error() -> None:
     splitter = Splitter(RN1, "brain", bytes(100))
     decoder = RangeDecoder(io.BytesIO(bytes(50)), 100, (0, 100), START, splitter.make)
@@ -189,6 +209,14 @@ def assert_same_rows(one: Path, other: Path, names: tuple[str, ...] = NAMES) -> 
             if ours[0]:
                 found = [dataset.dataset([*map(str, files)]).to_table() for files in ours]
                 assert found[0].equals(found[1]), (table, name)
+                assert found[0].schema.equals(found[1].schema, check_metadata=True), (table, name)
+                assert {_capture_in(file) for each in ours for file in each} == {name}
+
+
+def _capture_in(file: Path) -> str:
+    """Which capture the metadata say that a file is of."""
+    metadata = parquet.read_schema(file).metadata
+    return str(metadata[b"protogen.capture"].decode())
 
 
 def test_a_fleet_gives_the_rows_of_one_machine(captures: Path, whole: Path, tmp_path: Path) -> None:

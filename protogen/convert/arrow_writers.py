@@ -85,9 +85,11 @@ class ArrowWriter:
 
     SUFFIX = "arrow"
 
-    def __init__(self, name: str, pending: Pending) -> None:
+    def __init__(self, name: str, pending: Pending, capture: str | None = None) -> None:
+        """`name`: of the files; `capture`: the name in the metadata, where it is another one."""
         needed("pyarrow", f"writing {self.SUFFIX} files")
         self._name = name
+        self._capture = name if capture is None else capture
         self._pending = pending
         self._kept: dict[str, _Kept] = {}
 
@@ -111,7 +113,7 @@ class ArrowWriter:
                     self._write(kept)
 
     def _begin(self, table: Table) -> _Kept:
-        schema = schema_of(table, {"protogen.capture": self._name})
+        schema = schema_of(table, {"protogen.capture": self._capture})
         self._kept[table.name] = kept = _Kept(table, schema)
         return kept
 

@@ -20,11 +20,11 @@ from uuid import uuid4
 from protogen.convert.batches import Tally, batches_of
 from protogen.convert.begun import marker_of
 from protogen.convert.inputs import Source, open_stream, opened
-from protogen.convert.kinds import InputKind, OutputFormat
+from protogen.convert.kinds import InputKind
 from protogen.convert.outputs import Pending, write_whole
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry
 from protogen.convert.tables import Tables, tables_of
-from protogen.convert.writers import open_writer, write_all
+from protogen.convert.writers import write_all
 from protogen.model.protocol import Protocol
 from protogen.runtime.sender import SenderSpec
 
@@ -130,12 +130,13 @@ def _tools_of(pickled: bytes, sender: str) -> tuple[Tables, SenderSpec[Any, Any]
 
 
 def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
+    from protogen.convert.arrow_writers import ParquetWriter
     from protogen.convert.decoding import open_decoder
 
     tables, spec = _tools(work.protocol, work.sender)
     complaints: list[str] = []
     tally = Tally()
-    writer = open_writer(OutputFormat.PARQUET, part.name, pending, tables)
+    writer = ParquetWriter(part.name, pending, part.capture)
     kind = None if part.input is None else InputKind(part.input)
     senders = [sender.name for sender in work.protocol.senders]
     decoder = open_decoder(tables, spec, work.engine)
@@ -145,6 +146,7 @@ def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
 
 
 def _range(work: Work, part: Part, pending: Pending) -> PartDone:
+    from protogen.convert.arrow_writers import ParquetWriter
     from protogen.convert.decoding import column_decoders
 
     assert part.span is not None
@@ -158,7 +160,7 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
         if entry is None:
             entry = guess_entry(stream, part.size, part.span[0], lead_of(tables), make)
         decoder = RangeDecoder(stream, part.size, part.span, entry, make)
-        writer = open_writer(OutputFormat.PARQUET, part.name, pending, tables)
+        writer = ParquetWriter(part.name, pending, part.capture)
         write_all(writer, decoder.batches(), tally)
     return PartDone(part.name, entry, decoder.exit, tally, pending.relatives)
 

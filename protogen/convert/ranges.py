@@ -31,8 +31,8 @@ PIECE = 1 << 20
 """Bytes that are decoded at once."""
 _STEP = 1 << 16
 """The same where two decoders run side by side."""
-_SIZE_BITS = 24
-"""A frame has at most 1 MiB, so that place and size of one fit a number of 64 bits."""
+_SIZE_BITS = 21
+"""A frame has at most 1 MiB. So its place and size fit a number of 64 bits, up to 8 TiB."""
 
 
 @dataclass(frozen=True, slots=True)
