@@ -464,6 +464,22 @@ class TestCommand:
             assert "done before" not in again.output
             assert f"invalid:noise{len(FRAME)}bytes" in again.output.replace(" ", "")
 
+    def test_a_url_of_many(self, schema: Path) -> None:
+        pytest.importorskip("fsspec")
+        for name in ("b.bin", "a.bin", "c.txt"):
+            (schema.parent / name).write_bytes(FRAME)
+        done = run("convert", str(schema), f"file://{schema.parent}/*.bin", *self.options(schema))
+        assert done.exit_code == 0, done.output
+        shown = [line for line in done.output.splitlines() if "raw bytes" in line]
+        assert [line.partition(": ")[0] for line in shown] == [
+            f"file://{schema.parent / name}" for name in ("a.bin", "b.bin")
+        ]
+        assert self.lines(schema, "a") == self.lines(schema, "b")
+        none = run("convert", str(schema), f"file://{schema.parent}/*.raw", *self.options(schema))
+        assert (none.exit_code, "*.raw: there is no such file" in none.output) == (2, True)
+        wrong = run("convert", str(schema), "nowhere://*.bin", *self.options(schema))
+        assert (wrong.exit_code, "Protocol not known" in wrong.output) == (2, True)
+
     def test_a_url_of_nothing(self, schema: Path) -> None:
         pytest.importorskip("fsspec")
         missing = run("convert", str(schema), "memory://missing.bin", *self.options(schema))

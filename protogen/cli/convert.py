@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,6 +17,7 @@ from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
 from protogen.convert.kinds import InputKind, OutputFormat
 
 if TYPE_CHECKING:
+    from protogen.convert.inputs import Source
     from protogen.convert.run import Fleet, Job, Result
 
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
@@ -160,7 +161,7 @@ def _run(
 
     try:
         named = plan(job, captures)
-        total = _total(job, captures)
+        total = _total(source for _, source in named)
         with _plain_warnings(), progress("converting", total, in_bytes=True) as advance:
             if fleet is None:
                 return list(convert(job, named, complaints.add, advance))
@@ -192,11 +193,9 @@ def _plain_warnings() -> Iterator[None]:
         warnings.showwarning = usual
 
 
-def _total(job: Job, captures: Sequence[str]) -> int | None:
+def _total(sources: Iterable[Source]) -> int | None:
     """The size of all captures together, where it is known."""
-    from protogen.convert.inputs import Source
-
-    sizes = [Source(place).stamp()[0] for place in captures]
+    sizes = [source.stamp()[0] for source in sources]
     return None if None in sizes else sum(size or 0 for size in sizes)
 
 

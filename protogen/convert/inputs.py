@@ -111,6 +111,30 @@ def _translated(place: str) -> Iterator[None]:
         raise ConvertError(f"{place}: its compression is damaged: {error}") from None
 
 
+def expanded(places: Iterable[str]) -> list[str]:
+    """The places, where URLs with `*` stand for all files like them, by name; shells know no URLs.
+
+    Raises ConvertError where there is none.
+    """
+    return [found for place in places for found in _expanded(place)]
+
+
+def _expanded(place: str) -> list[str]:
+    # What `::` joins, as a cache in front of a store, has names that lead to no file alone.
+    if "://" not in place or "*" not in place or "::" in place:
+        return [place]
+    fsspec = needed("fsspec.core", f"reading {place}")
+    with _translated(place):
+        try:
+            filesystem, path = fsspec.url_to_fs(place)
+            found = sorted(filesystem.glob(path))
+        except (ValueError, ImportError) as error:
+            raise ConvertError(f"{place}: {error}") from None
+    if not found:
+        raise ConvertError(f"{place}: there is no such file")
+    return [filesystem.unstrip_protocol(name) for name in found]
+
+
 _VERSIONS = ("ETag", "etag", "mtime", "LastModified", "last_modified", "updated", "created")
 """What file systems call that which differs when a file changes, the most exact first."""
 

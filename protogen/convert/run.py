@@ -11,7 +11,7 @@ from protogen.convert.batches import BatchDecoder, Tally, batches_of
 from protogen.convert.begun import finish, is_begun
 from protogen.convert.capture_names import names_of
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Source, opened
+from protogen.convert.inputs import Source, expanded, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.locking import alone
 from protogen.convert.outputs import Pending, forget_torn, remove
@@ -98,6 +98,7 @@ class Result:
 def plan(job: Job, places: Sequence[str]) -> list[tuple[str, Source]]:
     """The captures, each with the name of its files. Raises ConvertError."""
     require(job.format)
+    places = expanded(places)
     sources = [Source(place) for place in places]
     names = names_of(places)
     for source in sources:
