@@ -419,7 +419,7 @@ class TestPending:
 
 @pytest.mark.parametrize("to", ["parquet"])
 def test_memory_does_not_grow_with_the_capture(workspace: Path, tmp_path: Path, to: str) -> None:
-    """What a process needs at most, for a capture and for one of eight times its size."""
+    """What a process needs at most. The rows of the larger capture would show, if they stayed."""
     code = (
         "import sys; from protogen.cli import app\n"
         "app(sys.argv[1:], standalone_mode=False)\n"
@@ -429,7 +429,7 @@ def test_memory_does_not_grow_with_the_capture(workspace: Path, tmp_path: Path, 
     )
     piece = (workspace / "one.bin").read_bytes()
     peaks = []
-    for megabytes in (1, 8):
+    for megabytes in (16, 64):
         capture = tmp_path / f"{megabytes}.bin"
         capture.write_bytes(piece * (megabytes * 1_000_000 // len(piece)))
         arguments = ["convert", str(workspace / "sink.yaml"), str(capture), "--sender", "pc", "-q"]
@@ -443,4 +443,4 @@ def test_memory_does_not_grow_with_the_capture(workspace: Path, tmp_path: Path, 
         )
         peaks.append(int(done.stdout.split()[-1]))
     assert peaks[1] < 300
-    assert peaks[1] - peaks[0] < 100, peaks
+    assert peaks[1] - peaks[0] < 40, peaks
