@@ -11,6 +11,7 @@ from pathlib import Path
 from random import Random
 from threading import Event, Thread, current_thread, main_thread
 from time import sleep
+from types import FrameType
 from weakref import ref
 
 import handwritten_streams
@@ -475,6 +476,31 @@ def test_blocks_may_be_trimmed_and_asked_for_in_the_middle_of_looking_for_one(
     views.append(blocks.rows(dtype, 1 << 18))
     views.append(asked[1])
     assert len({view.ctypes.data for view in views}) == 3
+
+
+def test_no_thread_finds_a_block_before_it_is_used() -> None:
+    """Whatever comes between two lines: a tracer here, another thread where there is no GIL."""
+    blocks, dtype, found = Blocks(), material_dtype(), []
+
+    def ask() -> None:
+        found.append(blocks.rows(dtype, 1 << 18))
+
+    def trace(frame: FrameType, *_: object) -> object:
+        if frame.f_code.co_filename != native.__file__:
+            return None
+        if blocks._blocks and not found:
+            other = Thread(target=ask)
+            other.start()
+            other.join(PATIENCE)
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        rows = blocks.rows(dtype, 1 << 18)
+    finally:
+        sys.settrace(before)
+    assert found[0].ctypes.data != rows.ctypes.data
 
 
 def test_what_goes_wrong_in_a_thread_is_raised() -> None:

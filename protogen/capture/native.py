@@ -119,8 +119,9 @@ class Blocks:
     def _added(self, size: int) -> Rows:
         """All of a new block. Those that suited nobody are given back."""
         block = _Block(size)
+        memory = block.memory  # It is used before others can find it.
         self._blocks = [*(other for other in self._blocks if other.is_used), block]
-        return block.memory
+        return memory
 
     def trim(self, most: int) -> None:
         """Keep so many bytes. What somebody looks at still is the first to be forgotten."""
