@@ -29,7 +29,7 @@ from tooling import require_tool
 from protogen.capture import batches, columns, gather, native, parallel
 from protogen.capture.gather import gathered
 from protogen.capture.native import Blocks, Memory, NativeEngine, library_of
-from protogen.capture.parallel import ROOM, Parts
+from protogen.capture.parallel import ROOM, ROWS, Parts
 from protogen.native.library import WORDS, Library
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
@@ -352,6 +352,19 @@ def test_numbers_that_were_not_foreseen_are_mended() -> None:
     short, long = min(frames, key=len), max(frames, key=len)
     seen = missed(short * 1000 + long * 20 + short * 1000, 1500)
     assert min(seen) < 0 < max(seen)
+
+
+def test_parts_are_small_where_short_frames_have_long_rows() -> None:
+    """Else some megabytes of the capture for each worker would be gigabytes of rows."""
+    matty = ROOT / "schemas" / "matty.yaml"
+    frame = module_at(matty).encode(module_at(matty).Gps(nmea=""), counter=0)
+    library = library_of(protocol_of(matty), protocol_of(matty).sender("esp"))
+    memory = Memory()
+    engines = [NativeEngine(library, memory=memory) for _ in range(5)]
+    found = list(Parts(memoryview(frame * 120_000), engines).tables(2))
+    assert sum(tables.events for tables in found) == 120_000
+    greatest = max(tables.nbytes for tables in found)
+    assert greatest < 1.1 * ROWS < sum(tables.nbytes for tables in found) / 2
 
 
 def material_dtype():

@@ -29,8 +29,8 @@ from protogen.capture.tables import Tables
 ROWS = 6 << 20
 """Bytes of rows that a part should have: many for what a part costs by itself, and few for what all
 parts at hand take."""
-PARTS = range(1 << 20, (8 << 20) + 1)
-"""Bytes that a part may have."""
+PARTS = range(1 << 17, (8 << 20) + 1)
+"""Bytes that a part may have: few where short frames have long rows."""
 ROOM = 64 << 20
 """Bytes of rows that a part may have before its turn has come."""
 _WINDOW = 1 << 6
