@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import runpy
 import subprocess
 import sys
@@ -336,6 +337,32 @@ def missed(data: bytes, part: int | None) -> list[int]:
     found = gathered(Parts(memoryview(data), engines, part).tables(2), len(data), 2)
     assert_same_tables(found, columns(data, protocol_of(RN1), "brain"))
     return seen
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+@pytest.mark.parametrize("goes_on", [False, True])
+def test_a_process_that_is_forked_off_waits_for_no_threads(goes_on: bool) -> None:
+    """It has none of them: it can end, but not read on."""
+    program = """
+import os, sys
+from protogen.capture import CaptureError
+
+def read():
+    for _ in batches(data, RN1, "brain", chunk=1000, workers=2):
+        child = os.fork()
+        if child:
+            os.waitpid(child, 0)
+        elif GOES_ON:
+            continue
+        return
+
+try:
+    read()
+except CaptureError as error:
+    print(error)
+"""
+    said = ended(program.replace("GOES_ON", str(goes_on)))
+    assert said == goes_on * "with workers, a capture is read on by the process that began to\n"
 
 
 @pytest.mark.parametrize("part", [1000, 1001, None], ids=str)

@@ -14,6 +14,7 @@ thread: the sooner it knows, the fewer rows have numbers to be put right.
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
@@ -23,6 +24,7 @@ from threading import Lock, get_ident
 from typing import Any, Protocol
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
+from protogen.capture.errors import CaptureError
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
 
@@ -167,6 +169,7 @@ class Parts:
         self._is_joining = False
         self._is_over = False
         self._error: BaseException | None = None
+        self._process = os.getpid()
 
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
@@ -187,9 +190,15 @@ class Parts:
             # of anything: as where threads begin, whose end can't be waited for then; or in one of
             # the reading's own, which can't wait for itself, and has the lock, perhaps.
             self._is_over = True
-            pool.shutdown(wait=not is_closed, cancel_futures=True)
-            if is_closed and get_ident() not in own:
-                wait([task for task in self._tasks if not task.cancelled()])
+            if self._is_at_home:
+                pool.shutdown(wait=not is_closed, cancel_futures=True)
+                if is_closed and get_ident() not in own:
+                    wait([task for task in self._tasks if not task.cancelled()])
+
+    @property
+    def _is_at_home(self) -> bool:
+        """Whether this is the process in which the threads are, and none that was forked off."""
+        return os.getpid() == self._process
 
     def _sample(self) -> None:
         """Let a decoder see how many rows there will be, before memory is got for all."""
@@ -236,6 +245,7 @@ class Parts:
 
     def _await(self, awaited: Callable[[], bool]) -> None:
         """Wait until it is so. Raises what went wrong in a thread."""
+        self._check_process()
         with self._lock:
             self._awaited = awaited
             self._tell()
@@ -243,8 +253,14 @@ class Parts:
         if self._error is not None:
             raise self._error
 
+    def _check_process(self) -> None:
+        """Raise CaptureError where nobody is there to wait for, and locks may stay as they are."""
+        if not self._is_at_home:
+            raise CaptureError("with workers, a capture is read on by the process that began to")
+
     def _leave(self, place: int, pool: ThreadPoolExecutor) -> None:
         """Let go of a part, whose bytes nobody reads again."""
+        self._check_process()
         run = self._runs[place]
         forget(self._data, run.start, run.end)
         with self._lock:
