@@ -117,6 +117,7 @@ def test_what_does_not_parse_says_where_and_why(
         (c.Struct("a" / c.SevenBitFloat(32)), {"a": 1e300}, "value", "a"),
         (c.Struct("a" / c.Fixed(c.Int(8), 7)), {"a": 8}, "value", "a"),
         (c.Struct("a" / c.Closed(c.Int(8), {1})), {"a": 8}, "value", "a"),
+        (c.Struct("a" / c.Closed(c.Int(8), {1})), {"a": [1]}, "value", "a"),
         (c.Struct("a" / c.Octets(2)), {"a": b"x"}, "size", "a"),
         (c.Struct("a" / c.Octets(2)), {"a": "xy"}, "value", "a"),
         (c.Struct("a" / c.Octets(2, seven_bit=True)), {"a": b"x\x80"}, "encoding", "a"),

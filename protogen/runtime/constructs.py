@@ -318,7 +318,11 @@ class Closed(_Around):
         return self.subcon._build(obj, stream, context, path)
 
     def _check(self, found: Any, path: str, offset: int) -> None:
-        if found not in self._values:
+        try:
+            is_known = found in self._values
+        except TypeError:  # It has no hash, as a list.
+            is_known = False
+        if not is_known:
             allowed = ", ".join(map(str, sorted(self._values)))
             raise PayloadError("value", path, offset, f"{found!r} is not one of {allowed}")
 
