@@ -344,8 +344,9 @@ def missed(data: bytes, part: int | None) -> list[int]:
 def test_a_process_that_is_forked_off_waits_for_no_threads(goes_on: bool) -> None:
     """It has none of them: it can end, but not read on."""
     program = """
-import os, sys
+import os, warnings
 from protogen.capture import CaptureError
+warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of what is tried here.
 
 def read():
     for _ in batches(data, RN1, "brain", chunk=1000, workers=2):
