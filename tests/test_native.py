@@ -128,6 +128,37 @@ def test_any_mixture_in_any_pieces_has_the_tables_that_python_fills(
     )
 
 
+PARTS_LIKE_VARIABLES = """
+protocol: parts_like_variables
+endpoints: {station: A station}
+byte_order: big
+frame:
+  opening: {literal: 0x7E}
+  size: {type: uint8, id: true}
+  tail: {type: uint8}
+  code: {type: uint8, counter: true}
+  payload: {}
+  fcs: {type: uint16, algorithm: crc-16/x-25, covers: size..payload}
+  closing: {literal: 0x7E}
+transparency: {preset: hdlc, lenient: true}
+messages:
+  reading: {id: 1, from: station, fields: {a: uint8, b: uint16}}
+"""
+
+
+def test_parts_may_be_called_as_variables_of_c_are(tmp_path: Path) -> None:
+    """Also where frames are made again, to see whether an encoder makes other bytes of them."""
+    path = tmp_path / "parts_like_variables.yaml"
+    path.write_text(PARTS_LIKE_VARIABLES, encoding="utf-8")
+    check(path, "station", stream_of(material_of(path, "station"), Random(1), 200).data)
+    reading = module_at(path).Reading(a=1, b=0x3141)
+    frame = module_at(path).encode(reading, tail=5, code=7)
+    data = frame + frame.replace(b"\x31\x41", b"\x31\x7d\x61")
+    library = library_of(protocol_of(path), protocol_of(path).sender("station"))
+    rows = native_tables(path, "station", data).messages["reading"]
+    assert library.differs(0, rows, data, 0).tolist() == [0, 1]
+
+
 def test_a_full_table_ends_a_batch() -> None:
     sender = protocol_of(RN1).sender("brain")
     data = stream_of(material_of(RN1, "brain"), Random(1), 3000).data
@@ -189,6 +220,13 @@ def test_a_compiler_that_does_not_work_is_named(
     monkeypatch.setenv("CC", given)
     with pytest.raises(NativeError, match=problem):
         building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+
+
+def test_what_does_not_compile_is_named(tmp_path: Path) -> None:
+    source = tmp_path / "source.c"
+    source.write_text("int ours(void) {\n    return absent;\n}\n", encoding="utf-8")
+    with pytest.raises(NativeError, match=r"error: .*absent"):
+        compiler.compiler().build(source, tmp_path / "library")
 
 
 def test_a_compiler_that_does_not_run_is_named(

@@ -46,7 +46,9 @@ class Compiler:
         except (OSError, subprocess.TimeoutExpired) as error:
             raise NativeError(f"{self.command[0]} does not run: {error}") from None
         if done.returncode:
-            first = next(iter(done.stderr.strip().splitlines()), f"exit code {done.returncode}")
+            lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+            # gcc says in front of it in which function that is.
+            first = next((line for line in lines if "error" in line), lines[0])
             raise NativeError(f"{self.command[0]} does not compile the decoder: {first}")
         if not library.exists():
             raise NativeError(f"{self.command[0]} ends without an error, but makes no library")

@@ -138,7 +138,7 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
             tables.index(item.name),
             item.function,
             f"{item.upper}_FRAME_ROOM",
-            tuple(part.name for part in item.frame.arguments),
+            tuple(argument.part for argument in item.frame.arguments),
         )
         for item in unit.framing.messages
         if item.name in tables
@@ -148,7 +148,7 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
 def _wrapped(unit: Unit, decoder: DecoderView) -> tuple[str, ...]:
     """The parts that go into a frame beside the payload, as they follow each other in C."""
     frame = next(it.frame for it in unit.framing.messages if it.frame.decoder is decoder)
-    return tuple(part.name for part in (*frame.identity, *frame.arguments))
+    return tuple(argument.part for argument in (*frame.identity, *frame.arguments))
 
 
 def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:

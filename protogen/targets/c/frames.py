@@ -36,6 +36,8 @@ class Argument:
     """A part of the frame that the caller gives."""
 
     name: str
+    part: str
+    """What the schema calls it."""
     type: str
     doc: str
     refused: str
@@ -398,7 +400,8 @@ def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
         conditions.append(f"{name} < {part.least}u")
     if part.greatest < (1 << bits) - 1:
         conditions.append(f"{name} > {part.greatest}u")
-    return Argument(name, unsigned_type(part.type.bits), part.about.doc, " || ".join(conditions))
+    type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
+    return Argument(name, part.name, type_, part.about.doc, refused)
 
 
 def _width(part: LengthPart) -> int:
