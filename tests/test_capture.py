@@ -109,6 +109,19 @@ def test_a_pipe_is_read_as_it_comes() -> None:
     assert_same_tables(found, columns(data, protocol_of(RN1), "brain", engine="python"))
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes always wait there")
+def test_a_pipe_that_does_not_wait_is_not_at_its_end() -> None:
+    low, high = os.pipe()
+    os.set_blocking(low, False)
+    os.write(high, stream(RN1, "brain", 20))
+    with (
+        os.fdopen(high, "wb"),
+        os.fdopen(low, "rb") as file,
+        pytest.raises(CaptureError, match="non-blocking"),
+    ):
+        columns(file, protocol_of(RN1), "brain", engine="python")
+
+
 def test_an_empty_capture_has_empty_tables(tmp_path: Path) -> None:
     empty = tmp_path / "empty.bin"
     empty.touch()

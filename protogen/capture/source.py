@@ -47,9 +47,14 @@ def pieces(source: memoryview | BinaryIO, size: int) -> Iterator[bytes | memoryv
             yield source[start : start + size]
             forget(source, start, start + size)
         return
-    while piece := source.read(size):
+    while True:
+        piece: object = source.read(size)
+        if piece is None:
+            raise CaptureError("the capture does not wait for bytes: its file is non-blocking")
         if not isinstance(piece, bytes):
             raise CaptureError("the capture was opened as text; open it with mode 'rb'")
+        if not piece:
+            return
         yield piece
 
 
