@@ -1,7 +1,9 @@
 """The pieces of construct: bytes by hand, strict both ways, and no byte lost."""
 
+import copy
 import io
 import math
+import pickle
 import struct
 from typing import Any
 
@@ -139,6 +141,16 @@ def test_what_can_not_be_built_says_where_and_why(
 ) -> None:
     error = build_error(format, value)
     assert (error.reason, error.path) == (reason, path)
+
+
+@pytest.mark.parametrize(
+    "again", [copy.copy, copy.deepcopy, lambda error: pickle.loads(pickle.dumps(error))]
+)
+def test_an_error_may_be_copied_and_sent_to_another_process(again: Any) -> None:
+    error = build_error(c.Struct("a" / c.Counted(2, c.Int(8))), {"a": [1, 256]})
+    other = again(error)
+    assert type(other) is c.PayloadError
+    assert (str(other), other.args, vars(other)) == (str(error), error.args, vars(error))
 
 
 LIST = c.Struct(

@@ -16,6 +16,7 @@ bytes behind the last field, keys that no field has, and a bad tail of a greedy 
 
 from __future__ import annotations
 
+import copyreg
 import io
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -90,6 +91,10 @@ class PayloadError(construct.ConstructError):  # type: ignore[misc]
         place = _dotted(path)
         super().__init__(f"byte {offset}{place and ', '}{place}: {problem} ({reason})")
         self.path: str = place
+
+    def __reduce__(self) -> Any:
+        """As it is: Python would make it anew of its text alone."""
+        return copyreg.__newobj__, (type(self), *self.args), vars(self)  # type: ignore[attr-defined]
 
 
 def _dotted(path: str) -> str:
