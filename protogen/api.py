@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import copyreg
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
@@ -21,6 +23,10 @@ class SchemaError(ValueError):
     def __init__(self, problems: Sequence[Problem], sources: SourceMap) -> None:
         super().__init__("\n".join(render_text(problem, sources) for problem in problems))
         self.problems = tuple(problems)
+
+    def __reduce__(self) -> Any:
+        """As it is: Python would make it anew of its text alone."""
+        return copyreg.__newobj__, (type(self), *self.args), vars(self)  # type: ignore[attr-defined]
 
 
 def load(schema: str | os.PathLike[str], *, examples: bool = False) -> Protocol:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,8 @@ def test_load_raises_with_every_problem(schema: Path) -> None:
         protogen.load(schema)
     assert [problem.span.line for problem in caught.value.problems] == [6, 8]
     assert str(schema) in str(caught.value)
+    other = pickle.loads(pickle.dumps(caught.value))  # As it comes back from another process.
+    assert (str(other), other.problems) == (str(caught.value), caught.value.problems)
 
 
 def test_load_verifies_examples_on_demand(schema: Path) -> None:
