@@ -4,7 +4,7 @@ Run: python benchmarks/check_columns.py --megabytes 100
 
 Every sender of every schema, dialect and framing has its share: clean, noisy and adversarial
 streams, decoded by one core and in parts of many sizes, in Python at once and in pieces. Ends with
-1 at the first difference.
+1 at the first difference; else writes benchmarks/equality.md.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from random import Random
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+PAGE = Path(__file__).with_name("equality.md")
 PIECE = 1 << 18
 """Bytes of a stream."""
 
@@ -38,7 +39,31 @@ def main() -> int:
             rate = done / (time.monotonic() - started) / 1e6
             print(f"\r{done / 1e6:.1f} MB, {events} events alike, {rate:.2f} MB/s", end="")
     print()
+    record(__file__, "native columns and Python's", options, done, events)
     return 0
+
+
+_HEAD = """# Equality of the engines
+
+<!-- Written by benchmarks/check_engines.py and check_columns.py, do not edit. -->
+
+The last runs to their end. Each stream is clean, noisy or adversarial, of one of all senders of all
+schemas, dialects and samples of framings, and is read at once and in portions. A run ends at the
+first difference, and is not recorded then.
+
+| engines | made by | MB of the line | events, all alike |
+| --- | --- | ---: | ---: |
+"""
+
+
+def record(script: str, engines: str, options: argparse.Namespace, size: int, events: int) -> None:
+    """Write on the page what a run has seen. The other script's row stays."""
+    name = Path(script).name
+    command = f"`python benchmarks/{name} --megabytes {options.megabytes:g} --seed {options.seed}`"
+    rows = PAGE.read_text(encoding="utf-8").splitlines(True) if PAGE.exists() else []
+    others = [row for row in rows if row.startswith("| ") and "`python " in row and name not in row]
+    row = f"| {engines} | {command} | {size / 1e6:.1f} | {events:,} |\n"
+    PAGE.write_text(_HEAD + "".join(sorted([*others, row])), encoding="utf-8")
 
 
 def shares(size: int, seed: int) -> Iterator[tuple[Path, str, str]]:

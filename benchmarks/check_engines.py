@@ -5,7 +5,8 @@ Run: python benchmarks/check_engines.py --megabytes 100 --processes 2
 The engines: construct, which is the reference, fast Python, and generated C where there is a
 compiler, byte by byte (push) and by buffers (feed). Every sender of every schema, dialect and
 framing has its share: clean, noisy and adversarial streams, at once and in portions. Ends with an
-AssertionError at the first difference. `check_columns.py` does the same for native columns.
+AssertionError at the first difference; else writes benchmarks/equality.md. `check_columns.py` does
+the same for native columns.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-from check_columns import shares, stream  # noqa: E402
+from check_columns import record, shares, stream  # noqa: E402
 
 SIZES = (16, 997, 1 << 16)
 """Bytes of the portions that C takes."""
@@ -48,6 +49,8 @@ def main() -> int:
             text = f"{done / 1e6:.1f} MB, {events} events alike, {by_c} of them in C"
             print(f"\r{text}, {rate:.2f} MB/s", end="")
     print()
+    engines = "construct, fast Python" + (", C push and feed" if by_c == events else "")
+    record(__file__, engines, options, done, events)
     return 0
 
 
