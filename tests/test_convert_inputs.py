@@ -8,6 +8,7 @@ import json
 import os
 import sys
 import time
+from array import array
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
@@ -19,7 +20,7 @@ from cli_support import SINK, run, start
 
 from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.capture_names import names_of
-from protogen.convert.chunks import Chunk, Clock
+from protogen.convert.chunks import Chunk, Clock, joined
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Packing, Source, format_of, opened
 from protogen.convert.kinds import InputKind
@@ -215,7 +216,13 @@ class TestLogs:
         found = list(log_pieces(lines, "pc", ("pc", "board"), pytest.fail))
         assert b"".join(data for data, _ in found) == b"\x01\x03\x04"
 
-    @pytest.mark.parametrize("line", ["(1) 5", "(1) can0 5G", "5502", "(x) 55", "(1) zz"])
+    @pytest.mark.parametrize(
+        "line",
+        [
+            "(1) 5", "(1) can0 5G", "5502", "(x) 55", "(1) zz",
+            "(1) 55\u00a002", "(1) 55\x1c02", "(1) \uff15\uff15", "(\u0661) 55",
+        ],
+    )  # fmt: skip
     def test_what_is_no_line_is_complained_of(self, line: str) -> None:
         complaints: list[str] = []
         assert not list(log_pieces([line], "pc", (), complaints.append))
@@ -261,6 +268,10 @@ class TestLogs:
     def test_notes_about_errors_were_on_no_line(self, line: str) -> None:
         assert not list(log_pieces([line], "pc", (), pytest.fail))
 
+    def test_frames_without_bytes_do_not_pile_up(self) -> None:
+        requests = iter([(b"", 1)] * 50 + [(b"x", 2)] + [(b"", 3)] * 50)
+        assert list(joined(requests)) == [Chunk(b"x", [1], [2])]
+
     @pytest.mark.timeout(20)
     @pytest.mark.parametrize("middle", [" ", "55 ", "5", "'", "[5] ", "(1) can0 "])
     def test_long_lines_that_fit_nothing_are_soon_known(self, middle: str) -> None:
@@ -286,6 +297,11 @@ class TestRecorder:
         recorder.write(b"x", t_ns=1)
         recorder.close()
         assert stream.getvalue() == MAGIC + b"\x01" + b"\0" * 7 + b"\x01\0\0\0x"
+
+    def test_elements_may_be_larger_than_a_byte(self) -> None:
+        stream = io.BytesIO()
+        Recorder(stream).write(memoryview(array("H", [1, 2, 3])), t_ns=1)
+        assert [len(data) for data, _ in record_pieces([stream.getvalue()], pytest.fail)] == [6]
 
     def test_a_long_piece_is_several_records(self) -> None:
         stream = io.BytesIO()
@@ -432,6 +448,19 @@ class TestCommand:
         data = bytes(3 << 20) + b"end"
         (tmp_path / "run.packed").write_bytes(pack(data))
         assert read(tmp_path / "run.packed")[1] == data
+
+    def test_frames_that_zstd_skips_hold_nothing(self, tmp_path: Path) -> None:
+        """As `pzstd` has one in front of each frame, with its size."""
+        capture = tmp_path / "run.bin"
+        skipped = [
+            (0x184D2A50 + number).to_bytes(4, "little") + size.to_bytes(4, "little") + bytes(size)
+            for number, size in ((0, 4), (15, 0), (3, 100_000))
+        ]
+        pieces = [*skipped, zstd(FRAME), skipped[0], zstd(SECOND), skipped[2]]
+        capture.write_bytes(b"".join(pieces))
+        assert read(capture)[:2] == ("raw bytes, zstd", FRAME + SECOND)
+        capture.write_bytes(skipped[0] + FRAME)
+        assert read(capture)[:2] == ("raw bytes", skipped[0] + FRAME)
 
     def test_damaged_zstd_is_told_by_name(self, schema: Path) -> None:
         path = schema.parent / "run.zst"

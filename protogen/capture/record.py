@@ -59,7 +59,7 @@ class Recorder:
     def write(self, data: bytes | bytearray | memoryview, t_ns: int | None = None) -> None:
         """Record what just came from the line, or came at `t_ns`. Raises OSError."""
         when = self._clock() if t_ns is None else t_ns
-        view = memoryview(data)
+        view = memoryview(data).cast("B")  # Whatever its elements are.
         for start in range(0, len(view), GREATEST):
             piece = view[start : start + GREATEST]
             self._stream.write(HEADER.pack(when, len(piece)))

@@ -28,6 +28,8 @@ def joined(pieces: Iterable[tuple[bytes, int]]) -> Iterator[Chunk]:
     """Join pieces with their times to chunks of a useful size."""
     data, ends, times = bytearray(), list[int](), list[int]()
     for piece, when in pieces:
+        if not piece:
+            continue  # No byte came with it. A million of them would fill no chunk.
         data += piece
         ends.append(len(data))
         times.append(when)

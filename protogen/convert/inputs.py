@@ -1,7 +1,8 @@
 """What a capture is written in, found out from its first bytes and its name, and how it is read.
 
     bytes in front of the rest            it is
-    1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd; then what is inside
+    1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd, maybe behind frames that
+                                          it skips; then what is inside
     50 47 52 45 43 00 01 0A (`PGREC`)     a recorded capture, see `protogen/capture/record.py`
     `(1700000000.25) ...`                 a log of text with times, see `textlog.py`; comments
                                           and empty lines may stand in front

@@ -6,6 +6,7 @@ before that is read, and the end that is missing is complained of.
 
 from __future__ import annotations
 
+import struct
 import zlib
 from collections.abc import Callable
 from enum import StrEnum
@@ -25,6 +26,10 @@ class Packing(StrEnum):
 
 
 _MAGIC = {Packing.GZIP: b"\x1f\x8b", Packing.ZSTD: b"\x28\xb5\x2f\xfd"}
+_SKIPPED = struct.Struct("<II")
+"""The head of a frame of zstd that holds no data: a magic, of which four bits are free, and the
+bytes that follow. `pzstd` has one in front of each frame."""
+_SKIPPED_MAGIC = 0x184D2A50
 SUFFIXES = {".gz": Packing.GZIP, ".zst": Packing.ZSTD}
 
 _READ = 1 << 16
@@ -37,9 +42,24 @@ into four."""
 
 def packing_of(head: bytes) -> Packing:
     """How a file is compressed that begins with these bytes."""
+    start = _skipped(head)
+    if start:
+        # Alone they say too little: what is behind them has to be zstd.
+        return Packing.ZSTD if head.startswith(_MAGIC[Packing.ZSTD], start) else Packing.NONE
     return next(
         (packing for packing, magic in _MAGIC.items() if head.startswith(magic)), Packing.NONE
     )
+
+
+def _skipped(head: bytes) -> int:
+    """How many bytes in front are frames of zstd that hold no data."""
+    place = 0
+    while len(head) - place >= _SKIPPED.size:
+        magic, size = _SKIPPED.unpack_from(head, place)
+        if magic & ~0xF != _SKIPPED_MAGIC:
+            break
+        place += _SKIPPED.size + size
+    return place
 
 
 def unpacking(stream: BufferedReader, packing: Packing, complain: Complain) -> BinaryIO:

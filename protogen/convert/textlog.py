@@ -19,7 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 Complain = Callable[[str], None]
 """Take note of a line that can't be used."""
 
-BEGIN = re.compile(r"\s*(?:#[^\n]*\n\s*)*\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S")
+BEGIN = re.compile(r"\s*(?:#[^\n]*\n\s*)*\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S", re.ASCII)
 """How a file of this kind begins."""
 
 _SPLIT = re.compile(
@@ -28,7 +28,9 @@ _SPLIT = re.compile(
     r"(?:(?:\s+[RT]X\s+[-B]\s+[-E])?\s+(?P<id>[0-9A-Fa-f]+)"
     r"(?:\#(?:\#[0-9A-Fa-f]|R[0-9A-Fa-f]?)?|\s+\[\d{1,4}\](?:\s+remote request)?))?"
     # What is taken here is not given back: long lines that fit nothing are soon known.
-    r"\s*+(?P<hex>(?:[0-9A-Fa-f]{2}\s*+)*+)(?:(?<=\s)(?:[RT]x?|ERRORFRAME))?\s*+(?:'.*')?"
+    r"\s*+(?P<hex>(?:[0-9A-Fa-f]{2}\s*+)*+)(?:(?<=\s)(?:[RT]x?|ERRORFRAME))?\s*+(?:'.*')?",
+    # `bytes.fromhex` takes only such digits and spaces for what they are.
+    re.ASCII,
 )
 _ERROR = 1 << 29
 """The bit of an identifier that makes the frame a note about an error, which was on no line."""
