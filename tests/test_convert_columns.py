@@ -153,24 +153,34 @@ def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | Non
         assert lines_of(found) == lines_of(expected)
 
 
-@pytest.mark.parametrize("engine", ENGINES, ids=str)
-def test_hold_lists_that_are_always_empty(tmp_path: Path, engine: str | None) -> None:
-    path = tmp_path / "great.yaml"
-    fields = """{
+FLAT = """
       n: uint8,
       numbers: {type: uint16, count: 0},
+      ratios: {type: float32, count: 0},
       scaled: {type: uint16, count: 0, scale: 2, unit: m},
+      text: {type: ascii, size: 0},
+      bytes: {type: bytes, size: 0}"""
+IN_LISTS = """,
       structs: {count: 0, fields: {x: uint8, name: {type: ascii, size: 3}}},
-      inner: {count: 2, fields: {x: uint8, more: {type: uint8, count: 0}}},
-      bytes: {type: bytes, size: 0}}"""
+      inner: {count: 2, fields: {x: uint8, more: {type: uint8, count: 0}}}"""
+
+
+@pytest.mark.parametrize(("more", "size"), [("", 1), (IN_LISTS, 3)], ids=["flat", "in_lists"])
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_lists_that_are_always_empty(
+    tmp_path: Path, engine: str | None, more: str, size: int
+) -> None:
+    path = tmp_path / "great.yaml"
     scaled = GREAT.index("  scaled:")
-    path.write_text(GREAT[:scaled] + f"  empty: {{id: 3, from: one, fields: {fields}}}\n")
-    data = b"\x5a\xa5\x03\x03\x01\x02\x03" * 3
+    message = f"  empty: {{id: 3, from: one, fields: {{{FLAT}{more}}}}}\n"
+    path.write_text(GREAT[:scaled] + message)
+    data = (b"\x5a\xa5\x03" + bytes([size]) + b"\x01\x02\x03"[:size]) * 3
     expected = batches_of(path, "one", data, "events")
     found = batches_of(path, "one", data, engine)
     assert len(rows_of(expected)["empty"]) == 3
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
+    assert lines_of(found) == lines_of(expected)
     for rows in (rows for batch in found for rows in batch.rows()):
         table = pa.Table.from_batches([batch_of(rows, schema_of(rows.table, {}))])
         parquet.write_table(table, tmp_path / "rows.parquet")

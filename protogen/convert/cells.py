@@ -95,7 +95,7 @@ def lists(column: Lists) -> Array:
     found[:, :, width] = ord(",")
     found[:, :, width + 1] = ord(" ")
     if column.counts is None:
-        found[:, most - 1, width:] = 0
+        found[:, -1:, width:] = 0  # There may be no last one.
     else:
         places = np.arange(most)
         found[places >= column.counts.reshape(-1, 1)] = 0
