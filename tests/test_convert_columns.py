@@ -229,6 +229,51 @@ def test_hold_lists_of_structs_without_values(tmp_path: Path, engine: str | None
     assert lines_of(found) == lines_of(expected)
 
 
+CASES_IN_LISTS = """
+  m:
+    id: 3
+    from: one
+    fields:
+      n: uint8
+      l:
+        count: n
+        fields:
+          k: {type: uint8, values: {a: 1, b: 2, c: 3}}
+          v:
+            switch: k
+            cases:
+              a:
+                fields:
+                  text: {type: ascii, size: 2}
+                  deep: {fields: {pairs: {count: 2, fields: {z: uint8, more: {type: uint8, count: 1}}}}}
+              b: uint8
+              c: {type: uint8, count: 2}
+      fixed:
+        count: 2
+        fields: {k: {type: uint8, values: {a: 1}}, v: {switch: k, cases: {a: uint8}, unknown: true}}
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize("picks", ["a", "b", "c", "abc", "bab", ""])
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_cases_in_lists_as_parquet_takes_them(
+    tmp_path: Path, engine: str | None, picks: str
+) -> None:
+    path = tmp_path / "great.yaml"
+    path.write_text(GREAT[: GREAT.index("  scaled:")] + CASES_IN_LISTS)
+    cases = {"a": b"\x01hi\x01\x02\x03\x04", "b": b"\x02\x09", "c": b"\x03\x01\x02"}
+    payload = bytes([len(picks)]) + b"".join(cases[pick] for pick in picks) + b"\x01\x07" * 2
+    data = (b"\x5a\xa5\x03" + bytes([len(payload)]) + payload) * 2
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    assert len(rows_of(expected)["m"]) == 2
+    assert arrow_rows(found) == arrow_rows(expected)
+    for rows in (rows for batch in [*expected, *found] for rows in batch.rows()):
+        table = pa.Table.from_batches([batch_of(rows, schema_of(rows.table, {}))])
+        parquet.write_table(table, tmp_path / "rows.parquet")
+        assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == table.to_pylist()
+
+
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
 def test_are_chosen_by_what_is_in_front(tmp_path: Path, engine: str | None) -> None:
     """A struct's field may have the name of one around it, which chooses until then.

@@ -54,17 +54,7 @@ class Scattered:
 
     def to_arrow(self, type: ColumnType) -> pa.Array:
         """The Arrow array."""
-        import pyarrow as pa
-
-        from protogen.convert.arrow_tables import type_of
-
-        values = _arrow(type, self.values)
-        if not isinstance(type, Record) or not type.members or not len(values):
-            return values.take(_indices(self.places))
-        # Parquet refuses members of what is missing that are missing, too, and never are elsewhere.
-        there = values.take(pa.array(np.maximum(self.places, 0)))
-        missing = pa.array(self.places < 0)
-        return pa.StructArray.from_arrays(there.flatten(), fields=list(type_of(type)), mask=missing)
+        return _placed(type, _arrow(type, self.values), self.places)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,8 +117,11 @@ class Cases:
         named = dict(self.members)
         if "" in named:
             named[type.members[-1][0]] = named.pop("")
+        nowhere = np.full(self.count, -1)
         arrays = [
-            named[name].to_arrow(inner) if name in named else pa.nulls(self.count, type_of(inner))
+            named[name].to_arrow(inner)
+            if name in named
+            else _placed(inner, pa.nulls(0, type_of(inner)), nowhere)
             for name, inner in type.members
         ]
         return pa.StructArray.from_arrays(arrays, fields=list(type_of(type)))
@@ -168,6 +161,24 @@ def _arrow(type: ColumnType, values: Values) -> pa.Array:
     from protogen.convert.arrow_tables import array_of
 
     return array_of(type, values)
+
+
+def _placed(type: ColumnType, values: pa.Array, places: Array) -> pa.Array:
+    """For each place the value that is there; none for -1."""
+    import pyarrow as pa
+
+    from protogen.convert.arrow_tables import type_of
+
+    if not isinstance(type, Record) or not type.members:
+        return values.take(_indices(places))
+    # Parquet refuses members of what is missing that are missing, too, and never are elsewhere.
+    fields = list(type_of(type))
+    if not len(values):
+        missing = pa.array([None], type_of(type))  # Its members are there, and empty.
+        members = [missing.field(place) for place in range(len(fields))]
+        values = pa.StructArray.from_arrays(members, fields=fields)
+    there = values.take(pa.array(np.maximum(places, 0)))
+    return pa.StructArray.from_arrays(there.flatten(), fields=fields, mask=pa.array(places < 0))
 
 
 def _indices(places: Array) -> pa.Array:

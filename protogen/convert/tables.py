@@ -356,9 +356,28 @@ def column_type(type: Type) -> ColumnType:
         case Struct(fields=fields):
             return Record(tuple((item.name, column_type(item.type)) for item in fields))
         case Switch(cases=cases, rest=rest):
-            members = [(case.name, column_type(case.type)) for case in cases if not _is_empty(case)]
+            members = [
+                (case.name, _of_any_count(column_type(case.type)))
+                for case in cases
+                if not _is_empty(case)
+            ]
             tail = [] if rest is None else [(rest_name(type), BYTES)]
             return Record((*members, *tail), gaps=True)
+
+
+def _of_any_count(type: ColumnType) -> ColumnType:
+    """What a case holds: its lists have no elements where another case was chosen.
+
+    Arrow does not read from Parquet what it has written there of lists of a fixed size in a struct
+    that is missing.
+    """
+    match type:
+        case Listed(element=element):
+            return replace(type, element=_of_any_count(element), count=None)
+        case Record(members=members):
+            return replace(type, members=tuple((it, _of_any_count(of)) for it, of in members))
+        case _:
+            return type
 
 
 def _scalar(type: Integer) -> Scalar:
