@@ -229,6 +229,23 @@ def test_hold_lists_of_structs_without_values(tmp_path: Path, engine: str | None
     assert lines_of(found) == lines_of(expected)
 
 
+@pytest.mark.parametrize("engine", ENGINES, ids=str)
+def test_hold_switches_whose_cases_are_all_empty(tmp_path: Path, engine: str | None) -> None:
+    path = tmp_path / "great.yaml"
+    fields = """{
+      k: {type: uint8, values: {a: 1, b: 2}},
+      v: {switch: k, cases: {a: {fields: {}}, b: {fields: {}}}},
+      s: {fields: {j: {type: uint8, values: {a: 1}}, w: {switch: j, cases: {a: {fields: {}}}}}}}"""
+    scaled = GREAT.index("  scaled:")
+    path.write_text(GREAT[:scaled] + f"  m: {{id: 3, from: one, fields: {fields}}}\n")
+    data = b"\x5a\xa5\x03\x02\x01\x01" + b"\x5a\xa5\x03\x02\x02\x01"
+    expected = batches_of(path, "one", data, "events")
+    found = batches_of(path, "one", data, engine)
+    assert len(rows_of(expected)["m"]) == 2
+    assert rows_of(found) == rows_of(expected)
+    assert lines_of(found) == lines_of(expected)
+
+
 CASES_IN_LISTS = """
   m:
     id: 3

@@ -28,6 +28,7 @@ from protogen.model.fields import Field
 from protogen.model.types import Fixed
 from protogen.model.types import Octets as OctetsType
 from protogen.model.types import Struct as StructType
+from protogen.model.types import Switch as SwitchType
 from protogen.model.types import Text as TextType
 
 Reader = Callable[[Any], Values]
@@ -67,8 +68,21 @@ class Readings:
 def _reading(table: Table, held: TableSchema) -> Reading:
     frame = tuple(_frame_readers(table, held))
     fields = tuple(_field_reader(column, held) for column in table.columns)
-    is_flat = all(_flat_reader(column, held) is not None for column in table.columns)
+    assert held.message is not None
+    # A switch whose cases are all empty has no column.
+    is_flat = not _has_switch(held.message.fields) and all(
+        _flat_reader(column, held) is not None for column in table.columns
+    )
     return Reading(table, held, frame, fields, is_flat)
+
+
+def _has_switch(fields: Iterable[Field]) -> bool:
+    """Whether a value outside of lists is one of several cases."""
+    return any(
+        isinstance(item.type, SwitchType)
+        or (isinstance(item.type, StructType) and _has_switch(item.type.fields))
+        for item in fields
+    )
 
 
 def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
