@@ -29,7 +29,13 @@ from protogen.convert.begun import MARKERS, marker_of  # noqa: E402
 from protogen.convert.decoding import column_decoders  # noqa: E402
 from protogen.convert.errors import ConvertError  # noqa: E402
 from protogen.convert.fleet import convert_fleet  # noqa: E402
-from protogen.convert.parts import Part, PartDone, read_marker  # noqa: E402
+from protogen.convert.parts import (  # noqa: E402
+    Part,
+    PartDone,
+    Work,
+    convert_part,
+    read_marker,
+)
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry  # noqa: E402
 from protogen.convert.run import Fleet, Job, convert, plan  # noqa: E402
 from protogen.convert.state import RECORD  # noqa: E402
@@ -162,6 +168,29 @@ def test_a_capture_that_became_shorter_is_an_error() -> None:
     decoder = RangeDecoder(io.BytesIO(bytes(50)), 100, (0, 100), START, splitter.make)
     with pytest.raises(EOFError, match="ends at byte 50, not at 100"):
         list(decoder.batches())
+
+
+@pytest.mark.parametrize("entry", [START, None], ids=["known", "guessed"])
+def test_a_capture_that_became_shorter_is_told_by_name(tmp_path: Path, entry: Frame | None) -> None:
+    capture = tmp_path / "run.bin"
+    capture.write_bytes(bytes(50))
+    work = Work(protocol_of(RN1), "brain", str(tmp_path / "out"))
+    part = Part("run.000000", str(capture), "run", {}, None, 100, (60, 100), entry)
+    with pytest.raises(ConvertError, match=r"run\.bin: the capture ends at byte \d+, not at 100"):
+        convert_part(work, part)
+    assert not list(tmp_path.rglob("*.partial"))
+
+
+def test_a_lost_scheduler_is_no_bug() -> None:
+    distributed = pytest.importorskip("distributed")
+    from protogen.convert import fleet
+
+    class Future:
+        def result(self) -> None:
+            raise distributed.client.FutureCancelledError("part", "scheduler-connection-lost")
+
+    with pytest.raises(ConvertError, match="the scheduler is gone"):
+        fleet._result(Future())
 
 
 # --- real clusters --------------------------------------------------------------------------------
@@ -531,18 +560,6 @@ def test_a_scheduler_without_workers_is_said(
     monkeypatch.setattr(distributed, "Client", _FakeClient)
     done = run(*small, "--dask", "anywhere:1")
     assert "warning: the scheduler at anywhere:1 has no workers; waiting for some" in done.output
-
-
-def test_a_scheduler_that_ends_is_said() -> None:
-    distributed = pytest.importorskip("distributed")
-    from protogen.convert import fleet
-
-    class Cancelled:
-        def result(self) -> None:
-            raise distributed.CancelledError("scheduler-connection-lost")
-
-    with pytest.raises(ConvertError, match="the scheduler is gone"):
-        fleet._result(Cancelled())
 
 
 def test_workers_on_this_machine_take_no_port_that_others_have(

@@ -285,6 +285,7 @@ def _result(future: Any) -> PartDone:
         ) from None
     except CancelledError:
         raise ConvertError(
-            "the scheduler is gone", "the same command goes on when it is there again"
+            "the scheduler is gone, or has dropped what was left to do",
+            "give the command again: parts that are done are not done again",
         ) from None
     return found

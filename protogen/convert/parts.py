@@ -19,6 +19,7 @@ from uuid import uuid4
 
 from protogen.convert.batches import Tally, batches_of
 from protogen.convert.begun import marker_of
+from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, open_stream, opened
 from protogen.convert.kinds import InputKind
 from protogen.convert.outputs import Pending, write_whole
@@ -106,8 +107,10 @@ def convert_part(work: Work, part: Part) -> PartDone:
     try:
         done = _whole(work, part, pending) if part.span is None else _range(work, part, pending)
         pending.commit()
-    except BaseException:
+    except BaseException as error:
         pending.discard()
+        if isinstance(error, EOFError):  # It became shorter since its parts were planned.
+            raise ConvertError(f"{part.place}: {error}", "convert it again") from None
         raise
     text = json.dumps(done.as_json(part.stamp))
     write_whole(marker_of(folder, part.name), text.encode(), token=uuid4().hex[:12])
