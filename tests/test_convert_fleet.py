@@ -265,6 +265,15 @@ def test_a_fleet_gives_the_rows_of_one_machine(captures: Path, whole: Path, tmp_
     assert kept == [line for line in again.output.splitlines() if line.startswith("  ")]
 
 
+def test_workers_on_this_machine_leave_ctrl_c_to_the_command() -> None:
+    pytest.importorskip("distributed")
+    from protogen.convert import fleet
+
+    with fleet._client(fleet.Fleet(workers=1)) as client:
+        (handler,) = client.run(lambda: signal.getsignal(signal.SIGINT)).values()
+    assert handler == signal.SIG_IGN
+
+
 _DYING = """
 import os, signal, threading
 from protogen.convert import parts

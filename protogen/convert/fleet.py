@@ -32,6 +32,10 @@ from protogen.convert.run import Fleet, Job, Result, check_origin, check_room, f
 from protogen.convert.state import Done, State
 from protogen.version import VERSION
 
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What workers on this machine run at their start. Ctrl-C is for the command, which ends them; they
+would print a traceback each."""
+
 Complain = Callable[[str], None]
 Advance = Callable[[int], None]
 
@@ -171,6 +175,7 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
             _check_workers(client, fleet.address, complain)
             yield client
         return
+    preloads = needed("dask", "--dask").config.get("distributed.worker.preload")
     # A worker's memory is what its decoders and row groups hold: the same for parts of any size.
     with (
         distributed.LocalCluster(
@@ -179,6 +184,7 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
             dashboard_address=None,
             # Dask opens a port even so: any that is free, not one that it complains about.
             scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+            preload=[*preloads, _DEAF],
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
