@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
+import pickle
 import signal
 import socket
 import subprocess
@@ -179,6 +181,20 @@ def test_a_capture_that_became_shorter_is_told_by_name(tmp_path: Path, entry: Fr
     with pytest.raises(ConvertError, match=r"run\.bin: the capture ends at byte \d+, not at 100"):
         convert_part(work, part)
     assert not list(tmp_path.rglob("*.partial"))
+
+
+def test_a_full_disk_is_told_by_the_name_of_the_folder(tmp_path: Path, monkeypatch: Any) -> None:
+    def fill(*arguments: object) -> None:
+        raise OSError(errno.ENOSPC, "no space")
+
+    capture = tmp_path / "run.bin"
+    capture.write_bytes(bytes(50))
+    monkeypatch.setattr("protogen.convert.parts.write_all", fill)
+    work = Work(protocol_of(RN1), "brain", str(tmp_path / "out"))
+    for span in ((0, 50), None):
+        with pytest.raises(OSError, match="no space") as found:
+            convert_part(work, Part("run", str(capture), "run", {}, None, 50, span, START))
+        assert pickle.loads(pickle.dumps(found.value)).filename == str(tmp_path / "out")
 
 
 def test_a_lost_scheduler_is_no_bug() -> None:

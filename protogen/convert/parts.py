@@ -111,6 +111,8 @@ def convert_part(work: Work, part: Part) -> PartDone:
         pending.discard()
         if isinstance(error, EOFError):  # It became shorter since its parts were planned.
             raise ConvertError(f"{part.place}: {error}", "convert it again") from None
+        if isinstance(error, OSError) and error.filename is None:
+            error.filename = work.folder  # As when the disk is full.
         raise
     text = json.dumps(done.as_json(part.stamp))
     write_whole(marker_of(folder, part.name), text.encode(), token=uuid4().hex[:12])
