@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gzip
 import io
 import json
 import os
@@ -215,8 +216,6 @@ def test_a_lost_scheduler_is_no_bug() -> None:
 @pytest.fixture(scope="module")
 def captures(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with captures of RN1: large, noise, compressed, a log."""
-    import gzip
-
     folder = tmp_path_factory.mktemp("captures")
     piece = capture_of(RN1, "brain", 5, 200)
     (folder / "large.bin").write_bytes(b"".join(piece[7 * i :] + piece for i in range(300)))
@@ -525,6 +524,25 @@ class TestOptions:
         assert done.exit_code == 2
         assert "no earlier run made it" in done.output
         assert theirs.read_text() == "mine"
+
+    def test_captures_whose_parts_have_one_name(self, sink: Path) -> None:
+        pytest.importorskip("distributed")
+        common = ["convert", str(sink / "sink.yaml"), "--sender", "pc", "--to", "parquet"]
+        out = ["-o", str(sink / "out")]
+        (sink / "run.000000.bin.gz").write_bytes(gzip.compress((sink / "run.bin").read_bytes()))
+        packed, plain = str(sink / "run.000000.bin.gz"), str(sink / "run.bin")
+        both = run(*common, plain, packed, "--dask", *out)
+        assert both.exit_code == 2
+        assert "would both be called run.000000" in both.output.replace("\n", " ")
+        assert not list(sink.glob("out/*/*"))
+        assert run(*common, packed, *out).exit_code == 0
+        before = {path: path.read_bytes() for path in sink.glob("out/*/*")}
+        assert {path.name for path in before} == {"run.000000.parquet"}
+        for more in ([], ["--force"]):
+            late = run(*common, plain, "--dask", *out, *more)
+            assert late.exit_code == 2
+            assert "made of another capture" in late.output.replace("\n", " ")
+        assert {path: path.read_bytes() for path in sink.glob("out/*/*")} == before
 
 
 # --- clusters of others ---------------------------------------------------------------------------

@@ -28,7 +28,15 @@ from protogen.convert.parts import (
     read_marker,
 )
 from protogen.convert.ranges import START
-from protogen.convert.run import Fleet, Job, Result, check_origin, check_room, forget_parts
+from protogen.convert.run import (
+    Fleet,
+    Job,
+    Result,
+    check_origin,
+    check_owner,
+    check_room,
+    forget_parts,
+)
 from protogen.convert.state import Done, State
 from protogen.version import VERSION
 
@@ -100,6 +108,7 @@ def convert_fleet(
                 source.place, before.format, before.tally, before.files, True, before.lost_lines
             )
     if waiting:
+        _check_names(waiting)
         for capture in waiting:
             _begin(job, state, capture)
         with _client(fleet, complain) as client:
@@ -139,6 +148,20 @@ def _planned(
         part = Part(part_name(name, number), place, name, of_part, kind, size, span)
         parts.append(replace(part, entry=START) if number == 0 else part)
     return _Capture(name, source, str(job.folder), str(format), stamp, parts)
+
+
+def _check_names(captures: Sequence[_Capture]) -> None:
+    """Raise ConvertError where parts of two captures have one name: `run` and `run.000000`."""
+    first: dict[str, _Capture] = {}
+    for capture in captures:
+        for part in capture.parts:
+            other = first.setdefault(part.name, capture)
+            if other is not capture:
+                raise ConvertError(
+                    f"parts of {other.source.place} and {capture.source.place} would both be"
+                    f" called {part.name}",
+                    "convert them into two folders, with --output",
+                )
 
 
 def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> Result:
@@ -272,7 +295,9 @@ def _begin(job: Job, state: State, capture: _Capture) -> None:
     if not is_begun(job.folder, capture.name):
         names = [f"{part.name}.{job.format}" for part in capture.parts]
         tables = [table.name for table in job.tables.all_tables]
-        check_room(job, state, (f"{table}/{name}" for table in tables for name in names))
+        files = [f"{table}/{name}" for table in tables for name in names]
+        check_room(job, state, files)
+        check_owner(job, state, f"{capture.name}.{job.format}", files)
     begin(job.folder, capture.name, len(capture.parts))
 
 

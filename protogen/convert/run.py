@@ -174,6 +174,19 @@ def check_room(job: Job, state: State, files: Iterable[str]) -> None:
             )
 
 
+def check_owner(job: Job, state: State, key: str, files: Iterable[str]) -> None:
+    """Raise ConvertError where one of the files is there and was made of another capture.
+
+    As `x.part-0001`, when the tables of `x` go on in files of that name.
+    """
+    for file in files:
+        if (job.folder / file).exists() and state.is_of_another(key, file):
+            raise ConvertError(
+                f"{job.folder / file} is there already, made of another capture",
+                "name another folder with --output for one of them",
+            )
+
+
 def check_origin(job: Job, state: State, name: str, stamp: Mapping[str, Any]) -> None:
     """Raise ConvertError where files of this name are there that are made of something else.
 
@@ -196,13 +209,7 @@ def _make_room(
 ) -> None:
     """Remove what an earlier run made of a capture. Raises ConvertError for files of others."""
     check_room(job, state, files)
-    for file in files:
-        # As `x.part-0001`, when the tables of `x` go on in files of that name.
-        if state.is_of_another(key, file):
-            raise ConvertError(
-                f"{job.folder / file} is there already, made of another capture",
-                "name another folder with --output for one of them",
-            )
+    check_owner(job, state, key, files)
     stale = [file for file in state.files(key) if file not in files]
     state.expect(key, files, {word: stamp[word] for word in _ORIGIN})
     remove(job.folder, stale)

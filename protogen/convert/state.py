@@ -74,9 +74,9 @@ class State:
         return any(file in done.files for done in self._done.values())
 
     def is_of_another(self, key: str, file: str) -> bool:
-        """Whether a file is there that an earlier run made of another capture."""
+        """Whether an earlier run made a file of another capture."""
         others = (done for name, done in self._done.items() if name != key)
-        return any(file in done.files for done in others) and (self._folder / file).exists()
+        return any(file in done.files for done in others)
 
     def record(self, key: str, done: Done) -> None:
         """Take note that a capture is done. Raises OSError."""
