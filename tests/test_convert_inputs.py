@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import gzip
 import io
 import json
@@ -478,6 +479,24 @@ class TestCommand:
         wrong = run("convert", str(schema), "nowhere://x", *self.options(schema))
         assert wrong.exit_code == 2
         assert "nowhere://x: Protocol not known" in wrong.output
+        gone = run("convert", str(schema), "memory://gone.bin", *self.options(schema))
+        assert gone.exit_code == 2
+        assert f"memory://gone.bin: {os.strerror(errno.ENOENT)}" in gone.output
+
+
+def test_what_a_storage_says_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its errors are of its own package, and no OSError."""
+    memory = pytest.importorskip("fsspec.implementations.memory")
+
+    class NoCredentialsError(Exception):
+        pass
+
+    def refuse(*arguments: object) -> None:
+        raise NoCredentialsError("Unable to locate credentials")
+
+    monkeypatch.setattr(memory.MemoryFileSystem, "info", refuse)
+    with pytest.raises(ConvertError, match=r"memory://run\.bin: Unable to locate credentials"):
+        Source("memory://run.bin").stamp()
 
     def test_a_url_that_has_changed_is_read_again_whatever_its_size(self, schema: Path) -> None:
         fsspec = pytest.importorskip("fsspec")

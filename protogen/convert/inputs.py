@@ -125,15 +125,23 @@ def _expanded(place: str) -> list[str]:
     if "://" not in place or "*" not in place or "::" in place:
         return [place]
     fsspec = needed("fsspec.core", f"reading {place}")
-    with _translated(place):
-        try:
-            filesystem, path = fsspec.url_to_fs(place)
-            found = sorted(filesystem.glob(path))
-        except (ValueError, ImportError) as error:
-            raise ConvertError(f"{place}: {error}") from None
+    with _translated(place), _asked(place):
+        filesystem, path = fsspec.url_to_fs(place)
+        found = sorted(filesystem.glob(path))
     if not found:
         raise ConvertError(f"{place}: there is no such file")
     return [filesystem.unstrip_protocol(name) for name in found]
+
+
+@contextmanager
+def _asked(url: str) -> Iterator[None]:
+    """Each storage's package has errors of its own, as for missing credentials."""
+    try:
+        yield
+    except OSError:
+        raise
+    except Exception as error:
+        raise ConvertError(f"{url}: {error}") from None
 
 
 _VERSIONS = ("ETag", "etag", "mtime", "LastModified", "last_modified", "updated", "created")
@@ -142,11 +150,9 @@ _VERSIONS = ("ETag", "etag", "mtime", "LastModified", "last_modified", "updated"
 
 def _url_stamp(url: str) -> tuple[int | None, str | None]:
     fsspec = needed("fsspec.core", f"reading {url}")
-    try:
+    with _asked(url):
         filesystem, path = fsspec.url_to_fs(url)
         known = filesystem.info(path)
-    except (ValueError, ImportError) as error:
-        raise ConvertError(f"{url}: {error}") from None
     version = next((known[word] for word in _VERSIONS if known.get(word) is not None), None)
     return known.get("size"), None if version is None else str(version)
 
