@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from random import Random
+from time import perf_counter
 from typing import Any
 
 import pytest
@@ -28,6 +29,7 @@ from hypothesis import settings
 from protogen.runtime import decoder as runtime_decoder
 from protogen.runtime import late
 from protogen.runtime.machine import Candidate
+from protogen.runtime.sender import Cutter
 from protogen.runtime.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -207,6 +209,30 @@ def test_the_time_for_a_frame_grows_with_its_size(
     assert all(count < 64 * 64 * 2 + 20 * size for count, size in fast), fast
     reference = [looked_at(path, size, "construct") for size in (1000, 4000, 16000)]
     assert all(count < 64 * 64 * 2 + 20 * size for count, size in reference), reference
+
+
+@EVERY_SENDER
+def test_an_end_is_not_looked_for_behind_the_longest_frame(path: Path, sender: str) -> None:
+    """Else many starts without an end in one portion take time that grows with its square."""
+    spec = module_at(path).PROTOCOL.sender(sender)
+    if spec.cut is None or spec.frame.end is None:
+        return
+    filler = b"0" * (spec.frame.greatest + 1)
+    assert spec.frame.end.value not in filler
+    for frame in islice(known_frames(path, protocol_of(path).sender(sender)), 0, None, 8):
+        open_frame = frame.removesuffix(spec.frame.end.value) + filler
+        looked = [seconds_to_cut(spec.cut, open_frame + b"0" * more) for more in (0, 10_000_000)]
+        assert looked[1] < 10 * looked[0] + 50e-6
+
+
+def seconds_to_cut(cut: Cutter, data: bytes) -> float:
+    """The time in which a cutter sees that no whole frame stands in front."""
+    best = 1.0
+    for _ in range(7):
+        begun = perf_counter()
+        assert cut(data, 0, 0, []) == 0
+        best = min(best, perf_counter() - begun)
+    return best
 
 
 @pytest.mark.parametrize("engine", ["fast", "construct"])

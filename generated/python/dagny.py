@@ -620,7 +620,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 return at
             payload_size, read, numbers = _HOST_KINDS[data[at]]
             if payload_size < 0:
-                end = data.find(b"\x0a", at + 1)
+                end = data.find(b"\x0a", at + 1, at + 515)
                 if end < 0:
                     return at
                 end += 1
@@ -746,7 +746,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 return at
             payload_size, read, numbers = _ROBOT_KINDS[data[at]]
             if payload_size < 0:
-                end = data.find(b"\x0a", at + 1)
+                end = data.find(b"\x0a", at + 1, at + 515)
                 if end < 0:
                     return at
                 end += 1

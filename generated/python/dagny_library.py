@@ -632,13 +632,11 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     add = events.append
     try:
         while at < size:
-            end = data.find(b"\x0d", at)
+            end = data.find(b"\x0d", at, at + 1027)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 1027:
-                return at
             content = raw[:-1]
             if 0x0D in content or 0x1B in content:
                 stuffed = content
@@ -758,13 +756,11 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     add = events.append
     try:
         while at < size:
-            end = data.find(b"\x0d", at)
+            end = data.find(b"\x0d", at, at + 1027)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 1027:
-                return at
             content = raw[:-1]
             if 0x0D in content or 0x1B in content:
                 stuffed = content

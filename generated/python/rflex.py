@@ -1068,15 +1068,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 break
-            end = data.find(b"\x1b\x03", at + 2)
+            end = data.find(b"\x1b\x03", at + 2, at + 782)
             if end < 0:
                 break
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                if len(raw) > 782:
-                    break
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")
@@ -1257,15 +1255,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
                 break
-            end = data.find(b"\x1b\x03", at + 2)
+            end = data.find(b"\x1b\x03", at + 2, at + 782)
             if end < 0:
                 break
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
             if 0x1B in content or 0x7C in content:
-                if len(raw) > 782:
-                    break
                 stuffed = content
                 content = content.replace(b"\x7c\x1b\x01", b"\x7c")
                 content = content.replace(b"\x1b\x00", b"\x1b")

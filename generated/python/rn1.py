@@ -774,13 +774,11 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
         while at < size:
             if not 0x80 <= data[at] <= 0xFE:
                 return at
-            end = data.find(b"\xff", at)
+            end = data.find(b"\xff", at, at + 9)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 9:
-                return at
             content = raw[:-1]
             if len(content) < 1:
                 return at

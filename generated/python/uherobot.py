@@ -312,13 +312,11 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
         while at < size:
             if data[at] != 0x62:
                 return at
-            end = data.find(b"\x65", at + 1)
+            end = data.find(b"\x65", at + 1, at + 512)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 512:
-                return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]
@@ -420,13 +418,11 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
         while at < size:
             if data[at] != 0x62:
                 return at
-            end = data.find(b"\x65", at + 1)
+            end = data.find(b"\x65", at + 1, at + 512)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 512:
-                return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]

@@ -279,13 +279,11 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
         while at < size:
             if data[at] != 0x62:
                 return at
-            end = data.find(b"\x0a", at + 1)
+            end = data.find(b"\x0a", at + 1, at + 512)
             if end < 0:
                 return at
             end += 1
             raw = data[at:end]
-            if len(raw) > 512:
-                return at
             content = raw[1:-1]
             content = _STUFFING_0.decode(content)
             length = content[0]
@@ -385,13 +383,11 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
         while at < size:
             if data[at] != 0x62:
                 return at
-            end = data.find(b"\x0d\x0a", at + 1)
+            end = data.find(b"\x0d\x0a", at + 1, at + 517)
             if end < 0:
                 return at
             end += 2
             raw = data[at:end]
-            if len(raw) > 517:
-                return at
             content = raw[1:-2]
             content = _STUFFING_0.decode(content)
             length = content[1]

@@ -272,12 +272,20 @@ class _Cutter(FrameFunction):
     def _until_end(self) -> None:
         frame = self.frame
         begun = "begun" if frame.shares else self._place(len(frame.start_bytes))
-        self.lines.add(f"end = data.find({literal(frame.end)}, {begun})")
+        self.lines.add(f"end = data.find({literal(frame.end)}, {begun}{self._bound})")
         self._stop_if("end < 0")
         self.lines.add(f"end += {len(frame.end)}")
         self._raw()
         if not self._is_stuffed_throughout:
             self._no_start_inside()
+
+    @property
+    def _bound(self) -> str:
+        """An argument that lets `find` look no further than the longest frame goes.
+
+        Else each of many starts that have no end would be looked for one in all that has come.
+        """
+        return f", {self._place(self.frame.framing.greatest)}" if self.at else ""
 
     @property
     def _is_stuffed_throughout(self) -> bool:
@@ -300,6 +308,8 @@ class _Cutter(FrameFunction):
         return plain and is_seen and bare <= frame.framing.greatest
 
     def _not_too_long(self) -> None:
+        if self._bound and self.frame.ended_by == "end" and not self.frame.shares:
+            return  # Its end would not have been found.
         size = f"len({self.raw})"
         if self.frame.shares:
             size += f" + {len(self.frame.start_bytes)}"
@@ -351,7 +361,7 @@ class _Cutter(FrameFunction):
         if open_kinds and frame.end:
             with self.lines.block("if payload_size < 0:"):
                 behind = self._place(frame.head_size)
-                self.lines.add(f"end = data.find({literal(frame.end)}, {behind})")
+                self.lines.add(f"end = data.find({literal(frame.end)}, {behind}{self._bound})")
                 self._stop_if("end < 0")
                 self.lines.add(f"end += {len(frame.end)}")
             head = "elif payload_size:" if frame.optional else "else:"
