@@ -221,6 +221,36 @@ def test_frames_whose_checksums_come_with_a_payload(
         assert shown(events_of(path, "robot", "fast", pieces)) == due
 
 
+CHECKED_TWICE = """
+protocol: twice
+byte_order: big
+endpoints: {robot: Robot}
+frame:
+  sort: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {}
+  inner: {type: uint16, algorithm: CRC-16/KERMIT, covers: payload}
+  outer: {type: uint8, algorithm: xor-8, covers: payload..inner}
+  last: {type: uint8, algorithm: sum-8, covers: inner..outer}
+messages:
+  fixed: {id: 1, from: robot, fields: {text: {type: bytes, size: SIZE}}}
+  varying: {id: 2, from: robot, fields: {text: {type: bytes, size: {fill: true, max: 40}}}}
+"""
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 15, 16, 31, 32, 40])
+def test_checksums_that_cover_a_checksum(size: int, tmp_path: Path) -> None:
+    """What stands in front of the second of them is more than the payload."""
+    path = tmp_path / "twice.yaml"
+    path.write_text(CHECKED_TWICE.replace("SIZE", str(size)), encoding="utf-8")
+    module = module_at(path)
+    text = Random(size).randbytes(size)
+    for item in (module.Fixed(text=text), module.Varying(text=text), module.Varying(text=b"")):
+        frame = module.encode(item, engine="construct")
+        assert module.encode(item) == frame
+        assert module.decode(frame, "robot") == item
+
+
 STARTS_WITH_A_VALUE = """
 protocol: counted
 endpoints: {robot: Robot, host: Host}

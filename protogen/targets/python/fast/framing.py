@@ -136,8 +136,10 @@ class _Framer:
         self._return(bare=False)
         return self.lines.text
 
-    def _own_payload(self) -> str:
-        return self.frame.slice_of("content", self.frame.head_size - self.frame.skipped, 0)
+    def _covers_payload(self, part: ChecksumPart, covered: str) -> bool:
+        """Whether a checksum covers the payload alone, with which the content ends at the first."""
+        own = self.frame.slice_of("content", self.frame.head_size - self.frame.skipped, 0)
+        return covered == own and part == self.frame.checksums[0]
 
     def _packed(self, part: Part) -> Packed:
         if isinstance(part, LiteralPart):
@@ -266,9 +268,8 @@ class _Framer:
 
     def _folded(self, part: ChecksumPart) -> str:
         """The exclusive or of a message's payload as an expression; nothing for anything else."""
-        message, covered, own = self.message, self._covered(part), self._own_payload()
-        spec = part.algorithm
-        if message is None or covered not in (own, "payload"):
+        message, covered, spec = self.message, self._covered(part), part.algorithm
+        if message is None or not (covered == "payload" or self._covers_payload(part, covered)):
             return ""
         if spec.kind != "xor" or spec.init != 0:
             return ""
@@ -281,7 +282,7 @@ class _Framer:
         frame = self.frame
         missing = -frame.offset(part)
         covered = frame.covered(part, "content", missing)
-        return "payload" if self._has_payload and covered == self._own_payload() else covered
+        return "payload" if self._has_payload and self._covers_payload(part, covered) else covered
 
     def _return(self, bare: bool) -> None:
         frame = self.frame
