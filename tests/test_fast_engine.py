@@ -251,6 +251,35 @@ def test_checksums_that_cover_a_checksum(size: int, tmp_path: Path) -> None:
         assert module.decode(frame, "robot") == item
 
 
+ZEROS = """
+protocol: zeros
+byte_order: big
+endpoints: {robot: Robot}
+frame:
+  sort: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: sort..payload}
+messages:
+  note:
+    id: 1
+    from: robot
+    fields:
+      a: {type: float64, const: 0}
+      b: {type: float32, const: -0.0}
+"""
+
+
+def test_a_constant_is_written_with_its_own_sign(tmp_path: Path) -> None:
+    path = tmp_path / "zeros.yaml"
+    path.write_text(ZEROS, encoding="utf-8")
+    module = module_at(path)
+    for a, b in product((0.0, -0.0), repeat=2):
+        item = module.Note(a=a, b=b)
+        frame = module.encode(item)
+        assert frame == module.encode(item, engine="construct")
+        assert frame[:-1] == struct.pack(">Bdf", 1, 0.0, -0.0)
+
+
 STARTS_WITH_A_VALUE = """
 protocol: counted
 endpoints: {robot: Robot, host: Host}

@@ -304,6 +304,8 @@ class _Writer:
         if type_.bits == 32:
             self.lines.refuse_if(f"not -{_GREATEST_FLOAT32} <= {value} <= {_GREATEST_FLOAT32}")
         self._in_range(value, item)
+        if item is not None and item.const is not None:
+            value = constant(item)  # Which equals the value, but may be the other zero.
         if type_.byte_bits == 7:
             call = f'_fast.seven_bit_float({type_.bits}, "{type_.byte_order}")'
             value = f"{self.lines.constants.named('FLOAT', call)}.encode({value})"
