@@ -6,6 +6,7 @@ beginning of a frame, and nobody may see a difference.
 
 from __future__ import annotations
 
+import tracemalloc
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -248,6 +249,25 @@ def test_nothing_fed_leaves_nothing_behind(tmp_path: Path, engine: str) -> None:
     assert [decoder.feed(b"") for _ in range(5)] == [[]] * 5
     assert (decoder._is_waiting, len(decoder._behind), decoder.pending) == before
     assert [event.raw for event in decoder.feed(frame[6000:])] == [frame]
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+def test_a_frame_takes_memory_for_its_bytes_and_not_for_its_portions(
+    tmp_path: Path, engine: str
+) -> None:
+    path = tmp_path / "large.yaml"
+    path.write_text(LARGE, encoding="utf-8")
+    module = module_at(path)
+    frame = module.encode(module.List(a=bytes(place % 251 for place in range(30000))), "station")
+    decoder = module.Decoder("station", engine)
+    tracemalloc.start()
+    try:
+        for place in range(0, len(frame) - 2, 2):
+            assert decoder.feed(frame[place : place + 2]) == []
+        kept, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert kept < 6 * len(frame)
 
 
 def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:

@@ -61,7 +61,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._is_anywhere = isinstance(sender.frame.start, late.Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
-        self._behind: list[bytes] = []  # What came behind it, and the candidate has taken.
+        self._behind = bytearray()  # What came behind it, and the candidate has taken.
         self._offset = 0  # Of the first of these bytes in the input.
         # Places in these bytes:
         self._done = 0  # All in front of it is delivered.
@@ -142,7 +142,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self, candidate: Candidate, data: bytes
     ) -> list[Event[MessageT_co, PartsT_co]]:
         """The same where all in front is the candidate's, and nothing else is looked at."""
-        self._behind.append(data)
+        self._behind += data
         for byte in data:
             self._pushed += 1
             verdict = candidate.push(byte)
@@ -156,8 +156,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def _join(self) -> None:
         """Put what has come in one piece."""
         if self._behind:
-            self._data = b"".join((self._data, *self._behind))
-            self._behind = []
+            self._data += self._behind
+            self._behind = bytearray()
 
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
