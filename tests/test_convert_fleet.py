@@ -284,7 +284,7 @@ def test_workers_on_this_machine_leave_ctrl_c_to_the_command() -> None:
     pytest.importorskip("distributed")
     from protogen.convert import fleet
 
-    with fleet._client(fleet.Fleet(workers=1)) as client:
+    with fleet._client(Fleet(workers=1), pytest.fail) as client:
         (handler,) = client.run(lambda: signal.getsignal(signal.SIGINT)).values()
     assert handler == signal.SIG_IGN
 
