@@ -13,6 +13,7 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import CancelledError
 from contextlib import suppress
 from pathlib import Path
 from random import Random
@@ -202,9 +203,12 @@ def test_a_lost_scheduler_is_no_bug() -> None:
     distributed = pytest.importorskip("distributed")
     from protogen.convert import fleet
 
+    # Older versions have but the class that theirs is made of.
+    error = getattr(distributed.client, "FutureCancelledError", CancelledError)
+
     class Future:
         def result(self) -> None:
-            raise distributed.client.FutureCancelledError("part", "scheduler-connection-lost")
+            raise error("part", "scheduler-connection-lost")
 
     with pytest.raises(ConvertError, match="the scheduler is gone"):
         fleet._result(Future())
@@ -287,6 +291,31 @@ def test_workers_on_this_machine_leave_ctrl_c_to_the_command() -> None:
     with fleet._client(Fleet(workers=1), pytest.fail) as client:
         (handler,) = client.run(lambda: signal.getsignal(signal.SIGINT)).values()
     assert handler == signal.SIG_IGN
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        {"preload": "preloaded.py"},
+        {"preload": None},
+        {"preload": ["preloaded.py"], "preload-argv": ["one"]},
+        {"preload": ["preloaded.py"], "preload-argv": [["one"]]},
+    ],
+    ids=str,
+)
+def test_what_settings_have_workers_run_at_their_start_goes_in_front(
+    config: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dask = pytest.importorskip("dask")
+    preloading = pytest.importorskip("distributed.preloading")
+    from protogen.convert import fleet
+
+    monkeypatch.setattr(preloading, "_import_module", lambda name, folder: None)
+    theirs = ["preloaded.py"] if config["preload"] else []
+    with dask.config.set({f"distributed.worker.{key}": item for key, item in config.items()}):
+        found = fleet._preloads()
+    loaded = preloading.process_preloads(None, found["preload"], found["preload_argv"])
+    assert [item.name for item in loaded] == [*theirs, fleet._DEAF]
 
 
 _DYING = """

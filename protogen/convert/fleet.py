@@ -7,7 +7,7 @@ record of the folder says that it is done; then other files that earlier runs ma
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -20,15 +20,11 @@ from protogen.convert.begun import begin, finish, is_begun, part_name
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.inputs import Source, format_of
 from protogen.convert.outputs import remove
-from protogen.convert.parts import (
-    Part,
-    PartDone,
-    Work,
-    convert_part,
-    read_marker,
-)
+from protogen.convert.parts import Part, PartDone, Work, convert_part, read_marker
 from protogen.convert.ranges import START
 from protogen.convert.run import (
+    Advance,
+    Complain,
     Fleet,
     Job,
     Result,
@@ -43,9 +39,6 @@ from protogen.version import VERSION
 _DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """What workers on this machine run at their start. Ctrl-C is for the command, which ends them; they
 would print a traceback each."""
-
-Complain = Callable[[str], None]
-Advance = Callable[[int], None]
 
 
 @dataclass(slots=True)
@@ -198,7 +191,6 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
             _check_workers(client, fleet.address, complain)
             yield client
         return
-    preloads = needed("dask", "--dask").config.get("distributed.worker.preload")
     # A worker's memory is what its decoders and row groups hold: the same for parts of any size.
     with (
         distributed.LocalCluster(
@@ -207,11 +199,26 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
             dashboard_address=None,
             # Dask opens a port even so: any that is free, not one that it complains about.
             scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
-            preload=[*preloads, _DEAF],
+            **_preloads(),
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
         yield client
+
+
+def _preloads() -> dict[str, Any]:
+    """What workers on this machine run at their start: what Dask's settings say, and then ours.
+
+    A setting may be one text, as that of an environment variable is. Where arguments are given one
+    by one, there are as many as there are preloads.
+    """
+    config = needed("dask", "--dask").config
+    given = config.get("distributed.worker.preload") or []
+    arguments = config.get("distributed.worker.preload-argv") or []
+    preloads = [given] if isinstance(given, str) else list(given)
+    if arguments and not isinstance(arguments[0], str):
+        arguments = [*arguments, []]
+    return {"preload": [*preloads, _DEAF], "preload_argv": arguments}
 
 
 def _check_workers(client: Any, address: str, complain: Complain) -> None:
