@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from threading import Thread
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 from cli_support import SINK, run, start
@@ -23,7 +23,7 @@ from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.capture_names import names_of
 from protogen.convert.chunks import Chunk, Clock, joined
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Packing, Source, format_of, opened
+from protogen.convert.inputs import Packing, Source, expanded, format_of, opened
 from protogen.convert.kinds import InputKind
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import log_pieces
@@ -512,6 +512,66 @@ class TestCommand:
         assert (none.exit_code, "*.raw: there is no such file" in none.output) == (2, True)
         wrong = run("convert", str(schema), "nowhere://*.bin", *self.options(schema))
         assert (wrong.exit_code, "Protocol not known" in wrong.output) == (2, True)
+
+
+class TestUrls:
+    """What needs no file of a capture."""
+
+    @pytest.fixture
+    def hosted(self, monkeypatch: pytest.MonkeyPatch) -> Any:
+        """A file system whose URLs begin with a host, as those of FTP."""
+        fsspec = pytest.importorskip("fsspec")
+        registry = pytest.importorskip("fsspec.registry")
+
+        class Hosted(fsspec.AbstractFileSystem):  # type: ignore[name-defined,misc]
+            protocol = "hosted"
+            root_marker = "/"
+            cachable = False
+            facts: ClassVar[dict[str, Any]] = {}
+
+            @classmethod
+            def _strip_protocol(cls, path: str) -> str:
+                return "/" + path.partition("://")[2].partition("/")[2] if "://" in path else path
+
+            @staticmethod
+            def _get_kwargs_from_urls(path: str) -> dict[str, str]:
+                return {"host": path.partition("://")[2].partition("/")[0]}
+
+            def __init__(self, host: str, **options: Any) -> None:
+                super().__init__(**options)
+                assert host == "me@robot"
+
+            def ls(self, path: str, detail: bool = True, **options: Any) -> list[Any]:
+                names = ("/runs/b.bin", "/runs/a.bin", "/runs/c.txt")
+                return [{"name": it, "type": "file", "size": 1, **self.facts} for it in names]
+
+        monkeypatch.setitem(registry._registry, "hosted", Hosted)
+        return Hosted
+
+    def test_of_many_keep_their_host(self, hosted: Any) -> None:
+        found = expanded(["hosted://me@robot/runs/*.bin"])
+        assert found == ["hosted://me@robot/runs/a.bin", "hosted://me@robot/runs/b.bin"]
+        assert [Source(place).stamp() for place in found] == [(1, None)] * 2
+
+    @pytest.mark.parametrize(
+        "word", ["ETag", "Last-Modified", "mtime", "modify", "modificationTime", "sha"]
+    )
+    def test_tell_what_differs(self, hosted: Any, word: str) -> None:
+        hosted.facts[word] = "then"
+        assert Source("hosted://me@robot/runs/a.bin").stamp() == (1, "then")
+
+    def test_of_many_are_no_folders(self, tmp_path: Path) -> None:
+        pytest.importorskip("fsspec")
+        (tmp_path / "run.bin").touch()
+        (tmp_path / "folder.bin").mkdir()
+        assert expanded([f"file://{tmp_path}/*.bin"]) == [f"file://{tmp_path}/run.bin"]
+        (tmp_path / "run.bin").unlink()
+        with pytest.raises(ConvertError, match="there is no such file"):
+            expanded([f"file://{tmp_path}/*.bin"])
+
+    @pytest.mark.parametrize("url", ["https://robot/run.bin?key=a*b", "cached::s3://robot/*.bin"])
+    def test_may_have_an_asterisk_that_stands_for_itself(self, url: str) -> None:
+        assert expanded([url]) == [url]
 
 
 def test_what_a_storage_says_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:

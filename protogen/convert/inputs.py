@@ -121,16 +121,30 @@ def expanded(places: Iterable[str]) -> list[str]:
 
 
 def _expanded(place: str) -> list[str]:
-    # What `::` joins, as a cache in front of a store, has names that lead to no file alone.
-    if "://" not in place or "*" not in place or "::" in place:
+    if not _is_pattern(place):
         return [place]
     fsspec = needed("fsspec.core", f"reading {place}")
     with _translated(place), _asked(place):
         filesystem, path = fsspec.url_to_fs(place)
-        found = sorted(filesystem.glob(path))
+        known = filesystem.glob(path, detail=True)
+    # Stores show a folder as something of its own.
+    found = sorted(name for name, facts in known.items() if facts.get("type") != "directory")
     if not found:
         raise ConvertError(f"{place}: there is no such file")
+    if place.endswith(path):  # Names have no host and no user, which may stand in front.
+        return [place.removesuffix(path) + name for name in found]
     return [filesystem.unstrip_protocol(name) for name in found]
+
+
+def _is_pattern(place: str) -> bool:
+    # What `::` joins, as a cache in front of a store, has names that lead to no file alone.
+    if "://" not in place or "::" in place:
+        return False
+    # Behind `?`, a `*` is a part of the address.
+    return "*" in (place.partition("?")[0] if place.startswith(_WEB) else place)
+
+
+_WEB = ("http://", "https://")
 
 
 @contextmanager
@@ -141,10 +155,13 @@ def _asked(url: str) -> Iterator[None]:
     except OSError:
         raise
     except Exception as error:
-        raise ConvertError(f"{url}: {error}") from None
+        raise ConvertError(f"{url}: {str(error) or type(error).__name__}") from None
 
 
-_VERSIONS = ("ETag", "etag", "mtime", "LastModified", "last_modified", "updated", "created")
+_VERSIONS = (
+    *("ETag", "etag", "Content-MD5", "sha", "mtime", "LastModified", "last_modified"),
+    *("Last-Modified", "updated", "modificationTime", "modify", "created"),
+)
 """What file systems call that which differs when a file changes, the most exact first."""
 
 
