@@ -381,13 +381,30 @@ def test_what_was_built_ahead_serves_where_no_compiler_is_any_more(
     with pytest.raises(NativeError, match="others can write to"):
         build()
     first.path.chmod(0o700)
-    with monkeypatch.context() as patch:
-        patch.setattr(building.platform, "machine", lambda: "another")
-        with pytest.raises(NativeError, match="no cc, gcc or clang"):
-            build()
+    for owner, name, other in (
+        (building.platform, "machine", lambda: "another"),
+        (sys.implementation, "_multiarch", "x86_64-linux-another"),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(owner, name, other, raising=False)
+            with pytest.raises(NativeError, match="no cc, gcc or clang"):
+                build()
     assert build().path == first.path
     monkeypatch.setenv("CC", "no-such-cc")
     with pytest.raises(NativeError, match="'no-such-cc', as CC says"):
+        build()
+
+
+def test_a_cache_that_can_not_be_looked_at_is_no_reason_to_end(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(self: Path) -> bool:
+        raise PermissionError(self)
+
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr(Path, "is_dir", refuse)
+    with pytest.raises(NativeError, match="no cc, gcc or clang"):
         build()
 
 

@@ -52,7 +52,7 @@ def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]
 
     `words`: what else it depends on. Raises NativeError.
     """
-    made_from = (VERSION, *words, sys.platform, platform.machine(), _digest(text))
+    made_from = (VERSION, *words, *_machine(), _digest(text))
     stem = f"{name}-{_digest(*made_from)[:24]}"
     try:
         found = compiler()
@@ -70,14 +70,20 @@ def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]
     return path, is_new
 
 
+def _machine() -> tuple[str, ...]:
+    """What loads a library: of several machines that share a cache, each has its own."""
+    # A word such as `x86_64-linux-musl`: other C libraries, and fewer bits, are others, too.
+    return sys.platform, platform.machine(), getattr(sys.implementation, "_multiarch", "")
+
+
 def _built_ahead(stem: str) -> Path | None:
     """The library that a compiler made while there was one, the newest of several."""
-    if not cache_folder().is_dir():
-        return None
-    built = safe_folder(cache_folder()).glob(f"{stem}-*{SUFFIX}")
     try:
+        if not cache_folder().is_dir():
+            return None
+        built = safe_folder(cache_folder()).glob(f"{stem}-*{SUFFIX}")
         path = max(built, key=lambda item: item.stat().st_mtime_ns, default=None)
-    except FileNotFoundError:  # Somebody cleans the cache.
+    except OSError:  # Somebody cleans the cache, or does not let us look there.
         return None
     if path is not None:
         check(path)
