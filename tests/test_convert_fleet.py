@@ -33,6 +33,7 @@ from protogen.convert.begun import MARKERS, marker_of  # noqa: E402
 from protogen.convert.decoding import column_decoders  # noqa: E402
 from protogen.convert.errors import ConvertError  # noqa: E402
 from protogen.convert.fleet import convert_fleet  # noqa: E402
+from protogen.convert.inputs import Source  # noqa: E402
 from protogen.convert.parts import (  # noqa: E402
     Part,
     PartDone,
@@ -197,6 +198,29 @@ def test_a_full_disk_is_told_by_the_name_of_the_folder(tmp_path: Path, monkeypat
         with pytest.raises(OSError, match="no space") as found:
             convert_part(work, Part("run", str(capture), "run", {}, None, 50, span, START))
         assert pickle.loads(pickle.dumps(found.value)).filename == str(tmp_path / "out")
+
+
+def test_parts_that_fit_are_not_looked_at_again() -> None:
+    """Else captures of thousands of parts would take time that grows with their square."""
+    from protogen.convert import fleet
+
+    class Counted(dict[int, PartDone]):
+        looks = 0
+
+        def get(self, place: int, other: Any = None) -> Any:
+            self.looks += 1
+            return super().get(place, other)
+
+    done, count = Counted(), 100
+    parts = [Part(f"run.{place}", "run.bin", "run", {}, None) for place in range(count)]
+    capture = fleet._Capture("run", Source("run.bin"), "", "", {}, parts, done)
+    frames = [START, *(Frame(place, 1) for place in range(count))]
+    for place in range(count):
+        assert not capture.is_done
+        done[place] = PartDone("", frames[place], frames[place + 1], Tally(), ())
+        assert not list(capture.wrong())
+    assert capture.is_done
+    assert done.looks < 3 * count
 
 
 def test_a_lost_scheduler_is_no_bug() -> None:

@@ -52,21 +52,24 @@ class _Capture:
     stamp: Mapping[str, Any]
     parts: list[Part]
     done: dict[int, PartDone] = field(default_factory=dict)
+    fitting: int = 0
+    """So many parts in front are done and right: they stay, and are not looked at again."""
 
     def wrong(self) -> Iterator[tuple[int, Part]]:
         """Parts that began elsewhere than where the part in front of them ended, with its end.
 
         Only those whose part in front is right itself are told.
         """
-        right = START
-        for place in range(len(self.parts)):
+        while self.fitting < len(self.parts):
+            place = self.fitting
             done = self.done.get(place)
             if done is None:
                 return
+            right = self.done[place - 1].exit if place else START
             if done.entry != right:
                 yield place, replace(self.parts[place], entry=right)
                 return
-            right = done.exit
+            self.fitting += 1
 
     @property
     def is_done(self) -> bool:
@@ -302,7 +305,10 @@ def _begin(job: Job, state: State, capture: _Capture) -> None:
     if not is_begun(job.folder, capture.name):
         names = [f"{part.name}.{job.format}" for part in capture.parts]
         tables = [table.name for table in job.tables.all_tables]
-        files = [f"{table}/{name}" for table in tables for name in names]
+        # There may be a million: in a new folder, none is looked for.
+        there = [table for table in tables if (job.folder / table).is_dir()]
+        files = [f"{table}/{name}" for table in there for name in names]
+        files = [file for file in files if (job.folder / file).exists()]
         check_room(job, state, files)
         check_owner(job, state, f"{capture.name}.{job.format}", files)
     begin(job.folder, capture.name, len(capture.parts))
