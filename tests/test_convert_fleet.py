@@ -41,7 +41,14 @@ from protogen.convert.parts import (  # noqa: E402
     convert_part,
     read_marker,
 )
-from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry  # noqa: E402
+from protogen.convert.ranges import (  # noqa: E402
+    END,
+    GREATEST,
+    START,
+    Frame,
+    RangeDecoder,
+    guess_entry,
+)
 from protogen.convert.run import Fleet, Job, convert, plan  # noqa: E402
 from protogen.convert.state import RECORD  # noqa: E402
 from protogen.convert.tables import tables_of  # noqa: E402
@@ -166,6 +173,19 @@ def test_ranges_meet_terabytes_behind_the_start() -> None:
     assert sum(batch.tally.bytes for batch in decoder.batches()) == decoder.exit.end - front
     assert middle < decoder.exit.end < size
     assert guess_entry(_Far(data), size, middle, 500, splitter.make) == decoder.exit
+
+
+def test_a_capture_is_as_large_as_parts_can_be_told_to_fit(tmp_path: Path) -> None:
+    from protogen.convert import fleet
+
+    (tmp_path / "run.bin").write_bytes(bytes(10))
+    job = job_of(RN1, "brain", tmp_path / "out")
+    source = Source(str(tmp_path / "run.bin"))
+    whole = fleet._planned(job, "run", source, {"size": GREATEST}, 1 << 40)
+    assert [part.span for part in whole.parts][-1] == (GREATEST - (1 << 40), GREATEST)
+    with pytest.raises(ConvertError, match=r"run\.bin has 8796093022209 bytes") as caught:
+        fleet._planned(job, "run", source, {"size": GREATEST + 1}, 1 << 40)
+    assert caught.value.hint
 
 
 def test_a_capture_that_became_shorter_is_an_error() -> None:

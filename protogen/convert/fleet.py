@@ -21,7 +21,7 @@ from protogen.convert.errors import ConvertError, needed
 from protogen.convert.inputs import Source, format_of
 from protogen.convert.outputs import remove
 from protogen.convert.parts import Part, PartDone, Work, convert_part, read_marker
-from protogen.convert.ranges import START
+from protogen.convert.ranges import GREATEST, START
 from protogen.convert.run import (
     Advance,
     Complain,
@@ -136,6 +136,11 @@ def _planned(
             str(format),
             stamp,
             [Part(name, place, name, whole, kind)],
+        )
+    if size > GREATEST:
+        raise ConvertError(
+            f"{source.place} has {size} bytes; parts are made of at most {GREATEST}",
+            "convert it without --dask, or cut it into several captures",
         )
     parts = []
     for number, start in enumerate(range(0, size, part_size)):

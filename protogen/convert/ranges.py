@@ -32,7 +32,9 @@ PIECE = 1 << 20
 _STEP = 1 << 16
 """The same where two decoders run side by side."""
 _SIZE_BITS = 21
-"""A frame has at most 1 MiB. So its place and size fit a number of 64 bits, up to 8 TiB."""
+"""A frame has at most 1 MiB. So its place and size fit a number of 64 bits, up to `GREATEST`."""
+GREATEST = 1 << (64 - _SIZE_BITS)
+"""The most bytes of a capture whose parts can be told to fit each other: 8 TiB."""
 
 
 @dataclass(frozen=True, slots=True)
