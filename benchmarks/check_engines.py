@@ -5,8 +5,8 @@ Run: python benchmarks/check_engines.py --megabytes 100 --processes 2
 The engines: construct, which is the reference, fast Python, and generated C where there is a
 compiler, byte by byte (push) and by buffers (feed). Every sender of every schema, dialect and
 framing has its share: clean, noisy and adversarial streams, at once and in portions. Ends with an
-AssertionError at the first difference; else writes benchmarks/equality.md. `check_columns.py` does
-the same for native columns.
+AssertionError at the first difference; else writes benchmarks/equality.md, from 100 MB on.
+`check_columns.py` does the same for native columns.
 """
 
 from __future__ import annotations
