@@ -101,22 +101,32 @@ differ, the busier it was. The targets are {targets}.
 """
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--megabytes", type=int, default=64)
-    parser.add_argument("--rounds", type=int, default=5)
+def add_folder(parser: argparse.ArgumentParser) -> None:
+    """Let the folder be chosen in which files are written."""
     parser.add_argument(
         "--folder",
         default=MEMORY if Path(MEMORY).is_dir() else None,
         help="where captures and results are for the time being; memory, where there is such",
     )
+
+
+def kind_of(folder: str | None) -> str:
+    """What such a folder is, in words."""
+    return "memory" if folder == MEMORY else "a disk's folder"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--megabytes", type=int, default=64)
+    parser.add_argument("--rounds", type=int, default=5)
+    add_folder(parser)
     options = parser.parse_args()
     with TemporaryDirectory(dir=options.folder) as folder:
         head = _HEAD.format(
             megabytes=options.megabytes,
             rounds=options.rounds,
             python=platform.python_version(),
-            folder="memory" if options.folder == MEMORY else "a disk's folder",
+            folder=kind_of(options.folder),
             targets=", ".join(f"{least} MB/s for {format}" for format, least in LEAST.items()),
             formats=" | ".join(FORMATS),
             rulers=" | ".join("---:" for _ in FORMATS),

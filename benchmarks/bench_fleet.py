@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 from bench_columns import CASES, Case, frames, write_page  # noqa: E402
-from bench_convert import DIFFERENT, MEMORY  # noqa: E402
+from bench_convert import DIFFERENT, add_folder, kind_of  # noqa: E402
 
 import protogen  # noqa: E402
 from protogen.convert.kinds import OutputFormat  # noqa: E402
@@ -118,17 +118,14 @@ processor, which is what [the page on conversions](convert.md) has of the comman
 def _rows(options: argparse.Namespace, folder: Path) -> Iterator[str]:
     import distributed
 
+    from protogen.convert.fleet import LOCAL_CLUSTER
+
     size, part_size = options.megabytes * 1_000_000, options.part_size * 1_000_000
     with ExitStack() as opened:
         clients = {}
         for number in NUMBERS:
             cluster = opened.enter_context(
-                distributed.LocalCluster(
-                    n_workers=number,
-                    threads_per_worker=1,
-                    dashboard_address=None,
-                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
-                )
+                distributed.LocalCluster(n_workers=number, **LOCAL_CLUSTER)
             )
             clients[number] = opened.enter_context(
                 distributed.Client(cluster, set_as_default=False)
@@ -143,11 +140,7 @@ def main() -> int:
     parser.add_argument("--megabytes", type=int, default=256)
     parser.add_argument("--part-size", type=int, default=16, metavar="MB")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument(
-        "--folder",
-        default=MEMORY if Path(MEMORY).is_dir() else None,
-        help="where captures and results are for the time being; memory, where there is such",
-    )
+    add_folder(parser)
     options = parser.parse_args()
     with TemporaryDirectory(dir=options.folder) as folder:
         head = _HEAD.format(
@@ -156,7 +149,7 @@ def main() -> int:
             rounds=options.rounds,
             python=platform.python_version(),
             cores=os.cpu_count(),
-            folder="memory" if options.folder == MEMORY else "a disk's folder",
+            folder=kind_of(options.folder),
         )
         write_page(OUT, head, _rows(options, Path(folder)))
     return 0

@@ -32,7 +32,7 @@ from protogen.convert.batches import Tally  # noqa: E402
 from protogen.convert.begun import MARKERS, marker_of  # noqa: E402
 from protogen.convert.decoding import column_decoders  # noqa: E402
 from protogen.convert.errors import ConvertError  # noqa: E402
-from protogen.convert.fleet import convert_fleet  # noqa: E402
+from protogen.convert.fleet import LOCAL_CLUSTER, convert_fleet  # noqa: E402
 from protogen.convert.inputs import Source  # noqa: E402
 from protogen.convert.parts import (  # noqa: E402
     Part,
@@ -58,12 +58,6 @@ from protogen.version import VERSION  # noqa: E402
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 RN1 = ROOT / "schemas" / "rn1.yaml"
-CLUSTER: dict[str, Any] = {
-    "threads_per_worker": 1,
-    "dashboard_address": None,
-    "scheduler_kwargs": {"dashboard_address": "127.0.0.1:0"},
-}
-"""Of every cluster: a thread for each worker; and where another has its port, it does not warn."""
 
 # --- ranges ---------------------------------------------------------------------------------------
 
@@ -410,7 +404,7 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
     died.mkdir()
     preload = tmp_path / "dying.py"
     preload.write_text(_DYING.format(folder=str(died)))
-    with distributed.LocalCluster(n_workers=2, preload=[str(preload)], **CLUSTER) as cluster:
+    with distributed.LocalCluster(n_workers=2, preload=[str(preload)], **LOCAL_CLUSTER) as cluster:
         fleet = ["--dask", cluster.scheduler_address, "--part-size", "1"]
         done = run(*arguments(captures, fleets, "large.bin"), *fleet)
     assert done.exit_code == 0, done.output
@@ -465,7 +459,7 @@ def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) 
     (tmp_path / "run.bin").write_bytes(data)
     monkeypatch.setattr(parts, "lead_of", lambda tables: 0)
     out = tmp_path / "out"
-    with distributed.LocalCluster(n_workers=1, processes=False, **CLUSTER) as cluster:
+    with distributed.LocalCluster(n_workers=1, processes=False, **LOCAL_CLUSTER) as cluster:
         job = job_of(path, "station", out)
         scheduler = Fleet(cluster.scheduler_address, None, 97)
         named = plan(job, [str(tmp_path / "run.bin")])
@@ -489,7 +483,7 @@ def test_what_a_fleet_did_not_finish_is_not_left_beside_it(
     out = tmp_path / "out"
     job = job_of(path, "station", out)
     named = plan(job, [str(tmp_path / "run.bin")])
-    with distributed.LocalCluster(n_workers=1, processes=False, **CLUSTER) as cluster:
+    with distributed.LocalCluster(n_workers=1, processes=False, **LOCAL_CLUSTER) as cluster:
 
         def convert_in_parts(size: int) -> list[Any]:
             scheduler = Fleet(cluster.scheduler_address, None, size)

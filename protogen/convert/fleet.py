@@ -36,6 +36,13 @@ from protogen.convert.run import (
 from protogen.convert.state import Done, State
 from protogen.version import VERSION
 
+LOCAL_CLUSTER: dict[str, Any] = {
+    "threads_per_worker": 1,
+    "dashboard_address": None,
+    # Dask opens a port even so: any that is free, not one that it complains about.
+    "scheduler_kwargs": {"dashboard_address": "127.0.0.1:0"},
+}
+"""How a cluster on this machine is set up, however many workers it has."""
 _DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """What workers on this machine run at their start. Ctrl-C is for the command, which ends them; they
 would print a traceback each."""
@@ -202,12 +209,7 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
     # A worker's memory is what its decoders and row groups hold: the same for parts of any size.
     with (
         distributed.LocalCluster(
-            n_workers=fleet.workers,
-            threads_per_worker=1,
-            dashboard_address=None,
-            # Dask opens a port even so: any that is free, not one that it complains about.
-            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
-            **_preloads(),
+            n_workers=fleet.workers, **LOCAL_CLUSTER, **_preloads()
         ) as cluster,
         distributed.Client(cluster) as client,
     ):

@@ -159,8 +159,18 @@ def _asked(url: str) -> Iterator[None]:
 
 
 _VERSIONS = (
-    *("ETag", "etag", "Content-MD5", "sha", "mtime", "LastModified", "last_modified"),
-    *("Last-Modified", "updated", "modificationTime", "modify", "created"),
+    "ETag",
+    "etag",
+    "Content-MD5",
+    "sha",
+    "mtime",
+    "LastModified",
+    "last_modified",
+    "Last-Modified",
+    "updated",
+    "modificationTime",
+    "modify",
+    "created",
 )
 """What file systems call that which differs when a file changes, the most exact first."""
 

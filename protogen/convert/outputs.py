@@ -70,11 +70,16 @@ def write_whole(path: Path, data: bytes, token: str = "") -> None:
         _settle(hidden)
         hidden.replace(path)
     except BaseException as error:
-        if isinstance(error, OSError) and error.filename is None:
-            error.filename = str(path)  # As when the disk is full.
+        name_place(error, path)
         with suppress(OSError):
             hidden.unlink()
         raise
+
+
+def name_place(error: BaseException, place: Path) -> None:
+    """Give an error of the system that tells no file this one, as when the disk is full."""
+    if isinstance(error, OSError) and error.filename is None:
+        error.filename = str(place)
 
 
 def remove(folder: Path, relatives: Iterable[str]) -> None:

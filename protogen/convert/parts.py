@@ -22,7 +22,7 @@ from protogen.convert.begun import marker_of
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, open_stream, opened
 from protogen.convert.kinds import InputKind
-from protogen.convert.outputs import Pending, write_whole
+from protogen.convert.outputs import Pending, name_place, write_whole
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry
 from protogen.convert.tables import Tables, tables_of
 from protogen.convert.writers import write_all
@@ -111,8 +111,7 @@ def convert_part(work: Work, part: Part) -> PartDone:
         pending.discard()
         if isinstance(error, EOFError):  # It became shorter since its parts were planned.
             raise ConvertError(f"{part.place}: {error}", "convert it again") from None
-        if isinstance(error, OSError) and error.filename is None:
-            error.filename = work.folder  # As when the disk is full.
+        name_place(error, folder)
         raise
     text = json.dumps(done.as_json(part.stamp))
     write_whole(marker_of(folder, part.name), text.encode(), token=uuid4().hex[:12])

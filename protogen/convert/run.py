@@ -14,7 +14,7 @@ from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, expanded, opened
 from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.locking import alone
-from protogen.convert.outputs import Pending, forget_torn, remove
+from protogen.convert.outputs import Pending, forget_torn, name_place, remove
 from protogen.convert.state import Done, State
 from protogen.convert.tables import Tables, tables_of
 from protogen.convert.writers import first_files, open_writer, require, write_all
@@ -152,8 +152,7 @@ def _convert_one(
             forget_torn(job.folder, first_files(job.format, name, job.tables))
     except BaseException as error:
         pending.discard()
-        if isinstance(error, OSError) and error.filename is None:
-            error.filename = str(job.folder)  # As when the disk is full.
+        name_place(error, job.folder)
         raise
     return Done(stamp, files, tally, str(capture.format), lost)
 
