@@ -189,9 +189,13 @@ def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
 
     class Closing(NativeEngine):
         def run(self, data: memoryview, part: int, end: int) -> int:
-            if end >= 3000:
+            if end > 1000:
+                assert first.wait(PATIENCE)
+            if end >= 3000 and current_thread() is not main_thread():
                 assert suspended.wait(PATIENCE)
-            return super().run(data, part, end)
+            taken = super().run(data, part, end)
+            first.set()
+            return taken
 
         def start(self, offset: int, sequence: int = 0) -> None:
             super().start(offset, sequence)
@@ -200,7 +204,7 @@ def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
                 reading.close()
                 closed.set()
 
-    suspended, closed, threads = Event(), Event(), []
+    first, suspended, closed, threads = Event(), Event(), Event(), []
     library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
     data = min(material_of(RN1, "brain").frames, key=len) * 5000
     reading = Parts(memoryview(data), [Closing(library) for _ in range(6)], 1000).tables(2)
@@ -212,6 +216,29 @@ def test_a_reading_may_be_closed_by_one_of_its_own_threads() -> None:
         if thread.name.startswith("protogen-capture"):
             thread.join(PATIENCE)
     assert not list(reading)
+
+
+@pytest.mark.parametrize("held", [0, 1])
+def test_who_takes_the_tables_decodes_as_long_as_there_is_nothing_to_take(held: int) -> None:
+    """The only other thread waits, in the first part or in one behind it, until that was seen."""
+
+    class Waiting(NativeEngine):
+        def run(self, data: memoryview, part: int, end: int) -> int:
+            if current_thread() is main_thread():
+                decoded.append(end)
+                if len(decoded) == 2:
+                    seen.set()
+            elif end > held * 1000:
+                assert seen.wait(PATIENCE)
+            return super().run(data, part, end)
+
+    seen, decoded = Event(), []
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    data = min(material_of(RN1, "brain").frames, key=len) * 5000
+    engines = [Waiting(library) for _ in range(4)]
+    found = gathered(Parts(memoryview(data), engines, 1000).tables(2), None, 1)
+    assert len(decoded) >= 2
+    assert_same_tables(found, columns(data, protocol_of(RN1), "brain"))
 
 
 def test_pages_of_a_part_are_given_back_also_where_it_has_no_frame(

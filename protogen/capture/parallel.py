@@ -18,6 +18,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from threading import Lock, get_ident
@@ -31,7 +32,7 @@ from protogen.capture.tables import Tables
 ROWS = 6 << 20
 """Bytes of rows that a part should have: many for what a part costs by itself, and few for what all
 parts at hand take."""
-PARTS = range(1 << 17, (8 << 20) + 1)
+PARTS = range(1 << 14, (8 << 20) + 1)
 """Bytes that a part may have: few where short frames have long rows."""
 ROOM = 64 << 20
 """Bytes of rows that a part may have before its turn has come."""
@@ -134,9 +135,10 @@ class _Meeting:
 class Parts:
     """Reads a capture in parts, some of them ahead.
 
-    The threads that decode also fit the parts together, each whenever it has decoded one: whoever
-    takes the tables waits for them, and does little else. They never wait for whoever takes the
-    tables, who may never come back: without a decoder for the next part they end, to be begun anew.
+    Whoever takes the tables decodes parts, too, until there are some to take: to be woken for each
+    of them takes longer than to look. The threads that decode beside that never wait for whoever
+    takes the tables, who may never come back: without a decoder for the next part they end, to be
+    begun anew. Whoever has decoded a part fits together what can be.
     """
 
     def __init__(
@@ -172,14 +174,16 @@ class Parts:
         self._process = os.getpid()
 
     def tables(self, workers: int) -> Iterator[Tables]:
-        """All tables, in order."""
+        """All tables, in order. So many threads decode, of which one is whoever takes them."""
         self._sample()
         self._starts = range(0, max(1, len(self._data)), self._part)
         own: set[int] = set()
-        pool = ThreadPoolExecutor(workers, "protogen-capture", lambda: own.add(get_ident()))
+        others = workers - 1
+        threads = max(1, others)
+        pool = ThreadPoolExecutor(threads, "protogen-capture", lambda: own.add(get_ident()))
         is_closed = False
         try:
-            for _ in range(workers):
+            for _ in range(others):
                 self._let_work(pool)
             yield from self._in_order(pool)
         except GeneratorExit:
@@ -205,7 +209,7 @@ class Parts:
         if len(self._data) > self._part:
             engine = self._free[0]
             engine.start(0)
-            taken, tables = engine.step(self._data[: min(self._part, _SAMPLE)])
+            taken, tables = engine.step(self._data[: min(self._given or _SAMPLE, _SAMPLE)])
             self._rate = (tables.events, max(1, tables.size))
             if self._given is None:
                 wanted = ROWS * taken // max(1, tables.nbytes)
@@ -244,14 +248,24 @@ class Parts:
         return len(self._runs) > 1 and self._runs[1].is_decoded
 
     def _await(self, awaited: Callable[[], bool]) -> None:
-        """Wait until it is so. Raises what went wrong in a thread."""
+        """Decode parts until it is so, or none is left to begin; then wait.
+
+        Raises what went wrong in a thread.
+        """
         self._check_process()
+        while not self._has_come(awaited) and (run := self._begin()) is not None:
+            self._add(run)
         with self._lock:
             self._awaited = awaited
             self._tell()
         self._come.acquire()
         if self._error is not None:
             raise self._error
+
+    def _has_come(self, awaited: Callable[[], bool]) -> bool:
+        """Whether it is so, or will never be, as something went wrong."""
+        with self._lock:
+            return self._error is not None or awaited()
 
     def _check_process(self) -> None:
         """Raise CaptureError where nobody is there to wait for, and locks may stay as they are."""
@@ -272,12 +286,9 @@ class Parts:
             self._let_work(pool)
 
     def _let_work(self, pool: ThreadPoolExecutor) -> None:
-        """Begin a thread; or do its work here, where Python ends and begins none any more."""
-        try:
+        """Begin a thread. Where Python ends and begins none any more, it goes without."""
+        with suppress(RuntimeError):
             task = pool.submit(self._work)
-        except RuntimeError:
-            self._work()
-        else:
             self._tasks = [task, *(task for task in self._tasks if not task.done())]
 
     def _go_on(self, run: _Run, pool: ThreadPoolExecutor) -> Iterator[Tables]:
@@ -309,21 +320,25 @@ class Parts:
                 yield tables
             window *= 2
 
-    # --- the threads -----------------------------------------------------------------------------
+    # --- the threads, and whoever takes the tables while there are none ---------------------------
 
     def _work(self) -> None:
         """Decode one part after another, and fit together what can be."""
         try:
-            while (run := self._begin()) is not None:
-                self._decode(run)
-                with self._lock:
-                    run.is_decoded = True
-                    self._tell()
-                self._join()
+            while (run := self._begin(ending=1)) is not None:
+                self._add(run)
         except BaseException as error:
             with self._lock:
                 self._error = error
                 self._tell()
+
+    def _add(self, run: _Run) -> None:
+        """Decode a part, and fit together what can be then."""
+        self._decode(run)
+        with self._lock:
+            run.is_decoded = True
+            self._tell()
+        self._join()
 
     def _tell(self) -> None:
         """Wake who waits, if that has come, or something went wrong."""
@@ -331,11 +346,14 @@ class Parts:
             self._awaited = None
             self._come.release()
 
-    def _begin(self) -> _Run | None:
-        """The next part; None if none is left, or wanted, or there is no decoder for it now."""
+    def _begin(self, ending: int = 0) -> _Run | None:
+        """The next part; None if none is left, or wanted, or there is no decoder for it now.
+
+        `ending`: threads that end then.
+        """
         with self._lock:
             if self._is_over or not (self._free and self._starts):
-                self._ended += 1
+                self._ended += ending
                 return None
             start, self._starts = self._starts[0], self._starts[1:]
             end = min(len(self._data), start + self._part)

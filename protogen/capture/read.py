@@ -35,8 +35,8 @@ def columns(
     `source` is a path, whose file is mapped into memory, bytes, or an open binary file. `protocol`
     is a schema's name or path, or the resolved protocol. `engine` is `native`, generated C that the
     system's compiler compiles once, or `python`; None: native where there is a compiler. `workers`
-    is how many threads decode, where the engine is native and the capture is in memory or in a
-    file; the result is always the same.
+    is how many threads decode, the caller's among them, where the engine is native and the capture
+    is in memory or in a file; the result is always the same.
 
     Raises CaptureError, SchemaError, and MissingPackageError where NumPy is not installed.
     """
@@ -102,7 +102,8 @@ class _Reading:
     def tables(self, chunk: int | None, workers: int) -> Iterator[Tables]:
         """All tables, in order."""
         if workers > 1 and self.in_parts and isinstance(self.capture, memoryview):
-            engines = [self.maker() for _ in range(workers + 3)]
+            # While each decodes a part, another may wait for whoever takes the tables.
+            engines = [self.maker() for _ in range(2 * workers)]
             yield from Parts(self.capture, engines, chunk).tables(workers)
             return
         engine: Engine = self.maker()
