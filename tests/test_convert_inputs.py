@@ -17,8 +17,9 @@ from threading import Thread
 from typing import Any, ClassVar
 
 import pytest
-from cli_support import SINK, run, start
+from cli_support import ROOT, SINK, run, start
 
+from protogen.api import load
 from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.capture_names import names_of
 from protogen.convert.chunks import Chunk, Clock, joined
@@ -587,6 +588,40 @@ def test_what_a_storage_says_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory.MemoryFileSystem, "info", refuse)
     with pytest.raises(ConvertError, match=r"memory://run\.bin: Unable to locate credentials"):
         Source("memory://run.bin").stamp()
+
+
+def test_what_a_storage_says_while_it_is_read_is_no_bug(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where credentials expire: by one machine, and by a part that a worker makes."""
+    memory = pytest.importorskip("fsspec.implementations.memory")
+    parts = pytest.importorskip("protogen.convert.parts")
+
+    class ClientError(Exception):
+        pass
+
+    class Expiring(memory.MemoryFile):  # type: ignore[name-defined,misc]
+        def read(self, size: int = -1) -> bytes:
+            if self.tell() < 1 << 16:
+                return super().read(min(size, 1 << 16))
+            raise ClientError("The provided token has expired")
+
+        def readinto(self, buffer: Any) -> int:
+            data = self.read(len(buffer))
+            buffer[: len(data)] = data
+            return len(data)
+
+    data = FRAME * 100_000
+    storage = memory.MemoryFileSystem()
+    monkeypatch.setitem(storage.store, "/run3.bin", Expiring(storage, "/run3.bin", data))
+    said = r"memory://run3\.bin: The provided token has expired"
+    with pytest.raises(ConvertError, match=said):
+        read("memory://run3.bin")
+    work = parts.Work(load(ROOT / "schemas" / "rflex.yaml"), "flex", str(tmp_path))
+    span = (0, len(data))
+    part = parts.Part("run3", "memory://run3.bin", "run3", {}, None, len(data), span, parts.START)
+    with pytest.raises(ConvertError, match=said):
+        parts.convert_part(work, part)
 
 
 def test_endless_lines_are_no_text() -> None:

@@ -32,6 +32,7 @@ from protogen.convert.errors import ConvertError, needed
 from protogen.convert.kinds import InputKind
 from protogen.convert.packing import SUFFIXES, Packing, packing_of, unpacking
 from protogen.convert.recorded import record_pieces
+from protogen.convert.stored import asked, open_stored
 from protogen.convert.textlog import BEGIN, Complain, log_pieces
 from protogen.convert.texts import decoded, encoding_of, lines_of
 
@@ -124,7 +125,7 @@ def _expanded(place: str) -> list[str]:
     if not _is_pattern(place):
         return [place]
     fsspec = needed("fsspec.core", f"reading {place}")
-    with _translated(place), _asked(place):
+    with _translated(place), asked(place):
         filesystem, path = fsspec.url_to_fs(place)
         known = filesystem.glob(path, detail=True)
     # Stores show a folder as something of its own.
@@ -147,17 +148,6 @@ def _is_pattern(place: str) -> bool:
 _WEB = ("http://", "https://")
 
 
-@contextmanager
-def _asked(url: str) -> Iterator[None]:
-    """Each storage's package has errors of its own, as for missing credentials."""
-    try:
-        yield
-    except OSError:
-        raise
-    except Exception as error:
-        raise ConvertError(f"{url}: {str(error) or type(error).__name__}") from None
-
-
 _VERSIONS = (
     "ETag",
     "etag",
@@ -177,7 +167,7 @@ _VERSIONS = (
 
 def _url_stamp(url: str) -> tuple[int | None, str | None]:
     fsspec = needed("fsspec.core", f"reading {url}")
-    with _asked(url):
+    with asked(url):
         filesystem, path = fsspec.url_to_fs(url)
         known = filesystem.info(path)
     version = next((known[word] for word in _VERSIONS if known.get(word) is not None), None)
@@ -241,16 +231,7 @@ def open_stream(place: str) -> Iterator[BinaryIO]:
     if place == STANDARD_INPUT:
         yield cast(BinaryIO, sys.stdin.buffer)
         return
-    if "://" in place:
-        fsspec = needed("fsspec", f"reading {place}")
-        try:
-            file = fsspec.open(place, "rb")
-        except (ValueError, ImportError) as error:
-            raise ConvertError(f"{place}: {error}") from None
-        with file as stream:
-            yield stream
-        return
-    with Path(place).open("rb", buffering=0) as stream:
+    with open_stored(place) if "://" in place else Path(place).open("rb", buffering=0) as stream:
         yield stream
 
 

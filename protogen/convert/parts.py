@@ -12,9 +12,9 @@ import pickle
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from io import BufferedReader
+from io import BufferedReader, RawIOBase
 from pathlib import Path
-from typing import Any, BinaryIO, cast
+from typing import Any, cast
 from uuid import uuid4
 
 from protogen.convert.batches import Tally, batches_of
@@ -158,8 +158,9 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
 
     make = column_decoders(tables, spec, work.engine)
     tally = Tally()
-    with open_stream(part.place) as opened_stream:
-        stream = _seekable(opened_stream)
+    with open_stream(part.place) as raw:
+        # Its `read` gives as many bytes as there are.
+        stream = BufferedReader(cast(RawIOBase, raw), 1 << 16)
         entry = part.entry
         if entry is None:
             entry = guess_entry(stream, part.size, part.span[0], lead_of(tables), make)
@@ -172,10 +173,3 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
 def lead_of(tables: Tables) -> int:
     """How many bytes before a range the decoder begins that is to guess its entry."""
     return max(_LEAST_LEAD, 4 * tables.sender.framing.greatest)
-
-
-def _seekable(stream: BinaryIO) -> BinaryIO:
-    """A stream whose `read` gives as many bytes as there are."""
-    if hasattr(stream, "cache"):  # one of fsspec's
-        return stream
-    return cast(BinaryIO, BufferedReader(stream, 1 << 16))
