@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
 import sys
 import warnings
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
 
 import handwritten_streams
 import pytest
@@ -22,8 +24,16 @@ from hypothesis import strategies as st
 from test_recovery import drawn_pieces
 from tooling import require_tool
 
-from protogen.capture import CaptureError, SlowCaptureWarning, Tables, batches, columns, engines
-from protogen.capture.gather import gathered
+from protogen.capture import (
+    CaptureError,
+    SlowCaptureWarning,
+    Tables,
+    batches,
+    columns,
+    engines,
+    gather,
+)
+from protogen.capture.gather import Gathering, gathered
 from protogen.capture.native import NativeEngine, library_of
 from protogen.native import build as building
 from protogen.native import cache, compiler
@@ -126,6 +136,46 @@ def test_any_mixture_in_any_pieces_has_the_tables_that_python_fills(
     assert_same_tables(
         gathered([*found, *engine.flush()], None, 1), python_tables(path, sender, stream)
     )
+
+
+@EVERY_SENDER
+@settings(max_examples=max(6, EXAMPLES // 12))
+@given(data=st.data())
+def test_rows_may_be_written_where_they_stay(path: Path, sender: str, data: st.DataObject) -> None:
+    """Whatever was foreseen: too few rows, too many, or those of other messages."""
+    stream = pieces_joined(data.draw(drawn_pieces(material_of(path, sender)))).data
+    stream *= 1 + 20_000 // max(1, len(stream))
+    chunk = data.draw(st.integers(100, 9000))
+    budget = data.draw(st.sampled_from([300, 1 << 20]))
+    total = data.draw(st.sampled_from([None, len(stream), len(stream) // 3 + 1]))
+    whole = Gathering(total)
+    library = library_of(protocol_of(path), protocol_of(path).sender(sender))
+    engine = NativeEngine(library, budget, whole)
+    for start in range(0, len(stream), chunk):
+        for piece in engine.feed(stream[start : start + chunk]):
+            whole.add(piece)
+        of_any = st.dictionaries(st.integers(0, library.tables - 1), st.floats(0, 20))
+        if data.draw(st.booleans()):
+            whole.rates = data.draw(of_any)
+    for piece in engine.flush():
+        whole.add(piece)
+    assert_same_tables(whole.tables, python_tables(path, sender, stream))
+
+
+def test_hardly_any_rows_are_copied(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is read at first tells how many there will be; the others are written in place."""
+    copied: list[int] = []
+
+    def move(place: int, source: int, size: int) -> None:
+        copied.append(size)
+        ctypes.memmove(place, source, size)
+
+    monkeypatch.setattr(gather, "ctypes", SimpleNamespace(memmove=move))
+    data = stream_of(material_of(RN1, "brain"), Random(1), 2000).data
+    data *= (40 << 20) // len(data)
+    found = columns(data, protocol_of(RN1), "brain", engine="native")
+    assert found.nbytes > 40 << 20
+    assert sum(copied) < found.nbytes // 8
 
 
 PARTS_LIKE_VARIABLES = """

@@ -27,9 +27,11 @@ from hypothesis import strategies as st
 from test_recovery import drawn_pieces
 from tooling import require_tool
 
-from protogen.capture import batches, columns, gather, native, parallel
+from protogen.capture import batches, columns, gather, parallel
+from protogen.capture import memory as lending
 from protogen.capture.gather import gathered
-from protogen.capture.native import Blocks, Memory, NativeEngine, library_of
+from protogen.capture.memory import Blocks, Memory
+from protogen.capture.native import NativeEngine, library_of
 from protogen.capture.parallel import ROOM, ROWS, Parts
 from protogen.native.library import WORDS, Library
 
@@ -92,6 +94,51 @@ def test_parts_of_any_mixture_fit_together(path: Path, sender: str, data: st.Dat
     check(
         path, sender, stream, part, budget=budget, room=data.draw(st.sampled_from([0, 100, ROOM]))
     )
+
+
+def parts_of_some_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let readings be in parts whose sizes follow the rows that small streams have."""
+    monkeypatch.setattr(parallel, "ROWS", 1000)
+    monkeypatch.setattr(parallel, "PARTS", range(40, 3000))
+    monkeypatch.setattr(parallel, "_SAMPLE", 500)
+    monkeypatch.setattr(parallel, "_REACH", 100)
+
+
+@EVERY_SENDER
+def test_parts_of_sizes_that_follow_the_rows_fit_together(
+    path: Path, sender: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Stretches without a frame, whose parts may be long, and dense ones take turns."""
+    parts_of_some_bytes(monkeypatch)
+    material = material_of(path, sender, greatest=300)
+    protocol = protocol_of(path)
+    for seed in SEEDS:
+        dice = Random(f"{path.stem} {sender} {seed}")
+        data = b""
+        for _ in range(10):
+            data += bytes(dice.randrange(4000)) + stream_of(material, dice, 40).data
+        found = columns(data, protocol, sender, engine="native", workers=2)
+        assert_same_tables(found, columns(data, protocol, sender, engine="native"))
+
+
+def test_parts_are_smaller_where_rows_are_dense(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also behind a stretch that has none."""
+    parts_of_some_bytes(monkeypatch)
+    sizes: list[int] = []
+
+    class Noting(NativeEngine):
+        def run(self, data: memoryview, part: int, end: int) -> int:
+            sizes.append(part)
+            return super().run(data, part, end)
+
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    data = bytes(30_000) + frame * 5000
+    engines = [Noting(library) for _ in range(4)]
+    found = gathered(Parts(memoryview(data), engines).tables(2), len(data), 2)
+    assert_same_tables(found, columns(data, protocol_of(RN1), "brain"))
+    assert sizes[0] == 2999
+    assert max(sizes[-20:]) < 1000
 
 
 def test_workers_give_what_one_gives(tmp_path: Path) -> None:
@@ -259,15 +306,15 @@ def test_pages_of_a_part_are_given_back_also_where_it_has_no_frame(
 
 def test_memory_is_used_again_when_nobody_looks_at_it() -> None:
     memory, dtype = Memory(), material_dtype()
-    first = memory.rows(dtype, 1 << 18)
+    first = memory.rows(0, dtype, 1 << 18)
     place = first.ctypes.data
-    second = memory.rows(dtype, 1 << 18)
+    second = memory.rows(0, dtype, 1 << 18)
     assert second.ctypes.data != place
     view = first[5:]
     del first
-    assert memory.rows(dtype, 1 << 18).ctypes.data != place
+    assert memory.rows(0, dtype, 1 << 18).ctypes.data != place
     del view
-    assert memory.rows(dtype, 1 << 18).ctypes.data == place
+    assert memory.rows(0, dtype, 1 << 18).ctypes.data == place
 
 
 @pytest.mark.parametrize("fewer", [0, 1, -1])
@@ -277,12 +324,12 @@ def test_memory_that_somebody_looks_at_is_kept_however_python_counts(
     """Python 3.14 counts one reference fewer than those before it."""
     count = sys.getrefcount
     monkeypatch.setattr(sys, "getrefcount", lambda item: count(item) - fewer)
-    memory, dtype = runpy.run_path(native.__file__)["Memory"](), material_dtype()
-    view = memory.rows(dtype, 1 << 18)[5:]
+    memory, dtype = runpy.run_path(lending.__file__)["Memory"](), material_dtype()
+    view = memory.rows(0, dtype, 1 << 18)[5:]
     place = view.ctypes.data - 5 * dtype.itemsize
-    assert memory.rows(dtype, 1 << 18).ctypes.data != place
+    assert memory.rows(0, dtype, 1 << 18).ctypes.data != place
     del view
-    assert memory.rows(dtype, 1 << 18).ctypes.data == place
+    assert memory.rows(0, dtype, 1 << 18).ctypes.data == place
 
 
 class Scarce(Memory):
@@ -292,11 +339,11 @@ class Scarce(Memory):
         super().__init__()
         self.left = 1 << 30
 
-    def rows(self, dtype, count: int):
+    def rows(self, number: int, dtype, count: int):
         self.left -= 1
         if self.left < 0:
             raise MemoryError
-        return super().rows(dtype, count)
+        return super().rows(number, dtype, count)
 
 
 def test_nothing_stays_lent_where_memory_ends() -> None:
@@ -553,7 +600,7 @@ def test_no_thread_finds_a_block_before_it_is_used() -> None:
         found.append(blocks.rows(dtype, 1 << 18))
 
     def trace(frame: FrameType, *_: object) -> object:
-        if frame.f_code.co_filename != native.__file__:
+        if frame.f_code.co_filename != lending.__file__:
             return None
         if blocks._blocks and not found:
             other = Thread(target=ask)

@@ -29,8 +29,8 @@ class Engine(Protocol):
         """Take the end of the stream."""
 
 
-Maker = Callable[[], Any]
-"""Makes an `Engine`; a native one can do what reading in parts needs, too."""
+Maker = Callable[..., Any]
+"""Makes an `Engine`; a native one can do what reading in parts needs, too, and takes `memory`."""
 
 
 def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Maker, bool]:
@@ -42,7 +42,8 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
     if name != "python":
-        from protogen.capture.native import KEPT, Memory, NativeEngine, library_of
+        from protogen.capture.memory import KEPT, Memory
+        from protogen.capture.native import NativeEngine, library_of
         from protogen.native.errors import NativeError
 
         try:

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 _SLACK = 1.02
 """Rows beyond those that a capture would have if it went on as it began."""
-
-
 _LITTLE = 1 << 20
 """Bytes that are copied sooner than a thread begins."""
+_WAITING = 2
+"""Copies for each thread that may wait for it: the rows of each take memory until then."""
 
 
 class _Column:
@@ -33,17 +33,38 @@ class _Column:
         self._used = 0  # Rows in the last block.
         self.count = 0
 
-    def reserve(self, count: int, foreseen: float) -> Rows:
-        """Room for the next rows, where so many more are foreseen with them."""
-        if not self._blocks or self._used + count > len(self._blocks[-1]):
-            if self._blocks:
-                self._blocks[-1] = self._blocks[-1][: self._used]
-            self._blocks.append(self._block(count, max(count, int(foreseen * _SLACK) + 16)))
-            self._used = 0
+    def room(self, count: int, whole: float) -> Rows:
+        """Room for up to so many more rows, the next ones of the table; it may be for some fewer.
+
+        `whole`: how many times as much as there is now there will be.
+        """
+        if self._left < max(1, count // 2):
+            self._begin(count, whole)
+        found: Rows = self._blocks[-1][self._used : self._used + count]
+        return found
+
+    def add(self, rows: Rows, whole: float) -> Rows:
+        """The place of the next rows, which may be where they are, in the room for them."""
+        count = len(rows)
+        if self._left < count:
+            self._begin(count, whole)
         self._used += count
         self.count += count
         found: Rows = self._blocks[-1][self._used - count : self._used]
         return found
+
+    @property
+    def _left(self) -> int:
+        """Rows that the last block has room for."""
+        return len(self._blocks[-1]) - self._used if self._blocks else 0
+
+    def _begin(self, count: int, whole: float) -> None:
+        """Begin a block with room for so many rows, and for what is foreseen with them."""
+        if self._blocks:
+            self._blocks[-1] = self._blocks[-1][: self._used]
+        foreseen = (self.count + count) * whole - self.count
+        self._blocks.append(self._block(count, max(count, int(foreseen * _SLACK) + 16)))
+        self._used = 0
 
     def _block(self, least: int, wanted: int) -> Rows:
         """Pages that are never written to cost nothing, if the system lets them be asked for."""
@@ -61,34 +82,75 @@ class _Column:
         return self._blocks[0] if len(self._blocks) == 1 else concatenated(self._blocks)
 
 
+class Gathering:
+    """The tables that pieces of a capture become.
+
+    It lends memory to one decoder: rows that lie where they stay need not be copied.
+    """
+
+    def __init__(self, total: int | None) -> None:
+        """`total`: bytes that all pieces will cover, if known."""
+        self.rates: dict[int, float] = {}
+        self._total = total
+        self._first: Tables | None = None
+        self._columns: list[_Column] = []
+        self._size = 0
+        self._events = 0
+
+    def rows(self, number: int, dtype: np.dtype[Any], count: int) -> Rows:
+        """Room for the next rows of a table; for some fewer where the table ends."""
+        if not self._columns:
+            return numpy().empty(count, dtype)  # type: ignore[no-any-return]
+        return self._columns[number].room(count, self._whole)
+
+    def add(self, piece: Tables, pool: ThreadPoolExecutor | None = None) -> list[Future[None]]:
+        """Take a piece. What threads copy, if there are some, has to be waited for."""
+        if self._first is None:
+            self._first = piece
+            self._columns = [_Column(rows.dtype) for rows in _all(piece)]
+        self._size += piece.size
+        self._events += piece.events
+        payloads, column = self._columns[-1].count, payload_column(piece.schema)
+        copies = []
+        for rows, table in zip(_all(piece), self._columns, strict=True):
+            if len(rows):
+                more = payloads if rows is piece.unknown else 0
+                work = (table.add(rows, self._whole), rows, column, more)
+                copies += _copied(work, None if rows.nbytes < _LITTLE else pool)
+        return copies
+
+    @property
+    def _whole(self) -> float:
+        """How many times as much as there is now there will be."""
+        return (self._total or 2 * self._size) / max(1, self._size)
+
+    @property
+    def tables(self) -> Tables:
+        """All pieces as one."""
+        assert self._first is not None
+        *messages, invalid, unknown, payloads = (column.rows for column in self._columns)
+        return replace(
+            self._first,
+            messages=dict(zip(self._first.messages, messages, strict=True)),
+            invalid=invalid,
+            unknown=unknown,
+            payloads=payloads,
+            size=self._size,
+            events=self._events,
+        )
+
+
 def gathered(pieces: Iterable[Tables], total: int | None, workers: int) -> Tables:
     """All pieces as one, copied by so many threads. `total`: bytes that they cover, if known."""
+    found = Gathering(total)
     with ThreadPoolExecutor(workers, "protogen-gather") as pool:
-        first: Tables | None = None
-        columns: list[_Column] = []
-        size = events = 0
         copies: list[Future[None]] = []
         for piece in pieces:
-            if first is None:
-                first = piece
-                columns = [_Column(rows.dtype) for rows in _all(piece)]
-            size += piece.size
-            events += piece.events
             copies = [copy for copy in copies if not _is_done(copy)]
-            copies += _add(piece, columns, (total or 2 * size) / max(1, size), pool)
+            copies += found.add(piece, pool if len(copies) < workers * _WAITING else None)
         for copy in copies:
             copy.result()
-    assert first is not None
-    *messages, invalid, unknown, payloads = (column.rows for column in columns)
-    return replace(
-        first,
-        messages=dict(zip(first.messages, messages, strict=True)),
-        invalid=invalid,
-        unknown=unknown,
-        payloads=payloads,
-        size=size,
-        events=events,
-    )
+    return found.tables
 
 
 def _is_done(copy: Future[None]) -> bool:
@@ -103,31 +165,25 @@ def _all(tables: Tables) -> tuple[Rows, ...]:
     return (*tables.messages.values(), tables.invalid, tables.unknown, tables.payloads)
 
 
-def _add(
-    piece: Tables, columns: list[_Column], whole: float, pool: ThreadPoolExecutor
-) -> list[Future[None]]:
-    """Copy a piece; `whole`: how many times as much as there is now there will be."""
-    payloads = columns[-1].count
-    copies = []
-    for rows, column in zip(_all(piece), columns, strict=True):
-        if len(rows):
-            foreseen = (column.count + len(rows)) * whole - column.count
-            place = column.reserve(len(rows), foreseen)
-            more = payloads if rows is piece.unknown else 0
-            work = (place, rows, payload_column(piece.schema), more)
-            if rows.nbytes < _LITTLE:
-                _copy(*work)
-            else:
-                try:
-                    copies.append(pool.submit(_copy, *work))
-                except RuntimeError:  # Python ends, and begins no threads any more.
-                    _copy(*work)
-    return copies
+_Work = tuple["Rows", "Rows", str, int]
+"""What `_copy` needs."""
+
+
+def _copied(work: _Work, pool: ThreadPoolExecutor | None) -> list[Future[None]]:
+    """Copy rows, in a thread if there are any, which has to be waited for then."""
+    if pool is not None:
+        try:
+            return [pool.submit(_copy, *work)]
+        except RuntimeError:  # Python ends, and begins no threads any more.
+            pass
+    _copy(*work)
+    return []
 
 
 def _copy(place: Rows, rows: Rows, column: str, more: int) -> None:
-    """Copy rows whole; those of unknown frames have payloads that lie further behind."""
+    """Copy rows whole, unless they are in place; payloads of unknown frames lie further behind."""
     source = numpy().ascontiguousarray(rows)
-    ctypes.memmove(place.ctypes.data, source.ctypes.data, source.nbytes)
+    if source.ctypes.data != place.ctypes.data:
+        ctypes.memmove(place.ctypes.data, source.ctypes.data, source.nbytes)
     if more:
         place[column] += numpy().uint64(more)

@@ -34,8 +34,10 @@ ROWS = 6 << 20
 parts at hand take."""
 PARTS = range(1 << 14, (8 << 20) + 1)
 """Bytes that a part may have: few where short frames have long rows."""
-ROOM = 64 << 20
-"""Bytes of rows that a part may have before its turn has come."""
+ROOM = 256 << 20
+"""Bytes of rows that all parts at hand may have before their turn has come."""
+_UNLIKE = 4
+"""Parts that have so many times the bytes that would suit, or so much less, do not suit."""
 _WINDOW = 1 << 6
 """Bytes at least in which a frame is looked for that the next part has, too."""
 _EVENTS = 4
@@ -99,6 +101,8 @@ class _Run:
     engine: Engine
     start: int
     end: int
+    beyond: int
+    """How far its decoder may come before the next part is decoded."""
     position: int
     """How far the decoder has come."""
     found: deque[Tables] = field(default_factory=deque)
@@ -150,18 +154,19 @@ class Parts:
     ) -> None:
         """`engines`: one for each part that is at hand, which are two at least.
 
-        `part`: bytes of a part; None: what suits the rows. A part whose rows take more than `room`
-        bytes is decoded on only when its turn has come.
+        `part`: bytes of a part; None: what suits the rows. A part whose rows take more than its
+        share of `room` bytes is decoded on only when its turn has come.
         """
         self._data = data
         self._given = part
         self._part = part or PARTS[0]
-        self._room = room
+        self._room = room // len(engines)
         self._known = _Known(0, 0)
         self._rate = (0, 1)  # Events, and the bytes that they cover.
         self._lock = Lock()  # For what follows, and for what runs say of themselves.
         self._free = list(engines)
-        self._starts = range(0)  # Of the parts that are not begun.
+        self._next: int | None = 0  # Where the next part begins, if there is one.
+        self._reach = 0  # How far the last part that was begun may be decoded on.
         self._ended = 0  # Threads that had no decoder for a part.
         self._tasks: list[Future[None]] = []  # What threads are at, if they are not done yet.
         self._runs: deque[_Run] = deque()  # Those that were begun, until all is delivered.
@@ -176,7 +181,6 @@ class Parts:
     def tables(self, workers: int) -> Iterator[Tables]:
         """All tables, in order. So many threads decode, of which one is whoever takes them."""
         self._sample()
-        self._starts = range(0, max(1, len(self._data)), self._part)
         own: set[int] = set()
         others = workers - 1
         threads = max(1, others)
@@ -212,8 +216,7 @@ class Parts:
             taken, tables = engine.step(self._data[: min(self._given or _SAMPLE, _SAMPLE)])
             self._rate = (tables.events, max(1, tables.size))
             if self._given is None:
-                wanted = ROWS * taken // max(1, tables.nbytes)
-                self._part = min(max(wanted, PARTS[0]), PARTS[-1])
+                self._part = _suiting(taken, tables.nbytes)
 
     # --- whoever takes the tables ----------------------------------------------------------------
 
@@ -260,7 +263,10 @@ class Parts:
             self._tell()
         self._come.acquire()
         if self._error is not None:
-            raise self._error
+            try:
+                raise self._error
+            finally:
+                self._error = None  # It leads to what it was raised in, as to the capture.
 
     def _has_come(self, awaited: Callable[[], bool]) -> bool:
         """Whether it is so, or will never be, as something went wrong."""
@@ -280,7 +286,7 @@ class Parts:
         with self._lock:
             self._free.append(run.engine)
             del self._runs[place]
-            is_wanted = bool(self._ended and self._starts)
+            is_wanted = bool(self._ended and self._next is not None)
             self._ended -= is_wanted
         if is_wanted:
             self._let_work(pool)
@@ -352,12 +358,16 @@ class Parts:
         `ending`: threads that end then.
         """
         with self._lock:
-            if self._is_over or not (self._free and self._starts):
+            start = self._next
+            if self._is_over or start is None or not self._free:
                 self._ended += ending
                 return None
-            start, self._starts = self._starts[0], self._starts[1:]
-            end = min(len(self._data), start + self._part)
-            run = _Run(self._free.pop(), start, end, start, is_placed=start == 0)
+            part = max(self._part, 2 * self._reach)  # The one in front does not get to its end.
+            self._reach = min(max(_REACH, self._window()), part // 2)
+            end = min(len(self._data), start + part)
+            self._next = end if end < len(self._data) else None
+            beyond = min(len(self._data), end + self._reach)
+            run = _Run(self._free.pop(), start, end, beyond, start, is_placed=start == 0)
             run.engine.start(start, self._foreseen(start))
             self._runs.append(run)
             return run
@@ -372,21 +382,25 @@ class Parts:
 
     def _decode(self, run: _Run) -> None:
         """Decode a part as if a stream began there, and on to where the next one should agree."""
-        start, reach = run.position, min(max(_REACH, self._window()), self._part // 2)
-        beyond = min(len(self._data), run.end + reach)
-        run.position += run.engine.run(self._data[start:beyond], run.end - start, run.end)
+        data = self._data[run.start : run.beyond]
+        run.position += run.engine.run(data, run.end - run.start, run.end)
         run.is_held = True
         if run.engine.is_full or run.is_placed:
             size = self._take(run).nbytes
             while run.position < run.end and size <= self._room:
-                run.found.append(self._step(run, beyond))
+                run.found.append(self._step(run, run.beyond))
                 size += run.found[-1].nbytes
 
     def _take(self, run: _Run) -> Tables:
         """What its decoder holds."""
         run.is_held = False
-        run.found.append(run.engine.take())
-        return run.found[-1]
+        found = run.engine.take()
+        run.found.append(found)
+        if self._given is None and found.size >= PARTS[0]:
+            suiting = _suiting(found.size, found.nbytes)
+            if not self._part < _UNLIKE * suiting < _UNLIKE**2 * self._part:
+                self._part = suiting
+        return found
 
     def _step(self, run: _Run, end: int) -> Tables:
         taken, tables = run.engine.step(self._data[run.position : end])
@@ -468,6 +482,11 @@ class Parts:
         """Foresee numbers from here on, by the rate since the last frame that was known."""
         before, self._known = self._known, known
         self._rate = (known.number - before.number, known.offset - before.offset)
+
+
+def _suiting(size: int, rows: int) -> int:
+    """Bytes that a part should have where so many have rows of so many bytes."""
+    return min(max(ROWS * size // max(1, rows), PARTS[0]), PARTS[-1])
 
 
 def _meeting(

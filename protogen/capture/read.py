@@ -11,7 +11,8 @@ from typing import BinaryIO
 from protogen.capture.arrays import numpy
 from protogen.capture.engines import Engine, EngineName, Maker, makers
 from protogen.capture.errors import CaptureError
-from protogen.capture.gather import gathered
+from protogen.capture.gather import Gathering, gathered
+from protogen.capture.memory import Lender
 from protogen.capture.parallel import Parts
 from protogen.capture.protocols import protocol_of, sender_of
 from protogen.capture.source import Source, opened, pieces
@@ -42,7 +43,12 @@ def columns(
     """
     _check(workers=workers)
     with _reading(source, protocol, sender, engine) as reading:
-        return gathered(reading.tables(None, workers), reading.total, workers)
+        if workers > 1:
+            return gathered(reading.tables(None, workers), reading.total, workers)
+        found = Gathering(reading.total)
+        for piece in reading.tables(None, workers, found):
+            found.add(piece)
+        return found.tables
 
 
 def batches(
@@ -99,14 +105,17 @@ class _Reading:
         """Bytes of the capture, if that is known."""
         return len(self.capture) if isinstance(self.capture, memoryview) else None
 
-    def tables(self, chunk: int | None, workers: int) -> Iterator[Tables]:
-        """All tables, in order."""
+    def tables(
+        self, chunk: int | None, workers: int, memory: Lender | None = None
+    ) -> Iterator[Tables]:
+        """All tables, in order. `memory`: where one decoder is to write rows, if it can."""
         if workers > 1 and self.in_parts and isinstance(self.capture, memoryview):
             # While each decodes a part, another may wait for whoever takes the tables.
             engines = [self.maker() for _ in range(2 * workers)]
             yield from Parts(self.capture, engines, chunk).tables(workers)
             return
-        engine: Engine = self.maker()
+        is_lent = memory is not None and self.in_parts
+        engine: Engine = self.maker(memory=memory) if is_lent else self.maker()
         for piece in pieces(self.capture, chunk or CHUNK):
             yield from engine.feed(piece)
         yield from engine.flush()
