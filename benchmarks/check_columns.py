@@ -88,7 +88,7 @@ def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
     from compiled import protocol_of
 
     from protogen.capture import columns
-    from protogen.capture.gather import gathered
+    from protogen.capture.gather import Gathering, gathered
     from protogen.capture.native import NativeEngine, library_of
     from protogen.capture.parallel import Parts
 
@@ -102,7 +102,16 @@ def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
         pieces = pieces_of(data, dice.choice([1000, 10_000, 100_000]))
         assert_same_tables(tables_of(in_bulk, pieces), expected)
     assert_same_tables(columns(data, protocol, sender, engine="native"), expected)
-    engines = [NativeEngine(library_of(protocol, protocol.sender(sender))) for _ in range(4)]
+    library = library_of(protocol, protocol.sender(sender))
+    in_place = Gathering(len(data))
+    decoder = NativeEngine(library, memory=in_place)
+    for piece in pieces_of(data, dice.choice([5000, 20_000, 50_000])):
+        for found in decoder.feed(piece):
+            in_place.add(found)
+    for found in decoder.flush():
+        in_place.add(found)
+    assert_same_tables(in_place.tables, expected)
+    engines = [NativeEngine(library) for _ in range(4)]
     parts = Parts(memoryview(data), engines, dice.choice([100, 1000, 10_000, 100_000]))
     assert_same_tables(gathered(parts.tables(2), len(data), 1), expected)
     return len(data), expected.events
