@@ -235,8 +235,9 @@ Clean streams of frames of random values. Medians of {rounds} rounds, in each of
 has its turn; the time of the processor, in ns per message (and MB/s of wire bytes). The expert is C
 by hand with SSE2 ([c/expert](c/expert/sse2_rn1.h)): it writes the fields of the one message that
 there is into rows that are used again, and neither offsets, numbers of events nor parts of frames.
-By batches is `batches`, whose memory is used again, too; whole is `columns`, whose tables stay.
-rflex's sonar_data has room for 17 readings, as the expert's.
+By batches is `batches`, whose memory is used again, too; whole is `columns`, whose tables stay: it
+also takes what the system needs to give and take back memory for all of them, which differs much
+between runs. rflex's sonar_data has room for 17 readings, as the expert's.
 
 Two cores: how many times as fast they are on the clock, which other processes of the machine
 disturb, and in brackets how many times the processor's time allows where both cores are free. The
@@ -244,7 +245,8 @@ expert's is what this machine has to give: two threads that take half of the str
 nothing but its memory. Parts begin with some milliseconds for threads and for memory that nobody
 has used yet, which is why captures are large here: 128 MB of lidar frames last 12 ms. Of the rows,
 those of gyro and lidar, whose frames have one size, are numbered right when they are written; those
-of the others are numbered anew where two parts meet, which is in the figures.
+of the others are numbered anew where two parts meet, which is in the figures. One core writes the
+rows of whole tables where they stay; with two, they are copied there.
 
 | | bytes | expert | by batches | ratio to expert | whole | two cores: expert | batches | whole |
 | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
