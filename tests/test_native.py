@@ -178,6 +178,23 @@ def test_hardly_any_rows_are_copied(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum(copied) < found.nbytes // 8
 
 
+def test_rows_that_never_come_do_not_let_all_be_copied(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A dense stretch foresees rows for the quiet one behind it, for which there is little room."""
+    library = library_of(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+    frame = min(material_of(RN1, "brain").frames, key=len)
+    first = frame * (90_000 // len(frame)) + bytes(10_000)
+    pieces = [first, frame * (150_000 // len(frame)), bytes(20_000)]
+    whole = Gathering(sum(map(len, pieces)))
+    engine = NativeEngine(library, memory=whole)
+    for piece in pieces:
+        for tables in engine.feed(piece):
+            whole.add(tables)
+    for tables in engine.flush():
+        whole.add(tables)
+    monkeypatch.setattr(gather, "concatenated", lambda _: pytest.fail("all rows are copied"))
+    assert whole.tables.events > 240_000 // len(frame)
+
+
 PARTS_LIKE_VARIABLES = """
 protocol: parts_like_variables
 endpoints: {station: A station}

@@ -36,9 +36,10 @@ class _Column:
     def room(self, count: int, whole: float) -> Rows:
         """Room for up to so many more rows, the next ones of the table; it may be for some fewer.
 
-        `whole`: how many times as much as there is now there will be.
+        `whole`: how many times as much as there is now there will be. However few are left, they
+        may be enough, and all rows are copied in the end if there is another block.
         """
-        if self._left < max(1, count // 2):
+        if not self._left:
             self._begin(count, whole)
         found: Rows = self._blocks[-1][self._used : self._used + count]
         return found
