@@ -24,7 +24,7 @@ from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.capture_names import names_of
 from protogen.convert.chunks import Chunk, Clock, joined
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Packing, Source, expanded, format_of, opened
+from protogen.convert.inputs import Packing, Source, expanded, format_of, open_stream, opened
 from protogen.convert.kinds import InputKind
 from protogen.convert.recorded import record_pieces
 from protogen.convert.textlog import log_pieces
@@ -622,6 +622,24 @@ def test_what_a_storage_says_while_it_is_read_is_no_bug(
     part = parts.Part("run3", "memory://run3.bin", "run3", {}, None, len(data), span, parts.START)
     with pytest.raises(ConvertError, match=said):
         parts.convert_part(work, part)
+
+
+def test_parts_are_read_from_storages_that_do_not_say_where_they_seek_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As SFTP, whose files give nothing back."""
+    memory = pytest.importorskip("fsspec.implementations.memory")
+
+    class Silent(memory.MemoryFile):  # type: ignore[name-defined,misc]
+        def seek(self, offset: int, whence: int = 0) -> None:
+            super().seek(offset, whence)
+
+    storage = memory.MemoryFileSystem()
+    monkeypatch.setitem(storage.store, "/run4.bin", Silent(storage, "/run4.bin", FRAME * 100))
+    with open_stream("memory://run4.bin") as raw:
+        stream = io.BufferedReader(raw)
+        assert stream.seek(3 * len(FRAME)) == 3 * len(FRAME)
+        assert stream.read(len(FRAME)) == FRAME
 
 
 def test_endless_lines_are_no_text() -> None:

@@ -53,8 +53,8 @@ class _Stored(RawIOBase):
 
     def seek(self, offset: int, whence: int = SEEK_SET, /) -> int:
         with asked(self._url):
-            place: int = self._file.seek(offset, whence)
-        return place
+            self._file.seek(offset, whence)  # Some, as those of SFTP, do not say where they are.
+        return self.tell()
 
     def tell(self) -> int:
         with asked(self._url):
