@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from io import SEEK_SET, RawIOBase
@@ -12,10 +13,10 @@ from protogen.convert.errors import ConvertError, needed
 
 @contextmanager
 def asked(url: str) -> Iterator[None]:
-    """Raise ConvertError for what a storage says, as of missing credentials, but for OSError."""
+    """Raise ConvertError for what a storage's package says in its own way, as of credentials."""
     try:
         yield
-    except OSError:
+    except (OSError, EOFError, MemoryError, zlib.error):
         raise
     except Exception as error:
         raise ConvertError(f"{url}: {str(error) or type(error).__name__}") from None
