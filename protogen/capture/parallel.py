@@ -398,7 +398,7 @@ class Parts:
         run.found.append(found)
         if self._given is None and found.size >= PARTS[0]:
             suiting = _suiting(found.size, found.nbytes)
-            if not self._part < _UNLIKE * suiting < _UNLIKE**2 * self._part:
+            if max(suiting, self._part) >= _UNLIKE * min(suiting, self._part):
                 self._part = suiting
         return found
 
