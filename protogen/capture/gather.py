@@ -44,9 +44,8 @@ class _Column:
         found: Rows = self._blocks[-1][self._used : self._used + count]
         return found
 
-    def add(self, rows: Rows, whole: float) -> Rows:
-        """The place of the next rows, which may be where they are, in the room for them."""
-        count = len(rows)
+    def add(self, count: int, whole: float) -> Rows:
+        """The place of so many more rows, which may be where they are, in the room for them."""
         if self._left < count:
             self._begin(count, whole)
         self._used += count
@@ -99,9 +98,10 @@ class Gathering:
         self._events = 0
 
     def rows(self, number: int, dtype: np.dtype[Any], count: int) -> Rows:
-        """Room for the next rows of a table; for some fewer where the table ends."""
-        if not self._columns:
-            return numpy().empty(count, dtype)  # type: ignore[no-any-return]
+        """Room for the next rows of a table; for some fewer where the table ends.
+
+        There is a piece already: without one, no rates are known, and a decoder asks for none.
+        """
         return self._columns[number].room(count, self._whole)
 
     def add(self, piece: Tables, pool: ThreadPoolExecutor | None = None) -> list[Future[None]]:
@@ -116,7 +116,7 @@ class Gathering:
         for rows, table in zip(_all(piece), self._columns, strict=True):
             if len(rows):
                 more = payloads if rows is piece.unknown else 0
-                work = (table.add(rows, self._whole), rows, column, more)
+                work = (table.add(len(rows), self._whole), rows, column, more)
                 copies += _copied(work, None if rows.nbytes < _LITTLE else pool)
         return copies
 
