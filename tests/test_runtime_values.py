@@ -4,6 +4,7 @@ import json
 import math
 from collections import ChainMap
 from dataclasses import dataclass, field, replace
+from enum import KEEP, IntFlag
 from fractions import Fraction
 from typing import Any
 
@@ -583,6 +584,8 @@ def test_not_all_sets_of_flags_are_kept() -> None:
         assert state == number << 1 | 1 << 31
         assert State.HOT in state
         assert state.unknown == number << 1
-    assert len(State._value2member_map_) == 4096
+    plain = IntFlag("plain", {"ON": 1, "HOT": 1 << 31}, boundary=KEEP)
+    is_remembered = plain(6) is plain(6)  # By none of the first versions of 3.11.
+    assert len(State._value2member_map_) == (4096 if is_remembered else 2)
     assert State(1) is State.ON
     assert State(1 << 31) is State.HOT

@@ -127,8 +127,9 @@ def _tag_pattern(senders: Sequence[str]) -> re.Pattern[str]:
     """Match a line up to its bytes: what is in front, the only sender's name, and its end."""
     names = "|".join(map(re.escape, senders))
     word = rf"(?<!\w)(?:{names})(?!\w)"
+    # Python before 3.11.5 matches possessive groups wrongly, but not atomic ones.
     return re.compile(
-        rf"(?:(?!{word})[^#])*+(?<![\w.-])(?P<name>{names})[ \t]*[\]>:]++"
+        rf"(?>(?:(?!{word})[^#])*)(?<![\w.-])(?P<name>{names})[ \t]*[\]>:]++"
         rf"(?![ \t]*{word}[ \t]*[\]>:])",
         re.IGNORECASE,
     )

@@ -28,7 +28,7 @@ _SPLIT = re.compile(
     r"(?:(?:\s+[RT]X\s+[-B]\s+[-E])?\s+(?P<id>[0-9A-Fa-f]+)"
     r"(?:\#(?:\#[0-9A-Fa-f]|R[0-9A-Fa-f]?)?|\s+\[\d{1,4}\](?:\s+remote request)?))?"
     # What is taken here is not given back: long lines that fit nothing are soon known.
-    r"\s*+(?P<hex>(?:[0-9A-Fa-f]{2}\s*+)*+)(?:(?<=\s)(?:[RT]x?|ERRORFRAME))?\s*+(?:'.*')?",
+    r"\s*+(?P<hex>(?>(?:[0-9A-Fa-f]{2}\s*+)*))(?:(?<=\s)(?:[RT]x?|ERRORFRAME))?\s*+(?:'.*')?",
     # `bytes.fromhex` takes only such digits and spaces for what they are.
     re.ASCII,
 )
