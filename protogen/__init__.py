@@ -20,7 +20,7 @@ from protogen.version import VERSION
 if TYPE_CHECKING:
     from protogen.api import SchemaError, generate, load, module_of
     from protogen.compiler import Compilation, compile_file
-    from protogen.model.selection import select
+    from protogen.passes.selection import select
     from protogen.problems import Problem
     from protogen.schema.files import NoSchemaError
 
@@ -48,7 +48,7 @@ _HOMES = {
     "generate": "protogen.api",
     "load": "protogen.api",
     "module_of": "protogen.api",
-    "select": "protogen.model.selection",
+    "select": "protogen.passes.selection",
 }
 
 

@@ -39,6 +39,7 @@ from protogen.model.types import (
     Type,
     total,
 )
+from protogen.passes.frame_plan import plan_frame
 from protogen.problems.span import Span
 
 SPAN = Span("tiny.yaml", 1, 1, 1, 2)
@@ -257,6 +258,17 @@ def framing(messages: Sequence[Message], overhead: int = 4, **more: Any) -> Fram
     return Framing(**(given | more))
 
 
+def sender(name: str, frame: Frame, found: Framing, messages: Sequence[Message]) -> Sender:
+    return Sender(
+        name=name,
+        frame=frame,
+        framing=found,
+        messages=tuple(messages),
+        overloads=(),
+        plan=plan_frame(frame, found, messages, ()),
+    )
+
+
 def protocol(*messages: Message, frame: Frame | None = None, **more: Any) -> Protocol:
     """A protocol of one sender, `pc`, unless `senders` is given."""
     used = frame or simple_frame()
@@ -270,15 +282,7 @@ def protocol(*messages: Message, frame: Frame | None = None, **more: Any) -> Pro
         "link": Link(baud=115200),
         "byte_bits": 8,
         "endpoints": (Endpoint(name="pc", title="Computer"), Endpoint(name="mcu", title="Board")),
-        "senders": (
-            Sender(
-                name="pc",
-                frame=used,
-                framing=framing(messages),
-                messages=messages,
-                overloads=(),
-            ),
-        ),
+        "senders": (sender("pc", used, framing(messages), messages),),
         "enums": (),
         "flags": (),
         "structs": (),

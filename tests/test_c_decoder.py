@@ -28,7 +28,7 @@ from vectors import ExpectedEvent, Stream, Vector, VectorFile
 
 from protogen.fuzzing.c_calls import OK, CEvent, Step
 from protogen.model.protocol import Sender
-from protogen.model.selection import select
+from protogen.passes.selection import select
 from protogen.targets.c.options import COptions
 from protogen.targets.python.live import module_of
 

@@ -33,7 +33,7 @@ from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.fuzzing.trips import same
 from protogen.model.protocol import Sender
-from protogen.model.selection import select
+from protogen.passes.selection import select
 from protogen.targets.c.options import COptions
 from protogen.targets.python.live import module_of
 

@@ -30,6 +30,7 @@ from models import (
     message,
     protocol,
     robbus_frame,
+    sender,
     switch_message,
     tiny_protocol,
 )
@@ -38,7 +39,7 @@ from protogen.compiler import compile_file
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
 from protogen.model.origin import About, Source
-from protogen.model.protocol import Decision, Endpoint, Link, Protocol, Sender
+from protogen.model.protocol import Decision, Endpoint, Link, Protocol
 from protogen.model.reserved import (
     Reserved,
     ReservedIdentity,
@@ -82,8 +83,8 @@ def test_messages_without_identity_and_rate():
     unrated = replace(
         sizes, messages=tuple(replace(item, per_second=None) for item in sizes.messages)
     )
-    sender = Sender(name="pc", frame=frame, framing=unrated, messages=(only,), overloads=())
-    text = page(protocol(only, senders=(sender,), link=Link(parity="even", stop_bits=2)))
+    senders = (sender("pc", frame, unrated, [only]),)
+    text = page(protocol(only, senders=senders, link=Link(parity="even", stop_bits=2)))
     assert '### <a id="message-m"></a>m\n' in text
     assert "a second" not in text.split("## <a")[4]
     assert "No rate is given; 8 data bits, parity even, 2 stop bits." in text

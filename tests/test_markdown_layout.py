@@ -20,6 +20,7 @@ from models import (
     protocol,
     rflex_frame,
     robbus_frame,
+    sender,
     simple_frame,
     switch_message,
     tiny_protocol,
@@ -27,7 +28,7 @@ from models import (
 
 from protogen.model.checksums import find_algorithm
 from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
-from protogen.model.protocol import Protocol, Sender
+from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
@@ -225,12 +226,7 @@ def test_frame_properties_are_told():
 def two_senders(**other: Any) -> Protocol:
     first, second = message("a", 1, ("f", UINT8)), message("b", 1, senders=("mcu",))
     pair = [("pc", first), ("mcu", second)]
-    senders = tuple(
-        Sender(
-            name=name, frame=simple_frame(), framing=framing([item]), messages=(item,), overloads=()
-        )
-        for name, item in pair
-    )
+    senders = tuple(sender(name, simple_frame(), framing([item]), [item]) for name, item in pair)
     changed = replace(senders[1], framing=replace(senders[1].framing, **other))
     return protocol(first, second, senders=(senders[0], changed))
 
@@ -247,13 +243,7 @@ def test_messages_of_several_senders_are_explained_once():
     shared = message("a", 1, ("f", UINT8), senders=("pc", "mcu"))
     frames = (simple_frame(), robbus_frame())
     senders = tuple(
-        Sender(
-            name=name,
-            frame=frame,
-            framing=framing([shared], size),
-            messages=(shared,),
-            overloads=(),
-        )
+        sender(name, frame, framing([shared], size), [shared])
         for name, frame, size in zip(("pc", "mcu"), frames, (4, 5), strict=True)
     )
     text = page(protocol(shared, senders=senders))

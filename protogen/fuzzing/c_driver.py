@@ -15,7 +15,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from protogen.fuzzing.c_walk import walk_function
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.selection import select
+from protogen.passes.selection import select
 from protogen.targets.c.decoder import DecoderView
 from protogen.targets.c.emit import emit
 from protogen.targets.c.frames import MessageFrame

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
 from protogen.model.types import Integer
+from protogen.runtime.number import Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,6 +16,16 @@ class Part:
 
     name: str
     about: About = NOTHING
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing; 0 for the payload, whose size varies."""
+        return 0
+
+    @property
+    def is_optional(self) -> bool:
+        """True if the part is absent where the payload is empty."""
+        return False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +36,11 @@ class LiteralPart(Part):
     unprotected: str | None = None
     """The decision that accepts that the bytes can also occur inside the frame."""
 
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing."""
+        return len(self.bytes)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NumberPart(Part):
@@ -34,6 +50,17 @@ class NumberPart(Part):
     least: int
     greatest: int
     """Bounds of the raw value, both included."""
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing."""
+        return self.type.size
+
+    def encode(self, value: int) -> bytes:
+        """Bytes of a value, before stuffing; raises ValueError if the part can't hold it."""
+        kind = self.type
+        seven_bit = kind.byte_bits == 7
+        return Number(kind.bits, kind.signed, kind.byte_order, seven_bit).encode(value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +103,17 @@ class ChecksumPart(Part):
     covers: tuple[str, ...]
     over_wire: bool = False
     when_payload: bool = False
-    """Absent where the payload is empty."""
+    """True if the part is absent where the payload is empty."""
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing."""
+        return self.type.size
+
+    @property
+    def is_optional(self) -> bool:
+        """True if the part is absent where the payload is empty."""
+        return self.when_payload
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -70,6 +70,11 @@ class Overload:
     decision: str | None = None
     about: About = NOTHING
 
+    @property
+    def hidden(self) -> frozenset[str]:
+        """Names of the messages that no receiver yields."""
+        return frozenset() if self.yields is None else frozenset(self.messages) - {self.yields}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from protogen.model.frame import Frame
+from protogen.model.frame_plan import FramePlan
 from protogen.model.framing import Framing
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
@@ -53,13 +54,14 @@ class Decision:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sender:
-    """An endpoint that sends: its frame, what a receiver knows of it, and its messages."""
+    """An endpoint that sends: its frame, the framing and the plan of it, and its messages."""
 
     name: str
     frame: Frame
     framing: Framing
     messages: tuple[Message, ...]
     overloads: tuple[Overload, ...]
+    plan: FramePlan
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import PurePath
 
+from protogen.model.messages import Message
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.class_names import check_class_names
 from protogen.passes.codes import check_codes
@@ -13,6 +14,7 @@ from protogen.passes.context import Context, about, source_of
 from protogen.passes.decisions import resolve_decisions
 from protogen.passes.draft import Draft
 from protogen.passes.examples import attach_examples, resolve_exchanges
+from protogen.passes.frame_plan import plan_frame
 from protogen.passes.frames import resolve_frames
 from protogen.passes.framing import analyse_framing
 from protogen.passes.identities import check_identities
@@ -51,6 +53,10 @@ def resolve(context: Context) -> Protocol | None:
 
 def _assemble(context: Context, draft: Draft) -> Protocol:
     syntax = context.syntax
+    messages = {
+        name: replace(message, spec_hash=message_hash(message))
+        for name, message in draft.messages.items()
+    }
     protocol = Protocol(
         name=syntax.protocol,
         title=syntax.title or syntax.protocol,
@@ -64,11 +70,11 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
             Endpoint(name=name, title=item.title, doc=item.doc or "")
             for name, item in syntax.endpoints.items()
         ),
-        senders=tuple(_sender(draft, name) for name in draft.senders),
+        senders=tuple(_sender(draft, messages, name) for name in draft.senders),
         enums=draft.named.enums,
         flags=draft.named.flags,
         structs=draft.named.structs,
-        messages=tuple(draft.messages.values()),
+        messages=tuple(messages.values()),
         exchanges=draft.exchanges,
         decisions=draft.decisions,
         reserved=draft.reserved,
@@ -103,11 +109,14 @@ def _link(context: Context) -> Link:
     )
 
 
-def _sender(draft: Draft, name: str) -> Sender:
+def _sender(draft: Draft, hashed: Mapping[str, Message], name: str) -> Sender:
+    frame, framing, overloads = draft.frames[name], draft.framings[name], draft.overloads[name]
+    messages = tuple(hashed[message.name] for message in draft.sent_by(name))
     return Sender(
         name=name,
-        frame=draft.frames[name],
-        framing=draft.framings[name],
-        messages=tuple(draft.sent_by(name)),
-        overloads=tuple(draft.overloads[name]),
+        frame=frame,
+        framing=framing,
+        messages=messages,
+        overloads=tuple(overloads),
+        plan=plan_frame(frame, framing, messages, overloads),
     )

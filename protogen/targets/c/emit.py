@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from jinja2 import Environment
 
 from protogen.model.protocol import Protocol
-from protogen.model.selection import select
+from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
 from protogen.targets.c.framing import FramingView, framing_view
 from protogen.targets.c.lines import prototype

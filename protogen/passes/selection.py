@@ -13,6 +13,7 @@ from protogen.model.framing import Framing
 from protogen.model.messages import Message, Overload
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.passes.frame_plan import plan_frame
 
 
 def select(
@@ -48,11 +49,14 @@ def _sender(sender: Sender, messages: Collection[str] | None) -> Sender:
     left = tuple(message for message in sender.messages if message.name in messages)
     if not left:
         return replace(sender, messages=())
+    framing = _framing(sender.framing, left)
+    overloads = tuple(_overloads(sender, {message.name for message in left}))
     return replace(
         sender,
         messages=left,
-        framing=_framing(sender.framing, left),
-        overloads=tuple(_overloads(sender, {message.name for message in left})),
+        framing=framing,
+        overloads=overloads,
+        plan=plan_frame(sender.frame, framing, left, overloads),
     )
 
 

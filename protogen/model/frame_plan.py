@@ -1,0 +1,428 @@
+"""Frame plan: every fact of a sender's frame that a decoder, an encoder, a table or a page needs.
+
+*Content* is the bytes of all parts before stuffing, without the literals that make up the end.
+The *head* is the parts in front of the payload, the *tail* those behind it, without the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    CounterPart,
+    Encoding,
+    Escape,
+    Frame,
+    IdentityPart,
+    LengthPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    ValuePart,
+)
+from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
+from protogen.model.wire import FULL_GROUP
+
+
+class StartRule(Enum):
+    """What marks the start of a frame."""
+
+    LITERAL = auto()
+    SET = auto()
+    """A first byte of a range of its own."""
+    AFTER_END = auto()
+    """The end of the frame before, or the start of the stream."""
+    ANYWHERE = auto()
+    """Nothing: sizes and checksums tell."""
+
+
+class EndRule(Enum):
+    """What tells where a frame of a known message ends."""
+
+    DELIMITER = auto()
+    """The next end literal, which occurs nowhere else in a frame."""
+    NEXT_START = auto()
+    """The next start, at the latest: starts occur nowhere else, and stuffing varies the size."""
+    LENGTH = auto()
+    """The length part."""
+    IDENTITY = auto()
+    """The size of the message's payload."""
+
+
+class Store(Enum):
+    """What a decoder keeps of a candidate until its verdict."""
+
+    CONTENT = auto()
+    """Unstuffed bytes alone: no frame can start inside a failed candidate but at its end."""
+    WIRE = auto()
+    """Bytes as they came. Nothing is stuffed, so they are the content, too."""
+    BOTH = auto()
+
+
+class Side(Enum):
+    """Which side of the payload a place is counted on."""
+
+    HEAD = auto()
+    TAIL = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in the content."""
+
+    side: Side
+    offset: int
+    """Bytes from the first byte of the content, or from the first one behind the payload."""
+    absent: int = 0
+    """How many of these bytes are absent where the payload is empty."""
+
+    def at(self, head_size: int, payload: int) -> int:
+        """Index in the content of a frame with such a payload."""
+        if self.side is Side.HEAD:
+            return self.offset
+        return head_size + payload + self.offset - (0 if payload else self.absent)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedPart:
+    """A part of a fixed size, and where it lies in the content."""
+
+    part: Part
+    place: Place
+    is_stuffed: bool
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.part.name
+
+    @property
+    def size(self) -> int:
+        """Bytes of content."""
+        return self.part.size
+
+    @property
+    def offset(self) -> int:
+        """Bytes from the head's or the tail's first byte."""
+        return self.place.offset
+
+    @property
+    def end(self) -> int:
+        """Offset of the first byte behind the part."""
+        return self.place.offset + self.size
+
+    @property
+    def end_place(self) -> Place:
+        """Place of the first byte behind the part."""
+        absent = self.place.absent + (self.size if self.is_optional else 0)
+        return Place(self.place.side, self.end, absent)
+
+    @property
+    def in_head(self) -> bool:
+        """True if the part stands in front of the payload."""
+        return self.place.side is Side.HEAD
+
+    @property
+    def is_optional(self) -> bool:
+        """True if the part is absent where the payload is empty."""
+        return self.part.is_optional
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run of content, from `first` to in front of `end`."""
+
+    first: Place
+    end: Place
+    over_stuffing: bool = False
+    """True if it is stuffed on the wire, and summed as it is there."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChecksumPlan:
+    """A checksum part, where it lies, and what it runs over."""
+
+    part: ChecksumPart
+    placed: PlacedPart
+    covers: tuple[Run | bytes, ...]
+    """Runs of content in order, neighbours joined; bytes stand for a literal of the end."""
+    is_behind: bool
+    """True if the checksum stands behind all that it runs over."""
+
+    @property
+    def over_stuffing(self) -> bool:
+        """True if some of what it runs over is summed as it is stuffed."""
+        return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LengthPlan:
+    """The length part: its value for a payload, and the payload's size for a value."""
+
+    part: LengthPart
+    base: int
+    """Value for an empty payload."""
+    optional: int
+    """Bytes that it counts besides, where the payload is not empty."""
+
+    def counted(self, payload: int) -> int:
+        """Value for a payload of that size."""
+        return self.base + (payload + self.optional if payload else 0)
+
+    def payload(self, value: int) -> int | None:
+        """Size of the payload for a value; None if there is none."""
+        if value == self.base:
+            return 0
+        size = value - self.base - self.optional
+        return size if size > 0 else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StuffedRegion:
+    """The part of the content that is stuffed on the wire."""
+
+    encoding: Encoding
+    lenient: bool
+    parts: tuple[str, ...]
+    """Names of its parts in wire order."""
+    first: Place
+    end: Place
+    before: int
+    """Bytes of content in front of it, where the payload is not empty and behind it."""
+    behind: int
+    """Bytes of content behind it, where the payload is not empty and in front of them."""
+    literals_in_front: bool
+    """True if nothing but literals stands in front of it."""
+    covers_payload: bool
+    can_be_empty: bool
+    """True if it holds nothing but the payload and parts that can be absent with it."""
+    reaches_end: bool
+    """True if it begins in front of the tail, is never empty, and only the end follows."""
+    codes: tuple[tuple[int, bytes], ...]
+    """Bytes, in order, and the sequences that stand for them; empty for Base16 and COBS."""
+
+    @property
+    def longest(self) -> int:
+        """Wire bytes that one byte of content takes at most; 1 for COBS."""
+        if isinstance(self.encoding, Base16):
+            return 2
+        return max((len(sequence) for _, sequence in self.codes), default=1)
+
+    @property
+    def escape(self) -> Escape | None:
+        """The escape, if that is the encoding."""
+        return self.encoding if isinstance(self.encoding, Escape) else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IdentityGroup:
+    """Messages that a receiver may find behind one identity: one, or more told apart by size."""
+
+    identity: tuple[int, ...]
+    key: int
+    """Values of the identity parts as one number, the first part in its highest bits."""
+    messages: tuple[Message, ...]
+
+    @property
+    def fixed(self) -> int | None:
+        """Size of the payload, where no message has another one."""
+        sizes = {message.sizes.fixed for message in self.messages}
+        return sizes.pop() if len(sizes) == 1 else None
+
+    @property
+    def greatest(self) -> int:
+        """Greatest payload of these messages in bytes."""
+        return max(message.sizes.greatest for message in self.messages)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FramePlan:
+    """A sender's frame, worked out once. Sizes are in bytes."""
+
+    frame: Frame
+    # The start and the end.
+    start: StartRule
+    start_bytes: bytes
+    """The start literal; empty where something else marks the start."""
+    start_set: range
+    """First bytes of a frame, where a set marks the start; else empty."""
+    start_is_unique: bool
+    """True if a start occurs nowhere else in a frame."""
+    end_rule: EndRule
+    end_bytes: bytes
+    """The end literal; empty where there is none."""
+    end_is_unique: bool
+    """True if the end literal occurs nowhere else in a frame."""
+    # The parts.
+    head: tuple[PlacedPart, ...]
+    tail: tuple[PlacedPart, ...]
+    end_literals: tuple[Part, ...]
+    """The parts that make up the end."""
+    length: LengthPlan | None
+    checksums: tuple[ChecksumPlan, ...]
+    region: StuffedRegion | None
+    # Identities and sizes.
+    groups: tuple[IdentityGroup, ...]
+    """By identity, in the order of the messages."""
+    payload: SizeSet
+    """Payload sizes that a frame can carry, those of unknown messages included."""
+    least: int
+    """Wire bytes of the smallest frame."""
+    greatest: int
+    """Wire bytes that no frame exceeds."""
+    # What an engine may do.
+    seven_bit: bool
+    """True if every payload byte has its most significant bit clear."""
+    rescans: bool
+    """True if a frame can start inside a failed candidate, in front of its end."""
+    is_regular: bool
+    """True if only checksums stand behind the payload, all of them or none are optional, and the
+    stuffed region holds the payload and not the start."""
+    takes_whole: bool
+    """True if a frame that stands in the input can be taken as a whole, without a candidate."""
+    streams: bool
+    """True if a frame can be sent byte by byte, without a look at what follows."""
+    cut_ambiguous: bool
+    """True if an encoder has to check that a decoder cuts its frame where it ends."""
+
+    # --- sizes ------------------------------------------------------------------------------------
+
+    @property
+    def head_size(self) -> int:
+        """Bytes of content in front of the payload."""
+        return self.head[-1].end if self.head else 0
+
+    @property
+    def tail_size(self) -> int:
+        """Bytes of content behind a payload that is not empty."""
+        return self.tail[-1].end if self.tail else 0
+
+    @property
+    def optional_size(self) -> int:
+        """Bytes of content that are absent where the payload is empty."""
+        return sum(item.size for item in self.placed if item.is_optional)
+
+    @property
+    def size_known_at(self) -> int | None:
+        """Bytes of content that tell the payload's size; None if they are not all in the head."""
+        if self.length is not None:
+            return self.part(self.length.part.name).end
+        if not self.identity:
+            return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
+        return self.part(self.identity[-1].name).end if self.identity_is_early else None
+
+    def room(self, payload: int) -> int:
+        """Wire bytes that the frame of a payload can need."""
+        absent = 0 if payload else self.optional_size
+        content = self.head_size + payload + self.tail_size - absent
+        if self.region is None:
+            return content + len(self.end_bytes)
+        if isinstance(self.region.encoding, Cobs):
+            return content + len(self.end_bytes) + content // FULL_GROUP + 1
+        return self.region.longest * content + len(self.end_bytes)
+
+    # --- parts ------------------------------------------------------------------------------------
+
+    @property
+    def placed(self) -> tuple[PlacedPart, ...]:
+        """The parts of the head and the tail in wire order."""
+        return (*self.head, *self.tail)
+
+    def part(self, name: str) -> PlacedPart:
+        """The part of the head or the tail of that name; raises KeyError."""
+        for item in self.placed:
+            if item.name == name:
+                return item
+        raise KeyError(name)
+
+    @property
+    def payload_part(self) -> PayloadPart:
+        """The payload."""
+        return next(part for part in self.frame.parts if isinstance(part, PayloadPart))
+
+    @property
+    def identity(self) -> tuple[IdentityPart, ...]:
+        """The identity parts in wire order."""
+        return self.frame.identity
+
+    @property
+    def identity_bits(self) -> int:
+        """Bits of the number that all identity parts make up."""
+        return sum(part.type.bits for part in self.identity)
+
+    @property
+    def identity_is_early(self) -> bool:
+        """True if there is an identity, and all of it stands in front of the payload."""
+        return bool(self.identity) and any(item.part is self.identity[-1] for item in self.head)
+
+    @property
+    def shown(self) -> tuple[PlacedPart, ...]:
+        """The parts that events show: identity, counters and values."""
+        kinds = IdentityPart | CounterPart | ValuePart
+        return tuple(item for item in self.placed if isinstance(item.part, kinds))
+
+    @property
+    def numbers(self) -> tuple[PlacedPart, ...]:
+        """The parts that are numbers, without checksums."""
+        return tuple(item for item in self.placed if isinstance(item.part, NumberPart))
+
+    # --- start and end ----------------------------------------------------------------------------
+
+    @property
+    def shares_delimiter(self) -> bool:
+        """True if the end of a frame may also be the start of the next."""
+        return bool(self.start_bytes) and self.start_bytes == self.end_bytes
+
+    @property
+    def store(self) -> Store:
+        """What a decoder keeps of a candidate."""
+        if self.region is None:
+            return Store.WIRE if self.rescans else Store.CONTENT
+        over_wire = any(checksum.part.over_wire for checksum in self.checksums)
+        return Store.BOTH if over_wire or self.rescans else Store.CONTENT
+
+    @property
+    def opens(self) -> bool:
+        """True if the size of some payload is not known before the frame's end is seen."""
+        if self.length is not None:
+            return False
+        if self.identity:
+            return True  # An unknown identity tells no size.
+        return bool(self.end_bytes) and self.has_open_groups
+
+    @property
+    def measures(self) -> bool:
+        """True if the size of some payload follows from its first bytes alone."""
+        return self.length is None and not self.end_bytes and self.has_open_groups
+
+    @property
+    def has_open_groups(self) -> bool:
+        """True if the payloads of some identity vary in size."""
+        return any(group.fixed is None for group in self.groups)
+
+    @property
+    def ends_at_start(self) -> bool:
+        """True if some frame ends where the next starts, and nothing else tells."""
+        return self.opens and not self.end_bytes and self.start is not StartRule.ANYWHERE
+
+    @property
+    def has_one_spelling(self) -> bool:
+        """True if a frame can only have the bytes that an encoder makes of what is in it."""
+        lenient = self.region is not None and self.region.lenient
+        return not (lenient or self.cut_ambiguous or self.shares_delimiter)
+
+    def may_look_idle(self, message: Message) -> bool:
+        """True if a frame of the message may have an end where only a start is in front of it."""
+        if self.start is not StartRule.AFTER_END and not self.shares_delimiter:
+            return False
+        behind = [item.part for item in self.head if item.offset >= len(self.start_bytes)]
+        first = behind[0] if behind else None
+        if not isinstance(first, IdentityPart) or first.size < len(self.end_bytes):
+            return True
+        value = message.identity[self.identity.index(first)]
+        return first.encode(value).startswith(self.end_bytes)

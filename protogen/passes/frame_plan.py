@@ -1,0 +1,339 @@
+"""How is a sender's frame laid out, found, and taken?
+
+Works out the frame plan from the frame's parts and its framing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Encoding,
+    Escape,
+    Frame,
+    LiteralPart,
+    Part,
+    PayloadPart,
+    Substitution,
+)
+from protogen.model.frame_plan import (
+    ChecksumPlan,
+    EndRule,
+    FramePlan,
+    IdentityGroup,
+    LengthPlan,
+    Place,
+    PlacedPart,
+    Run,
+    Side,
+    StartRule,
+    StuffedRegion,
+)
+from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
+from protogen.model.messages import Message, Overload
+
+_START_RULES = {
+    StartLiteral: StartRule.LITERAL,
+    StartSet: StartRule.SET,
+    AfterEnd: StartRule.AFTER_END,
+    Anywhere: StartRule.ANYWHERE,
+}
+
+
+def plan_frame(
+    frame: Frame,
+    framing: Framing,
+    messages: Sequence[Message],
+    overloads: Sequence[Overload],
+) -> FramePlan:
+    """The plan of a sender's frame."""
+    return _Planner(frame, framing).plan(identity_groups(frame, messages, overloads))
+
+
+def identity_groups(
+    frame: Frame, messages: Sequence[Message], overloads: Sequence[Overload]
+) -> tuple[IdentityGroup, ...]:
+    """The messages that a receiver can yield, by identity.
+
+    Of messages that nothing tells apart, it yields the one that the overload names.
+    """
+    found: dict[tuple[int, ...], list[Message]] = {}
+    hidden = set().union(*(overload.hidden for overload in overloads))
+    for message in messages:
+        if message.name not in hidden:
+            found.setdefault(message.identity, []).append(message)
+    return tuple(
+        IdentityGroup(identity=identity, key=_key(frame, identity), messages=tuple(group))
+        for identity, group in found.items()
+    )
+
+
+def _key(frame: Frame, identity: tuple[int, ...]) -> int:
+    key = 0
+    for part, value in zip(frame.identity, identity, strict=True):
+        key = key << part.type.bits | value
+    return key
+
+
+class _Planner:
+    def __init__(self, frame: Frame, framing: Framing) -> None:
+        self._frame = frame
+        self._framing = framing
+        start, end = framing.start, framing.end
+        self._start = start
+        self._start_bytes = start.bytes if isinstance(start, StartLiteral) else b""
+        self._unique_start = isinstance(start, StartLiteral | StartSet) and start.protected
+        self._end_bytes = b"" if end is None else end.bytes
+        self._unique_end = end is not None and end.protected
+        self._shares = bool(self._start_bytes) and self._start_bytes == self._end_bytes
+        self._names = [part.name for part in frame.parts]
+        self._content, self._end_literals = _without_end(frame.parts, len(self._end_bytes))
+        self._payload_index = next(
+            i for i, part in enumerate(self._content) if isinstance(part, PayloadPart)
+        )
+        self._head = tuple(self._place(Side.HEAD, self._content[: self._payload_index]))
+        self._tail = tuple(self._place(Side.TAIL, self._content[self._payload_index + 1 :]))
+        self._head_size = sum(item.size for item in self._head)
+
+    def plan(self, groups: tuple[IdentityGroup, ...]) -> FramePlan:
+        framing = self._framing
+        return FramePlan(
+            frame=self._frame,
+            start=_START_RULES[type(self._start)],
+            start_bytes=self._start_bytes,
+            start_set=self._start_set(),
+            start_is_unique=self._unique_start,
+            end_rule=self._end_rule(),
+            end_bytes=self._end_bytes,
+            end_is_unique=self._unique_end,
+            head=self._head,
+            tail=self._tail,
+            end_literals=self._end_literals,
+            length=self._length(),
+            checksums=tuple(self._checksum(part) for part in self._frame.checksums),
+            region=self._region,
+            groups=groups,
+            payload=framing.payload,
+            least=framing.least,
+            greatest=framing.greatest,
+            seven_bit=framing.seven_bit,
+            rescans=self._rescans(),
+            is_regular=self._is_regular,
+            takes_whole=self._takes_whole(),
+            streams=self._streams(),
+            cut_ambiguous=framing.cut_ambiguous,
+        )
+
+    # --- parts ------------------------------------------------------------------------------------
+
+    def _place(self, side: Side, parts: Sequence[Part]) -> Iterator[PlacedPart]:
+        offset = absent = 0
+        for part in parts:
+            yield PlacedPart(part, Place(side, offset, absent), part.name in self._stuffed)
+            offset += part.size
+            absent += part.size if part.is_optional else 0
+
+    def _placed(self, name: str) -> PlacedPart | None:
+        """The part of that name; None for the payload and for literals of the end."""
+        return next((item for item in (*self._head, *self._tail) if item.name == name), None)
+
+    def _bounds(self, name: str) -> tuple[Place, Place]:
+        """Where a part of the content begins and ends."""
+        item = self._placed(name)
+        if item is None:
+            return Place(Side.HEAD, self._head_size), Place(Side.TAIL, 0)
+        return item.place, item.end_place
+
+    def _length(self) -> LengthPlan | None:
+        part = self._frame.length
+        if part is None:
+            return None
+        counted = [self._frame.part(name) for name in part.counts]
+        return LengthPlan(
+            part=part,
+            base=sum(other.size for other in counted if not other.is_optional),
+            optional=sum(other.size for other in counted if other.is_optional),
+        )
+
+    # --- start and end ----------------------------------------------------------------------------
+
+    def _start_set(self) -> range:
+        start = self._start
+        return range(start.least, start.greatest + 1) if isinstance(start, StartSet) else range(0)
+
+    def _end_rule(self) -> EndRule:
+        if self._unique_end:
+            return EndRule.DELIMITER
+        if self._stuffed and self._unique_start and not self._end_bytes:
+            return EndRule.NEXT_START
+        return EndRule.IDENTITY if self._frame.length is None else EndRule.LENGTH
+
+    def _rescans(self) -> bool:
+        end_is_final = self._unique_end and _has_no_border(self._end_bytes)
+        match self._start:
+            case StartLiteral():
+                return not (end_is_final if self._shares else self._unique_start)
+            case StartSet():
+                return not self._unique_start
+            case AfterEnd():
+                return not end_is_final
+        return True
+
+    # --- the stuffed region -----------------------------------------------------------------------
+
+    @cached_property
+    def _stuffed(self) -> tuple[str, ...]:
+        """The parts of the content that are stuffed."""
+        transparency = self._frame.transparency
+        if transparency is None:
+            return ()
+        first, last = map(self._names.index, (transparency.first, transparency.last))
+        kept = {part.name for part in self._content}
+        return tuple(name for name in self._names[first : last + 1] if name in kept)
+
+    @cached_property
+    def _region(self) -> StuffedRegion | None:
+        transparency = self._frame.transparency
+        if transparency is None:
+            return None
+        names = [part.name for part in self._content]
+        begin = names.index(self._stuffed[0])
+        stop = begin + len(self._stuffed)
+        parts = self._content[begin:stop]
+        covers_payload = begin <= self._payload_index < stop
+        can_be_empty = all(part.is_optional or isinstance(part, PayloadPart) for part in parts)
+        return StuffedRegion(
+            encoding=transparency.encoding,
+            lenient=transparency.lenient,
+            parts=self._stuffed,
+            first=self._bounds(self._stuffed[0])[0],
+            end=self._bounds(self._stuffed[-1])[1],
+            before=sum(part.size for part in self._content[:begin]),
+            behind=sum(part.size for part in self._content[stop:]),
+            literals_in_front=all(isinstance(part, LiteralPart) for part in self._content[:begin]),
+            covers_payload=covers_payload,
+            can_be_empty=can_be_empty,
+            reaches_end=stop == len(names) and begin <= self._payload_index and not can_be_empty,
+            codes=_codes(transparency.encoding),
+        )
+
+    # --- checksums --------------------------------------------------------------------------------
+
+    def _checksum(self, part: ChecksumPart) -> ChecksumPlan:
+        placed = self._placed(part.name)
+        assert placed is not None
+        own = self._names.index(part.name)
+        return ChecksumPlan(
+            part=part,
+            placed=placed,
+            covers=tuple(self._covers(part)),
+            is_behind=all(self._names.index(name) < own for name in part.covers),
+        )
+
+    def _covers(self, part: ChecksumPart) -> list[Run | bytes]:
+        found: list[Run | bytes] = []
+        for name in part.covers:
+            covered = self._frame.part(name)
+            if isinstance(covered, LiteralPart) and covered in self._end_literals:
+                found.append(covered.bytes)
+                continue
+            first, end = self._bounds(name)
+            over = part.over_wire and name in self._stuffed
+            last = found[-1] if found else None
+            if isinstance(last, Run) and last.end == first and last.over_stuffing == over:
+                found[-1] = Run(last.first, end, over)
+            else:
+                found.append(Run(first, end, over))
+        return found
+
+    # --- what an engine may do --------------------------------------------------------------------
+
+    @property
+    def _checksums_are_alike(self) -> bool:
+        return len({part.when_payload for part in self._frame.checksums}) < 2
+
+    @property
+    def _region_is_plain(self) -> bool:
+        region = self._region
+        if region is None:
+            return True
+        starts_in_front = isinstance(self._start, AfterEnd) or region.before > 0
+        return starts_in_front and region.covers_payload
+
+    @cached_property
+    def _is_regular(self) -> bool:
+        behind = all(isinstance(item.part, ChecksumPart) for item in self._tail)
+        return behind and self._checksums_are_alike and self._region_is_plain
+
+    @property
+    def _end_is_told(self) -> bool:
+        """True if bytes of the wire tell where a frame ends, before they are unstuffed."""
+        if self._end_rule() in (EndRule.DELIMITER, EndRule.NEXT_START):
+            return True
+        return not self._stuffed and bool(self._frame.length or self._frame.identity)
+
+    def _takes_whole(self) -> bool:
+        region = self._region
+        checksums = [self._placed(part.name) for part in self._frame.checksums]
+        optional = any(part.when_payload for part in self._frame.checksums)
+        early = {item.part.name for item in self._head}
+        told = [*self._frame.identity, *filter(None, [self._frame.length])]
+        cuts_region = region is not None and region.behind and region.before < self._head_size
+        return (
+            self._is_regular
+            and self._end_is_told
+            and not isinstance(self._start, Anywhere)
+            and all(part.name in early for part in told)
+            and not (region is not None and any(p.over_wire for p in self._frame.checksums))
+            and not (optional and any(item is not None and item.in_head for item in checksums))
+            and not (optional and cuts_region)
+            and (not self._shares or self._shares_plainly)
+        )
+
+    @property
+    def _shares_plainly(self) -> bool:
+        """True if a frame with a shared delimiter is all that is between two of them."""
+        region = self._region
+        size = len(self._start_bytes)
+        alone = region is None or (region.literals_in_front and region.before == size)
+        return alone and self._unique_end
+
+    def _streams(self) -> bool:
+        """A checksum in front of what it covers, and the codes of COBS, tell what follows."""
+        transparency = self._frame.transparency
+        if transparency is not None:
+            over_wire = any(part.over_wire for part in self._frame.checksums)
+            if over_wire or isinstance(transparency.encoding, Cobs):
+                return False
+        return all(self._checksum(part).is_behind for part in self._frame.checksums)
+
+
+def _without_end(
+    parts: tuple[Part, ...], size: int
+) -> tuple[tuple[Part, ...], tuple[LiteralPart, ...]]:
+    """The parts without the literals that make up the end of that size, and those."""
+    left = size
+    literals: list[LiteralPart] = []
+    while left > 0 and isinstance(part := parts[len(parts) - 1 - len(literals)], LiteralPart):
+        left -= part.size
+        literals.insert(0, part)
+    return parts[: len(parts) - len(literals)], tuple(literals)
+
+
+def _codes(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:
+    match encoding:
+        case Substitution(table=table):
+            return tuple(sorted(dict(table).items()))
+        case Escape(byte=escape, of=of, xor=xor):
+            return tuple((byte, bytes((escape, byte ^ xor))) for byte in sorted(set(of)))
+        case Base16() | Cobs():
+            return ()
+
+
+def _has_no_border(literal: bytes) -> bool:
+    """True if no beginning of the literal is also an end of it."""
+    return not any(literal.endswith(literal[:size]) for size in range(1, len(literal)))
