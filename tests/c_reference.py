@@ -10,12 +10,12 @@ import struct
 from collections.abc import Sequence
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -11,10 +11,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -7,7 +7,6 @@ from fractions import Fraction
 from typing import Any
 
 from protogen.model.checksums import find_algorithm
-from protogen.model.fields import Field
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -30,6 +29,7 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Case,
     Enum,
+    Field,
     Flags,
     Integer,
     NamedBit,

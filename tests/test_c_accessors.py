@@ -11,8 +11,7 @@ from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_tool
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Fill, Fixed, Struct
+from protogen.model.types import Array, Field, Fill, Fixed, Struct
 from protogen.targets.c.accessors import is_readable
 from protogen.targets.c.module import view
 from protogen.targets.c.options import COptions

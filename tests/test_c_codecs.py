@@ -28,17 +28,15 @@ from tooling import require_tool
 
 from protogen.compiler import compile_file
 from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Float, Integer, Octets, Struct, Switch, Text, Type
+from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.runtime.constructs import PayloadError, whole
 from protogen.runtime.errors import EncodeError
 from protogen.targets.c import options
 from protogen.targets.c.emit import emit
 from protogen.targets.c.options import COptions
 from protogen.targets.c.spelling import Names
-from protogen.targets.c.storage import needed_names
 from protogen.targets.python.live import module_of
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -288,7 +286,7 @@ def spoilings(
 
 
 def counting_names(fields: Sequence[Field]) -> frozenset[str]:
-    return frozenset().union(*(needed_names(field.type) for field in fields))
+    return frozenset().union(*(field.type.needs for field in fields))
 
 
 def others(type_: Type, value: Any, used: frozenset[str], scope: Values) -> Iterator[Any]:

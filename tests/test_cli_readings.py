@@ -10,9 +10,8 @@ import pytest
 from cli_support import SINK, run
 
 from protogen.cli.progress import progress
-from protogen.model.fields import Field
 from protogen.model.readings import decimal, physical, type_name
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 
 
 @pytest.fixture

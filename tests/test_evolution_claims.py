@@ -10,9 +10,8 @@ from cli_support import run
 from protogen.compiler import compile_file
 from protogen.evolution.findings import Finding, findings
 from protogen.evolution.quantities import meaning_of
-from protogen.model.fields import Field
 from protogen.model.protocol import Protocol
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.runtime.errors import DecodeError
 from protogen.targets.python.live import module_of
 

@@ -10,7 +10,6 @@ from passes_support import HEAD, SCHEMAS, protocol_of
 
 from protogen.compiler import compile_file
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.fields import Field
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -30,6 +29,7 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Counted,
+    Field,
     Fill,
     Fixed,
     Float,

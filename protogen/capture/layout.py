@@ -16,7 +16,6 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
-from protogen.model.fields import Field
 from protogen.model.frame import CounterPart, IdentityPart, NumberPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -24,6 +23,7 @@ from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Float,
     Integer,
@@ -31,19 +31,10 @@ from protogen.model.types import (
     Struct,
     Switch,
     Type,
+    count_name,
+    counting_bits,
 )
 from protogen.model.types import Text as TextType
-from protogen.targets.c.spelling import counting_type, width
-from protogen.targets.c.storage import (
-    constant_number,
-    count_member,
-    extent_of,
-    fills,
-    holds_values,
-    is_stored,
-    rest_member,
-    room,
-)
 
 _BYTE = Number("u1", 1)
 _WORD = Number("u4", 4)
@@ -173,24 +164,24 @@ def _columns(fields: Sequence[Field], around: Constants) -> Iterator[Column]:
         counter = _counter(fields, field)
         if counter is not None:
             yield counter
-        if is_stored(field):
+        if field.is_stored:
             by = None if counter is None else counter.name
             yield _column(field.type, field.name, field, constants, by)
-        value = constant_number(field)
+        value = field.constant_number
         constants.pop(field.name, None)
         if value is not None:
             constants[field.name] = value
 
 
 def _counter(fields: Sequence[Field], field: Field) -> Column | None:
-    extent = extent_of(field.type)
-    if extent is None or not fills(field):
+    extent = field.type.extent
+    if extent is None or not field.fills:
         return None
     return Column(
-        name=count_member(fields, field),
+        name=count_name(fields, field),
         role="count",
         source=field.name,
-        shape=_counting(room(extent)),
+        shape=_counting(extent.room),
         field=field,
     )
 
@@ -216,7 +207,7 @@ def _column(
 
 def _dimension(extent: Extent, constants: Constants, filled_by: str | None) -> Dimension:
     """C has no empty arrays, so there is room for one element at least."""
-    capacity = max(1, room(extent))
+    capacity = max(1, extent.room)
     match extent:
         case Counted(field=name) if name not in constants:
             return Dimension(capacity, name)
@@ -233,7 +224,7 @@ def _shape(type_: Type, field: Field, constants: Constants) -> Shape:
         case Float(bits=bits):
             return Number(f"f{bits // 8}", bits // 8)
         case TextType(extent=extent):
-            return Text(max(1, room(extent)))
+            return Text(max(1, extent.room))
         case Octets():
             return _BYTE
         case Struct(fields=fields):
@@ -247,12 +238,12 @@ def _shape(type_: Type, field: Field, constants: Constants) -> Shape:
 def _number(type_: Integer) -> Number:
     if type_.role == "bool":
         return Number("?", 1)
-    size = width(type_.bits) // 8
+    size = type_.width // 8
     return Number(f"{'i' if type_.signed else 'u'}{size}", size)
 
 
 def _counting(greatest: int) -> Number:
-    size = int(counting_type(greatest).removeprefix("uint").removesuffix("_t")) // 8
+    size = counting_bits(greatest) // 8
     return Number(f"u{size}", size)
 
 
@@ -260,9 +251,9 @@ def _choice(switch: Switch, field: Field, constants: Constants) -> Choice:
     cases = tuple(
         (case.value, _column(case.type, case.name, field, constants))
         for case in switch.cases
-        if holds_values(case.type)
+        if case.type.holds_values
     )
-    empty = tuple(case.value for case in switch.cases if not holds_values(case.type))
+    empty = tuple(case.value for case in switch.cases if not case.type.holds_values)
     rest = None if switch.rest is None else _rest(switch, switch.rest, field)
     every = [column for _, column in cases] + ([] if rest is None else [rest])
     alignment = max(item.shape.alignment for item in every)
@@ -281,7 +272,7 @@ def _rest(switch: Switch, greatest: int, field: Field) -> Column:
         dimensions=(Dimension(max(1, greatest), "size"),),
     )
     return Column(
-        name=rest_member(switch),
+        name=switch.rest_name,
         role="field",
         source=field.name,
         shape=record([size, held]),

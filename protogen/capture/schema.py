@@ -11,10 +11,9 @@ from enum import IntEnum
 from math import prod
 from typing import Literal
 
-from protogen.model.fields import Field
 from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
-from protogen.model.types import Enum, Flags, Float, Integer, NamedValue, Type
+from protogen.model.types import Enum, Field, Flags, Float, Integer, NamedValue, Type
 from protogen.runtime.errors import Reason
 
 Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]

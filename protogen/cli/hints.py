@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.cli.scalars import allowed
-from protogen.model.fields import Field
 from protogen.model.readings import type_name
-from protogen.model.types import Array, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
 """The values that were given, which choose the cases of switches."""

@@ -9,9 +9,8 @@ from typing import Any
 
 from protogen.cli.exits import UsageError
 from protogen.cli.hexinput import HexError, parse_hex
-from protogen.model.fields import Field
 from protogen.model.readings import decimal
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.problems import did_you_mean, hint_for
 from protogen.runtime.nearest import nearest_reading
 

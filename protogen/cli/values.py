@@ -21,10 +21,10 @@ from protogen.cli.scalars import (
     octets_value,
     text_value,
 )
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Case,
+    Field,
     Float,
     Integer,
     Octets,

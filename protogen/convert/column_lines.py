@@ -19,8 +19,7 @@ from protogen.convert.arrays import Array, Lists, Nothing, Numbers
 from protogen.convert.columns import ColumnBatch, Reading, Readings, payload_places
 from protogen.convert.plain_rows import json_fields, plain_rows
 from protogen.convert.printed_lines import PrintedLines
-from protogen.model.fields import Field
-from protogen.model.types import Struct
+from protogen.model.types import Field, Struct
 from protogen.native.errors import NativeError
 from protogen.native.source import has_one_spelling
 from protogen.runtime.errors import EncodeError

@@ -24,8 +24,7 @@ from protogen.convert.meanings import NameFinder, physical
 from protogen.convert.nested import nested
 from protogen.convert.tables import REASONS, Column, Naming, Physical, Table, Tables
 from protogen.convert.values import Values
-from protogen.model.fields import Field
-from protogen.model.types import Fixed
+from protogen.model.types import Field, Fixed
 from protogen.model.types import Octets as OctetsType
 from protogen.model.types import Struct as StructType
 from protogen.model.types import Switch as SwitchType

@@ -18,8 +18,18 @@ from protogen.capture.schema import Text as TextShape
 from protogen.convert.plain import constant_of
 from protogen.convert.plain_rows import json_value
 from protogen.convert.programs import JSON, Place, Programs, operand
-from protogen.model.fields import Field
-from protogen.model.types import Array, Counted, Extent, Fixed, Octets, Struct, Switch, Text, Type
+from protogen.model.types import (
+    Array,
+    Counted,
+    Extent,
+    Field,
+    Fixed,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
 from protogen.native.printer import DEPTH, Kind, Operand
 
 Scope = ChainMap[str, Place | int]

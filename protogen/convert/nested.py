@@ -26,9 +26,8 @@ from protogen.convert.unstored import (
     unstored,
 )
 from protogen.convert.values import Values
-from protogen.model.fields import Field
 from protogen.model.types import Array as ArrayType
-from protogen.model.types import Fixed, Struct, Switch, Text, Type
+from protogen.model.types import Field, Fixed, Struct, Switch, Text, Type
 from protogen.model.types import Octets as OctetsType
 
 

@@ -6,8 +6,7 @@ from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Float, Integer, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
 """The values of the fields in front, which choose the cases of switches."""

@@ -11,8 +11,7 @@ from typing import Any
 from protogen.capture.schema import TableSchema
 from protogen.convert.composed import Structs
 from protogen.convert.nested import nested
-from protogen.model.fields import Field
-from protogen.model.types import Array, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Field, Octets, Struct, Switch, Type
 
 
 def plain_rows(table: TableSchema, rows: Any) -> list[dict[str, Any]]:

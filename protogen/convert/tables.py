@@ -25,12 +25,12 @@ from fractions import Fraction
 from math import lcm
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import (
     Array,
     Case,
+    Field,
     Fixed,
     Float,
     Integer,

@@ -15,9 +15,8 @@ from protogen.convert.arrays import Array
 from protogen.convert.composed import Cases, ListsOf, Same, Scattered, Structs
 from protogen.convert.plain import constant_of
 from protogen.convert.values import Values
-from protogen.model.fields import Field
 from protogen.model.types import Array as ArrayType
-from protogen.model.types import Counted, Fixed, Struct, Switch, Type
+from protogen.model.types import Counted, Field, Fixed, Struct, Switch, Type
 
 Scope = ChainMap[str, Array]
 """The numbers in front, which count and choose, of each row."""

@@ -9,8 +9,8 @@ from fractions import Fraction
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of
-from protogen.model.fields import Field
 from protogen.model.readings import decimal, type_name
+from protogen.model.types import Field
 
 _CHANGES = {
     "enum-value": "",

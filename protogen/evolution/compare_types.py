@@ -28,7 +28,7 @@ from protogen.model.types import (
 )
 
 if TYPE_CHECKING:
-    from protogen.model.fields import Field
+    from protogen.model.types import Field
 
 Report = Callable[[str, str, str], Change]
 """Makes a change of a rule, a place inside the field, and words."""

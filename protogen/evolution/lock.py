@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from protogen.model import checksums, frame, framing, messages, origin, protocol, reserved, sizes
-from protogen.model import fields as model_fields
 from protogen.model import types as model_types
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -42,7 +41,6 @@ _MODULES = (
     frame,
     framing,
     messages,
-    model_fields,
     model_types,
     origin,
     protocol,

@@ -14,10 +14,9 @@ from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.model.dissect import Cursor, Row, dissect
-from protogen.model.fields import Field
 from protogen.model.protocol import Protocol
 from protogen.model.readings import physical, value_name
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.model.wire import Unit
 from protogen.runtime.decoder import Decoder
 from protogen.targets.python.live import kept_module

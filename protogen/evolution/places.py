@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.origin import About
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
 from protogen.problems.span import Span
 
 

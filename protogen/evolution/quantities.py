@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from protogen.model.fields import Field
+from protogen.model.types import Field
 
 _BASES = frozenset(["m", "s", "g", "V", "A", "W", "J", "N", "Pa", "Hz", "Ohm", "F", "T", "rad"])
 _PREFIXES = {

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, BinaryIO
 
 from protogen.fuzzing.samples import Values
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -26,9 +26,9 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    counting_bits,
+    storage_bits,
 )
-from protogen.targets.c.spelling import width
-from protogen.targets.c.storage import chosen_case, extent_of, fills, room
 
 Scope = dict[str, int]
 """The numbers in front, which count and select."""
@@ -70,13 +70,13 @@ def number(value: int, size: int, *, signed: bool = False) -> bytes:
 
 def member_size(type_: Integer | Float) -> int:
     """Bytes of the member that holds such numbers."""
-    return width(type_.bits) // 8
+    return storage_bits(type_.bits) // 8
 
 
 def counting_size(extent: Extent | int) -> int:
     """Bytes of the member that counts elements or bytes."""
-    greatest = extent if isinstance(extent, int) else room(extent)
-    return width(max(1, greatest.bit_length())) // 8
+    greatest = extent if isinstance(extent, int) else extent.room
+    return counting_bits(greatest) // 8
 
 
 # --- values into bytes ----------------------------------------------------------------------------
@@ -92,8 +92,8 @@ def pack(fields: Sequence[Field], values: Mapping[str, Any], scope: Scope | None
             inner[field.name] = int(value)
         if field.const is not None:
             continue
-        if fills(field):
-            extent = extent_of(field.type)
+        if field.fills:
+            extent = field.type.extent
             assert extent is not None
             size = len(value) // (2 if isinstance(field.type, Octets) else 1)
             parts.append(number(size, counting_size(extent)))
@@ -115,7 +115,7 @@ def _pack(type_: Type, value: Any, scope: Scope) -> bytes:
         case Struct(fields=fields):
             return pack(fields, value, scope)
         case Array(element=element, extent=extent):
-            if len(value) != _count(extent, len(value), scope) or len(value) > room(extent):
+            if len(value) != _count(extent, len(value), scope) or len(value) > extent.room:
                 raise Unfit
             return b"".join(_pack(element, item, scope) for item in value)
         case Switch():
@@ -123,7 +123,7 @@ def _pack(type_: Type, value: Any, scope: Scope) -> bytes:
 
 
 def _pack_case(type_: Switch, value: Any, scope: Scope) -> bytes:
-    case = chosen_case(type_, scope[type_.selector])
+    case = type_.case(scope[type_.selector])
     if case is not None:
         return b"" if value is None else _pack(case.type, value, scope)
     if type_.rest is None:
@@ -136,7 +136,7 @@ def _pack_case(type_: Switch, value: Any, scope: Scope) -> bytes:
 
 def _padded(data: bytes, extent: Extent, scope: Scope) -> bytes:
     size = _count(extent, len(data), scope)
-    if len(data) > size or size > room(extent):
+    if len(data) > size or size > extent.room:
         raise Unfit
     return data.ljust(size, b"\0")
 
@@ -170,8 +170,8 @@ def unpack(fields: Sequence[Field], answers: Answers, scope: Scope | None = None
             found[field.name] = _shown(field.type, field.const)
         else:
             count = 0
-            if fills(field):
-                extent = extent_of(field.type)
+            if field.fills:
+                extent = field.type.extent
                 assert extent is not None
                 count = answers.number(counting_size(extent))
             found[field.name] = _unpack(field.type, answers, count, inner)
@@ -213,7 +213,7 @@ def _unpack(type_: Type, answers: Answers, count: int, scope: Scope) -> Any:
 
 
 def _unpack_case(type_: Switch, answers: Answers, scope: Scope) -> Any:
-    case = chosen_case(type_, scope[type_.selector])
+    case = type_.case(scope[type_.selector])
     if case is None:
         assert type_.rest is not None
         return answers.take(answers.number(counting_size(type_.rest))).hex()

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Counted,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -21,17 +21,10 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    count_name,
 )
 from protogen.targets.c.spelling import constant
-from protogen.targets.c.storage import (
-    Number,
-    Scope,
-    count_member,
-    fills,
-    holds_values,
-    is_stored,
-    rest_member,
-)
+from protogen.targets.c.storage import Number, Scope
 
 
 def walk_function(name: str, struct: str, fields: Sequence[Field]) -> str:
@@ -73,10 +66,10 @@ class _Walk:
                     else Number(f"{at}{field.name}", field.type)
                 )
             count = ""
-            if fills(field):
-                count = f"{at}{count_member(fields, field)}"
+            if field.fills:
+                count = f"{at}{count_name(fields, field)}"
                 self._scalar(count)
-            if is_stored(field):
+            if field.is_stored:
                 self._value(field.type, f"{at}{field.name}", count, inner)
 
     def _scalar(self, place: str) -> None:
@@ -106,7 +99,7 @@ class _Walk:
                 return str(found) if isinstance(found, int) else found.expression
 
     def _elements(self, type_: Array, place: str, count: str, scope: Scope) -> None:
-        if not holds_values(type_.element):
+        if not type_.element.holds_values:
             return
         index = f"i{self._loops}"
         self._loops += 1
@@ -124,11 +117,11 @@ class _Walk:
                 literal = constant(case.value, selector.type)
                 condition = f"{selector.expression} == {literal}"
             with self._block(f"if ({condition})"):
-                if holds_values(case.type):
+                if case.type.holds_values:
                     self._value(case.type, f"{place}.{case.name}", "", scope)
             self._add("else")
         with self._block(""):
             if type_.rest is not None:
-                rest = f"{place}.{rest_member(type_)}"
+                rest = f"{place}.{type_.rest_name}"
                 self._scalar(f"{rest}.size")
                 self._add(f"octets({rest}.bytes, (size_t){rest}.size);")

@@ -11,13 +11,13 @@ from fractions import Fraction
 from random import Random
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.frame import CounterPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fixed,
     Float,
     Integer,

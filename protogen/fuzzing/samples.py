@@ -23,10 +23,9 @@ from protogen.fuzzing.choices import (
     scalar_choices,
     unspecified_choices,
 )
-from protogen.model.fields import Field
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
-from protogen.model.types import Array, Struct, Switch, Type
+from protogen.model.types import Array, Field, Struct, Switch, Type
 
 Values = dict[str, Any]
 """Names of fields or parts with their values."""

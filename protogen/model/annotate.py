@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from protogen.model.dissect import Cursor, Row, decoded, dissect, encoded
+from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.frame import (
     ChecksumPart,
     IdentityPart,
@@ -20,6 +20,7 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.messages import Message
+from protogen.model.numbers import codec
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character, type_name
 from protogen.model.wire import FULL_GROUP, Unit, Wire, fixed_size, unstuff
@@ -144,7 +145,7 @@ class _Frame:
         if piece.missing:
             return row
         try:
-            value = decoded(part.type, piece.bytes)
+            value = codec(part.type).decode(piece.bytes)
         except ByteError as error:
             return replace(row, fault=str(error))
         if isinstance(part, ChecksumPart):
@@ -174,7 +175,7 @@ class _Frame:
             return row
         pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
-        due = encoded(part.type, _checksum_of(part).compute(covered))
+        due = codec(part.type).encode(_checksum_of(part).compute(covered))
         if row.bytes == due:
             return row
         # In the words of a decoder: bytes in wire order, which are not always the number's digits.

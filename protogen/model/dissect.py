@@ -7,8 +7,8 @@ from collections import ChainMap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from protogen.model.fields import Field
 from protogen.model.frame import Part
+from protogen.model.numbers import codec
 from protogen.model.readings import (
     integer_reading,
     physical,
@@ -20,6 +20,7 @@ from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fixed,
     Float,
     Integer,
@@ -31,7 +32,6 @@ from protogen.model.types import (
 )
 from protogen.model.wire import Unit
 from protogen.runtime.errors import ByteError
-from protogen.runtime.number import Number
 
 Scope = ChainMap[str, int]
 """The integers read so far, which count and select what follows."""
@@ -246,28 +246,13 @@ def _read(field: Field, type: Integer | Float | Text | Octets, row: Row) -> Row:
 
 def _number(field: Field, type: Integer | Float, row: Row) -> Row:
     try:
-        value = decoded(type, row.bytes)
+        value = codec(type).decode(row.bytes)
     except ByteError as error:
         return replace(row, fault=str(error))
     if isinstance(type, Float):
         real = _float(type, value)
         return row.reads(real, physical(field, real, gap=" "))
     return row.reads(value, _meaning(field, type, value), _fault(field, type, value))
-
-
-def decoded(type: Integer | Float, data: bytes) -> int:
-    """Read an integer, or the bits of a float. Raises ByteError if there is none like that."""
-    return _layout(type).decode(data)
-
-
-def encoded(type: Integer, value: int) -> bytes:
-    """The bytes of an integer."""
-    return _layout(type).encode(value)
-
-
-def _layout(type: Integer | Float) -> Number:
-    signed = isinstance(type, Integer) and type.signed
-    return Number(type.bits, signed, type.byte_order, seven_bit=type.byte_bits == 7)
 
 
 def _float(type: Float, pattern: int) -> float:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.origin import NOTHING, About
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 from protogen.problems.span import Span
 
 

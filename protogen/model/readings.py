@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Extent,
+    Field,
     Fill,
     Fixed,
     Flags,

@@ -1,22 +1,36 @@
-"""Types of fields, resolved to bytes.
+"""Fields and their types, resolved to bytes.
 
 A type says how a value lies on the wire; what the value means is on the field.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from typing import TYPE_CHECKING, Literal
+from fractions import Fraction
+from typing import ClassVar, Literal
 
+from protogen.model.names import free_name
 from protogen.model.origin import NOTHING, About
 from protogen.model.sizes import SizeSet
 
-if TYPE_CHECKING:
-    from protogen.model.fields import Field
-
 ByteOrder = Literal["little", "big"]
 IntegerRole = Literal["number", "byte", "char", "bool"]
+Constant = int | float | str | bytes | tuple[int, ...]
+"""A raw value: a number, a text, bytes, or the numbers of an array."""
+
+_NO_NAMES: frozenset[str] = frozenset()
+
+
+def storage_bits(bits: int) -> int:
+    """Bits of the smallest machine integer that holds so many: 8, 16, 32 or 64."""
+    return next(width for width in (8, 16, 32, 64) if bits <= width)
+
+
+def counting_bits(greatest: int) -> int:
+    """Bits of the smallest machine integer that counts from 0 to `greatest`."""
+    return storage_bits(max(1, greatest.bit_length()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +103,19 @@ class Integer:
     enum: Enum | None = None
     flags: Flags | None = None
     bit_fields: tuple[BitField, ...] = ()
+    extent: ClassVar[None] = None
+    holds_values: ClassVar[bool] = True
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def width(self) -> int:
+        """Bits of the smallest machine integer that holds the value."""
+        return storage_bits(self.bits)
+
+    @property
+    def is_closed(self) -> bool:
+        """True if only the values of a closed enum are valid."""
+        return self.enum is not None and self.enum.closed
 
     @property
     def size(self) -> int:
@@ -111,7 +138,7 @@ class Integer:
         return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
 
     def holds(self, value: int) -> bool:
-        """Whether the bits can hold `value`."""
+        """True if the bits can hold `value`."""
         return self.least <= value <= self.greatest
 
 
@@ -122,6 +149,14 @@ class Float:
     bits: Literal[32, 64]
     byte_bits: Literal[7, 8] = 8
     byte_order: ByteOrder = "little"
+    extent: ClassVar[None] = None
+    holds_values: ClassVar[bool] = True
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def pattern(self) -> Integer:
+        """The unsigned integer with the same bits."""
+        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
 
     @property
     def size(self) -> int:
@@ -139,6 +174,12 @@ class Fixed:
     """A number of elements (or bytes) that never changes."""
 
     count: int
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def room(self) -> int:
+        """The greatest number of elements or bytes."""
+        return self.count
 
     @property
     def counts(self) -> SizeSet:
@@ -154,8 +195,18 @@ class Counted:
     least: int
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
-    """Whether the schema bounds the number; else `greatest` is what the field or frame can take,
+    """True if the schema bounds the number; else `greatest` is what the field or frame can take,
     in a declared type wherever it has the most room."""
+
+    @property
+    def room(self) -> int:
+        """The greatest number of elements or bytes."""
+        return self.greatest
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The name of the field that counts."""
+        return frozenset({self.field})
 
     @property
     def counts(self) -> SizeSet:
@@ -169,8 +220,14 @@ class Fill:
 
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
-    """Whether the schema bounds the number; else `greatest` is what the frame can take, in a
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
     declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def room(self) -> int:
+        """The greatest number of elements or bytes."""
+        return self.greatest
 
     @property
     def counts(self) -> SizeSet:
@@ -187,6 +244,12 @@ class Text:
 
     extent: Extent
     byte_bits: Literal[7, 8] = 8
+    holds_values: ClassVar[bool] = True
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The name of the field that counts, if one does."""
+        return self.extent.needs
 
     @property
     def sizes(self) -> SizeSet:
@@ -200,6 +263,12 @@ class Octets:
 
     extent: Extent
     byte_bits: Literal[7, 8] = 8
+    holds_values: ClassVar[bool] = True
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The name of the field that counts, if one does."""
+        return self.extent.needs
 
     @property
     def sizes(self) -> SizeSet:
@@ -217,9 +286,20 @@ class Struct:
     about: About = NOTHING
     sizes: SizeSet = dataclass_field(init=False, repr=False, compare=False)
     """Wire bytes. Added up once: structs that hold each other are asked at every level."""
+    extent: ClassVar[None] = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sizes", total(self.fields))
+
+    @property
+    def holds_values(self) -> bool:
+        """True if a record keeps anything of it."""
+        return any(field.is_stored or field.fills for field in self.fields)
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Names of fields in front of the struct that count or select something inside of it."""
+        return needed_by(self.fields)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -230,6 +310,16 @@ class Array:
     extent: Extent
 
     @property
+    def holds_values(self) -> bool:
+        """True if a record keeps anything of it."""
+        return self.element.holds_values
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Names of earlier fields that count the elements or something inside of them."""
+        return self.extent.needs | self.element.needs
+
+    @property
     def sizes(self) -> SizeSet:
         """Wire bytes."""
         return self.element.sizes.times(self.extent.counts)
@@ -237,7 +327,7 @@ class Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """What a switch is for one raw value of its selector. A case of no bytes is an empty struct."""
+    """Type for one raw value of a switch's selector. A case of no bytes is an empty struct."""
 
     value: int
     name: str
@@ -258,6 +348,26 @@ class Switch:
     rest: int | None
     byte_bits: Literal[7, 8] = 8
     """Bits that each byte of the rest carries."""
+    extent: ClassVar[None] = None
+
+    @property
+    def holds_values(self) -> bool:
+        """True if a record keeps anything of it."""
+        return self.rest is not None or any(case.type.holds_values for case in self.cases)
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Names of earlier fields that select the case or count something inside of one."""
+        return frozenset({self.selector}).union(*(case.type.needs for case in self.cases))
+
+    @property
+    def rest_name(self) -> str:
+        """Name beside the cases' for the bytes of a value without a case."""
+        return free_name("other", {case.name for case in self.cases})
+
+    def case(self, value: int) -> Case | None:
+        """The case of a value of the selector."""
+        return next((case for case in self.cases if case.value == value), None)
 
     @property
     def sizes(self) -> SizeSet:
@@ -271,9 +381,77 @@ class Switch:
 Type = Integer | Float | Text | Octets | Struct | Array | Switch
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One field of a message or struct.
+
+    For integers `least` and `greatest` are the raw bounds that an encoder allows: the range, else
+    what the bits can hold; for floats they are the range or None; for arrays they bound each
+    element. The same holds for `special`, `scale`, `offset` and `unit`.
+    """
+
+    name: str
+    type: Type
+    position: int | None
+    """Byte offset in the message or struct; None where it varies."""
+    const: Constant | None = None
+    default: Constant | None = None
+    least: Fraction | None = None
+    greatest: Fraction | None = None
+    ranged: bool = False
+    """True if the schema states the range."""
+    scale: Fraction = Fraction(1)
+    offset: Fraction = Fraction(0)
+    unit: str | None = None
+    special: tuple[NamedValue, ...] = ()
+    unknown: bool = False
+    about: About = NOTHING
+
+    @property
+    def scaled(self) -> bool:
+        """True if the physical value differs from the raw value."""
+        return self.scale != 1 or self.offset != 0
+
+    @property
+    def size(self) -> int | None:
+        """Wire bytes, where they do not vary."""
+        return self.type.sizes.fixed
+
+    @property
+    def is_stored(self) -> bool:
+        """True if a record has a member for the value: constants and empty structs have none."""
+        return self.const is None and self.type.holds_values
+
+    @property
+    def fills(self) -> bool:
+        """True if the payload's end says how many elements or bytes there are."""
+        return self.const is None and isinstance(self.type.extent, Fill)
+
+    @property
+    def constant_number(self) -> int | None:
+        """The value of a constant integer."""
+        if isinstance(self.type, Integer) and isinstance(self.const, int):
+            return int(self.const)
+        return None
+
+
 def total(fields: tuple[Field, ...]) -> SizeSet:
     """Sizes of fields that follow each other."""
     sizes = SizeSet.exactly(0)
     for field in fields:
         sizes += field.type.sizes
     return sizes
+
+
+def needed_by(fields: Sequence[Field]) -> frozenset[str]:
+    """Names of numbers in front of some fields that count or select in them."""
+    needed = _NO_NAMES
+    for field in reversed(fields):
+        needed = (needed - {field.name}) | field.type.needs
+    return needed
+
+
+def count_name(fields: Sequence[Field], field: Field) -> str:
+    """Name beside those of `fields` for the number of elements or bytes of one that `fills`."""
+    word = "count" if isinstance(field.type, Array) else "size"
+    return free_name(f"{field.name}_{word}", {item.name for item in fields})

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import struct
 
-from protogen.model.fields import Constant
 from protogen.model.types import (
     Array,
+    Constant,
     Fixed,
     Float,
     Integer,

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.fields import Field
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.passes.capacity import is_optional, part_size
 from protogen.passes.wire_code import ByteSet, code_of, covered_parts, part_bytes
 from protogen.runtime import checksum as sums

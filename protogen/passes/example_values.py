@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Integer, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Field, Integer, Octets, Struct, Switch, Type
 from protogen.passes.constants import named_raw_value
 from protogen.schema.syntax.octets import to_octets
 

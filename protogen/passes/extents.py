@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.fields import Field
-from protogen.model.types import Counted, Extent, Fill, Fixed, Integer
+from protogen.model.types import Counted, Extent, Field, Fill, Fixed, Integer
 from protogen.passes.context import Context, Loc
 from protogen.passes.setting import Setting
 from protogen.problems import hint_for

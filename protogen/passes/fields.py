@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Case,
     Counted,
     Extent,
+    Field,
     Fill,
     Octets,
     Struct,

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.fields import Constant, Field
-from protogen.model.types import Array, Float, Integer, NamedValue, Type
+from protogen.model.types import Array, Constant, Field, Float, Integer, NamedValue, Type
 from protogen.passes.constants import read_constant
 from protogen.passes.context import Context, about
 from protogen.passes.declared import Effective

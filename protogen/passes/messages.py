@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from protogen.model.fields import Field
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
-from protogen.model.types import ByteOrder, Fill, Octets, total
+from protogen.model.types import ByteOrder, Field, Fill, Octets, total
 from protogen.passes.byte_orders import byte_order_of
 from protogen.passes.capacity import GREATEST_FRAME, amount, is_delimited, payload_range
 from protogen.passes.context import Context, Loc, about

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Enum,
+    Field,
     Flags,
     Float,
     Integer,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 
 
 def placed(fields: Iterable[Field]) -> tuple[Field, ...]:

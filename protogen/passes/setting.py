@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import ChainMap
 from dataclasses import dataclass, field, replace
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 from protogen.passes.capacity import GREATEST_FRAME
 from protogen.passes.type_names import Layout
 

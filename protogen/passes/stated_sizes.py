@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fixed,
     Octets,
     Struct,

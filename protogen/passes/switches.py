@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from protogen.model.fields import Field
-from protogen.model.types import Case, Integer, Struct, Switch
+from protogen.model.types import Case, Field, Integer, Struct, Switch
 from protogen.passes.constants import named_raw_value
 from protogen.passes.context import Context, Loc
 from protogen.passes.declared import Effective

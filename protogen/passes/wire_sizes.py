@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from protogen.model.fields import Field
 from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart, Part, PayloadPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 from protogen.passes.capacity import part_size, tail_literals
 from protogen.passes.contents import Contents, Stretch, contents_of, payload_of
 from protogen.passes.together import Together

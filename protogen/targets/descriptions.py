@@ -5,11 +5,10 @@ Each language makes its comments or docstrings of them.
 
 from __future__ import annotations
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Integer, Type
+from protogen.model.types import Array, Field, Integer, Type
 from protogen.targets.escape import paragraphs
 
 

@@ -10,10 +10,9 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Counted, Integer, Octets, Struct, Switch, Text, Type
+from protogen.model.types import Array, Counted, Field, Integer, Octets, Struct, Switch, Text, Type
 
 FIRST = 3
 """Bytes behind those of a smallest frame: of its payload, or of the next one."""

@@ -11,7 +11,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.fields import Field
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -27,7 +26,18 @@ from protogen.model.frame import (
     Substitution,
 )
 from protogen.model.messages import Message
-from protogen.model.types import Array, Fixed, Float, Integer, Octets, Struct, Switch, Text, Type
+from protogen.model.types import (
+    Array,
+    Field,
+    Fixed,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
 
 Scope = Mapping[str, Any]
 

@@ -10,13 +10,13 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from protogen.model.fields import Field
 from protogen.model.frame import CounterPart, Frame, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fixed,
     Float,
     Integer,

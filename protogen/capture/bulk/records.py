@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 from protogen.capture.arrays import numpy
 from protogen.capture.bulk.numbers import either, floats, integers, seen
 from protogen.capture.schema import Choice, Column, Record
-from protogen.model.fields import Field
 from protogen.model.messages import Message
+from protogen.model.numbers import constant_bytes
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -30,8 +31,6 @@ from protogen.model.types import (
     Text,
     Type,
 )
-from protogen.targets.c.constants import constant_bytes
-from protogen.targets.c.storage import constant_number
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows
@@ -203,7 +202,7 @@ class _Reader:
     def _constant(self, field: Field) -> None:
         due = numpy().frombuffer(constant_bytes(field), "u1")
         self._leave(seen(self._take(len(due)) != due))
-        number = constant_number(field)
+        number = field.constant_number
         self._scope.pop(field.name, None)
         if number is not None:
             self._scope[field.name] = number

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Float, Integer, Struct
+from protogen.model.types import Array, Field, Float, Integer, Struct
 from protogen.targets.c.comments import comment
 from protogen.targets.c.helpers import Helpers, is_plain, is_whole, joined, sign_extended
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.loading import Load
 from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
-from protogen.targets.c.storage import holds_values, needed_by
 
 
 def is_readable(field: Field) -> bool:
@@ -20,7 +18,7 @@ def is_readable(field: Field) -> bool:
     element = field.type.element
     if isinstance(element, Struct):
         # Nothing outside of it may say what is in it.
-        return bool(element.sizes.fixed and holds_values(element)) and not needed_by(element.fields)
+        return bool(element.sizes.fixed and element.holds_values) and not element.needs
     return isinstance(element, Integer | Float)
 
 

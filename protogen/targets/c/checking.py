@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from protogen.model.fields import Field
+from protogen.model.names import free_name
+from protogen.model.numbers import constant_bytes
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -23,14 +25,14 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    needed_by,
 )
-from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.loading import loaded
 from protogen.targets.c.placed import times
-from protogen.targets.c.spelling import free_name, hexadecimal, integer_type, unsigned
-from protogen.targets.c.storage import Number, Scope, needed_by
+from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
+from protogen.targets.c.storage import Number, Scope
 from protogen.targets.c.walk import Value, Walk
 
 _RESERVED = frozenset(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.targets.c.spelling import unsigned_type, width
+from protogen.model.types import storage_bits
+from protogen.targets.c.spelling import unsigned_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ def _fletcher(spec: ChecksumSpec, function: str) -> Checksum:
 
 
 def _crc(spec: ChecksumSpec, function: str) -> Checksum:
-    bits = width(spec.width)
+    bits = storage_bits(spec.width)
     type_ = unsigned_type(spec.width)
     spare = bits - spec.width
     digits = bits // 4

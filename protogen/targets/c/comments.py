@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import textwrap
 
-from protogen.model.fields import Field
 from protogen.model.protocol import Protocol
-from protogen.model.types import Float, Integer
+from protogen.model.types import Field, Float, Integer
 from protogen.targets import descriptions
 from protogen.targets.c.lines import WIDTH
 from protogen.targets.escape import c_comment

@@ -29,6 +29,7 @@ from protogen.model.frame import (
 from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
+from protogen.model.types import storage_bits
 from protogen.targets.c.checksums import Checksum, checksum_of
 from protogen.targets.c.expressions import (
     number_of,
@@ -37,7 +38,7 @@ from protogen.targets.c.expressions import (
 )
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
 from protogen.targets.c.messages import MessageView
-from protogen.targets.c.spelling import unsigned_type, width
+from protogen.targets.c.spelling import unsigned_type
 from protogen.targets.c.stuffing import Code, Node, Stuffing, stuffing_of
 
 
@@ -881,7 +882,7 @@ class _Builder:
         for part, value in zip(parts, identity, strict=True):
             key = key << part.type.bits | value
         bits = sum(part.type.bits for part in parts)
-        digits = width(max(bits, 8))
+        digits = storage_bits(max(bits, 8))
         return f"UINT{digits}_C(0x{key:0{max(2, -(-bits // 4))}X})"
 
     def _groups(self) -> tuple[GroupView, ...]:
@@ -1004,8 +1005,8 @@ class _Builder:
 def _narrowed(part: NumberPart, value: str) -> str:
     """The value in the type of its bits, which its wire bytes may have more of."""
     type_ = part.type
-    wide = width(type_.byte_bits * type_.size)
-    return value if wide <= width(type_.bits) else f"({unsigned_type(type_.bits)})({value})"
+    wide = storage_bits(type_.byte_bits * type_.size)
+    return value if wide <= type_.width else f"({unsigned_type(type_.bits)})({value})"
 
 
 def checksum_name(protocol: str, spec: ChecksumSpec) -> str:

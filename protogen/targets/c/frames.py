@@ -26,7 +26,7 @@ from protogen.targets.c.decoder import ChecksumView, DecoderView
 from protogen.targets.c.expressions import wire_bytes
 from protogen.targets.c.geometry import Geometry, Placed
 from protogen.targets.c.messages import MessageView
-from protogen.targets.c.spelling import unsigned_type, width
+from protogen.targets.c.spelling import unsigned_type
 
 _STUFFED = 128
 
@@ -393,7 +393,7 @@ def argument_name(part: str) -> str:
 
 
 def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
-    bits = width(part.type.bits)
+    bits = part.type.width
     name = argument_name(part.name)
     conditions = []
     if part.least > 0:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from fractions import Fraction
 from math import inf, nextafter
 
-from protogen.model.types import Float, Integer, Type
+from protogen.model.types import Float, Integer, Type, storage_bits
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import (
     Names,
@@ -17,7 +17,6 @@ from protogen.targets.c.spelling import (
     integer_type,
     layout_name,
     unsigned_type,
-    width,
 )
 
 _AT = "const uint8_t *at"
@@ -139,7 +138,7 @@ class Helpers:
 
     def _load_float(self, type_: Float) -> str:
         key = f"load_{layout_name(type_)}"
-        raw = self.load(bits_of(type_))
+        raw = self.load(type_.pattern)
         reading = self._reinterpret(type_.bits, from_bits=True)
         name = self._name(key)
         if name is None:
@@ -288,7 +287,7 @@ class Helpers:
     def all_bits(self, type_: Integer) -> str:
         """The function that says which bits are set in some number of an array."""
         kind = unsigned_type(type_.bits)
-        key = f"all_bits_u{width(type_.bits)}"
+        key = f"all_bits_u{type_.width}"
         name = self._name(key)
         if name is None:
             return self._known[key]
@@ -389,11 +388,6 @@ def is_plain(type_: Integer) -> bool:
     return type_.size == 1 and (type_.bits == 8 or not type_.signed)
 
 
-def bits_of(type_: Float) -> Integer:
-    """The integer that has the bits of a float."""
-    return Integer(bits=type_.bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order)
-
-
 def _unsigned(type_: Integer) -> Integer:
     return Integer(bits=type_.bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order)
 
@@ -401,7 +395,7 @@ def _unsigned(type_: Integer) -> Integer:
 def widened(type_: Integer) -> Integer:
     """The unsigned layout that has the same bytes and the same type in C, but no padding."""
     bits = min(64, type_.byte_bits * type_.size)
-    bits = bits if width(bits) == width(type_.bits) else type_.bits
+    bits = bits if storage_bits(bits) == type_.width else type_.bits
     return Integer(bits=bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order)
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Fill, Float, Integer, Octets, Switch, Text
-from protogen.targets.c.constants import constant_bytes
+from protogen.model.numbers import constant_bytes
+from protogen.model.types import Array, Field, Fill, Float, Integer, Octets, Switch, Text
 from protogen.targets.c.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.placed import PlacedWalk, times
 from protogen.targets.c.spelling import counting_type, integer_type, unsigned
-from protogen.targets.c.storage import Scope, holds_values
+from protogen.targets.c.storage import Scope
 from protogen.targets.c.storing import is_bytes
 from protogen.targets.c.walk import Value
 
@@ -91,7 +90,7 @@ class Load(PlacedWalk):
             self._copy(value.expression, count)
             return
         size = type_.element.sizes.fixed
-        if size is not None and not holds_values(type_.element):
+        if size is not None and not type_.element.holds_values:
             self._place.skip(times(count, size))
         elif self.helpers.loads_runs(type_.element) and isinstance(type_.element, Integer):
             run = self.helpers.load_run(type_.element)
@@ -109,7 +108,7 @@ class Load(PlacedWalk):
         self._place.settle()
         self.lines.add(f"{value.count} = 0u;")
         with self.lines.block("while (at < payload + size)"):
-            if holds_values(type_.element):
+            if type_.element.holds_values:
                 self.value(self.element(value, type_, value.count), scope)
             else:
                 self.value(self.element(value, type_, "0"), scope)

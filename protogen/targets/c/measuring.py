@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from protogen.model.numbers import constant_bytes
 from protogen.model.types import Array, Float, Integer, Octets, Switch, Text
-from protogen.targets.c.constants import constant_bytes
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.placed import times

@@ -26,7 +26,6 @@ from protogen.targets.c.measuring import Measure
 from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
 from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names, hexadecimal
-from protogen.targets.c.storage import fills, is_stored
 from protogen.targets.c.storing import Put, Store
 from protogen.targets.c.validating import Validate, can_be_refused
 
@@ -340,7 +339,7 @@ class _Codec:
     def _load(self) -> str:
         lines = Lines()
         Load(self._printer.helpers, lines).message(self._item.fields)
-        if not any(is_stored(field) or fills(field) for field in self._item.fields):
+        if not any(field.is_stored or field.fills for field in self._item.fields):
             lines.add("message->unused = 0u;")
         head, arguments = self._load_head
         lines.drop_unused_places()

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Enum, Flags, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Enum, Field, Flags, Integer, Struct, Switch, Type
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.helpers import Helpers
@@ -27,7 +26,6 @@ from protogen.targets.c.options import COptions
 from protogen.targets.c.own_names import claim_own_names
 from protogen.targets.c.records import Records
 from protogen.targets.c.spelling import Names
-from protogen.targets.c.storage import holds_values
 from protogen.targets.c.writers import writer_argument, writer_parameter
 
 
@@ -82,7 +80,7 @@ def view(protocol: Protocol, options: COptions) -> Module:
     helpers, sinks = Helpers(names), Helpers(names)
     enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used.names)
     flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used.names)
-    structs = [item for item in protocol.structs if item.name in used.names and holds_values(item)]
+    structs = [item for item in protocol.structs if item.name in used.names and item.holds_values]
     tags = {item.name: names.claim(item.name) for item in structs}
     records = Records(tags, helpers)
     printer = MessagePrinter(protocol, names, helpers, sinks, records)

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from protogen.model.fields import Field
 from protogen.model.origin import About
-from protogen.model.types import BitField, Enum, Flags, Float, Integer
+from protogen.model.types import BitField, Enum, Field, Flags, Float, Integer
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT

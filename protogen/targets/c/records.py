@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Float, Struct
+from protogen.model.types import Array, Field, Float, Struct
 from protogen.targets.c import comments
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import INDENT, Lines

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from protogen.model.types import Float, Integer
+from protogen.model.names import free_name
+from protogen.model.types import Float, Integer, counting_bits, storage_bits
 
 _INT_MAX = 0x7FFF
 """The greatest `int` that every target has."""
@@ -38,37 +39,24 @@ class Names:
         return free
 
 
-def free_name(name: str, taken: set[str] | frozenset[str]) -> str:
-    """The name, or with the first number behind it that makes it one that is not taken."""
-    found, number = name, 2
-    while found in taken:
-        found, number = f"{name}_{number}", number + 1
-    return found
-
-
 # --- types --------------------------------------------------------------------------------------
-
-
-def width(bits: int) -> int:
-    """Bits of the smallest C integer that holds so many."""
-    return next(width for width in (8, 16, 32, 64) if bits <= width)
 
 
 def unsigned_type(bits: int) -> str:
     """The smallest unsigned type of so many bits."""
-    return f"uint{width(bits)}_t"
+    return f"uint{storage_bits(bits)}_t"
 
 
 def integer_type(type_: Integer) -> str:
     """The type of a member that holds such integers."""
     if type_.role == "bool":
         return "bool"
-    return f"{'' if type_.signed else 'u'}int{width(type_.bits)}_t"
+    return f"{'' if type_.signed else 'u'}int{type_.width}_t"
 
 
 def counting_type(greatest: int) -> str:
     """The type of a number of elements or bytes."""
-    return unsigned_type(max(1, greatest.bit_length()))
+    return f"uint{counting_bits(greatest)}_t"
 
 
 def layout_name(type_: Integer | Float) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from protogen.model.numbers import constant_bytes
 from protogen.model.types import Array, Float, Integer, Octets, Switch, Text, Type
-from protogen.targets.c.constants import constant_bytes
-from protogen.targets.c.helpers import Helpers, bits_of, is_plain, parted
+from protogen.targets.c.helpers import Helpers, is_plain, parted
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.placed import PlacedWalk
 from protogen.targets.c.spelling import hexadecimal, unsigned, unsigned_type
@@ -49,7 +49,7 @@ class Store(PlacedWalk):
         expression = value.expression
         if isinstance(type_, Float):
             expression = f"{self.helpers.bits_of_float(type_)}({expression})"
-            type_ = bits_of(type_)
+            type_ = type_.pattern
         if type_.size == 1:
             self.lines.add(f"{self._place.byte()} = {byte_of(type_, expression)};")
         else:
@@ -97,7 +97,7 @@ class Put(Walk):
         expression = value.expression
         if isinstance(type_, Float):
             expression = f"{self.helpers.bits_of_float(type_)}({expression})"
-            type_ = bits_of(type_)
+            type_ = type_.pattern
         if type_.size == 1:
             self.lines.add(f"{self._write}({self._writing}, {byte_of(type_, expression)});")
         else:

@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
-from protogen.model.types import Array, Extent, Float, Integer, Octets, Struct, Switch, Text, Type
-from protogen.targets.c.spelling import counting_type, integer_type
-from protogen.targets.c.storage import (
-    count_member,
-    extent_of,
-    fills,
-    holds_values,
-    is_stored,
-    rest_member,
-    room,
+from protogen.model.types import (
+    Array,
+    Extent,
+    Field,
+    Float,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+    count_name,
 )
+from protogen.targets.c.spelling import counting_type, integer_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,15 +59,15 @@ def _of_field(fields: Sequence[Field], field: Field) -> Iterator[Member]:
 
 def counter_of(fields: Sequence[Field], field: Field) -> Member | None:
     """What says how many elements or bytes of `field` there are, where it fills the payload."""
-    extent = extent_of(field.type)
-    if extent is None or not fills(field):
+    extent = field.type.extent
+    if extent is None or not field.fills:
         return None
-    return Member(count_member(fields, field), counting_type(room(extent)))
+    return Member(count_name(fields, field), counting_type(extent.room))
 
 
 def value_of(field: Field) -> Member | None:
     """What holds the field's value."""
-    return _member(field.type, field.name) if is_stored(field) else None
+    return _member(field.type, field.name) if field.is_stored else None
 
 
 def _member(type_: Type, name: str, counts: tuple[int, ...] = ()) -> Member:
@@ -86,11 +88,11 @@ def _member(type_: Type, name: str, counts: tuple[int, ...] = ()) -> Member:
 
 def _places(extent: Extent) -> int:
     """C has no empty arrays."""
-    return max(1, room(extent))
+    return max(1, extent.room)
 
 
 def _union(type_: Switch) -> Union:
-    cases = tuple(_member(case.type, case.name) for case in type_.cases if holds_values(case.type))
+    cases = tuple(_member(case.type, case.name) for case in type_.cases if case.type.holds_values)
     return Union(type_.selector, cases, _rest(type_))
 
 
@@ -98,4 +100,4 @@ def _rest(type_: Switch) -> Member | None:
     if type_.rest is None:
         return None
     size = Member("size", counting_type(type_.rest))
-    return Member(rest_member(type_), (size, Member("bytes", "uint8_t", (max(1, type_.rest),))))
+    return Member(type_.rest_name, (size, Member("bytes", "uint8_t", (max(1, type_.rest),))))

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import prod
 
-from protogen.model.fields import Field
-from protogen.model.types import Float, Struct
+from protogen.model.types import Field, Float, Struct
 from protogen.targets.c.struct_members import Member, Union, members_of
 
 NATURAL, BYTES = 8, 1

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import ceil, floor
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -24,7 +24,7 @@ from protogen.model.types import (
 )
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
-from protogen.targets.c.spelling import constant, counting_type, unsigned, width
+from protogen.targets.c.spelling import constant, counting_type, unsigned
 from protogen.targets.c.storage import Scope
 from protogen.targets.c.walk import Value, Walk
 
@@ -68,7 +68,7 @@ def _outside(field: Field, type_: Integer, expression: str) -> str:
     if type_.role == "bool" and not field.ranged:
         return ""
     least, greatest = _bounds(field, type_)
-    types_greatest = (1 << (width(type_.bits) - type_.signed)) - 1
+    types_greatest = (1 << (type_.width - type_.signed)) - 1
     types_least = -types_greatest - 1 if type_.signed else 0
     tests = []
     if least > types_least:
@@ -172,7 +172,7 @@ class Validate(Walk):
         tests = []
         if extent.least > 0:
             tests.append(f"{expression} < {unsigned(extent.least)}")
-        if extent.greatest < (1 << width(type_.bits)) - 1:
+        if extent.greatest < (1 << type_.width) - 1:
             tests.append(f"{expression} > {unsigned(extent.greatest)}")
         if tests:
             self._refuse(" || ".join(tests))

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Case,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,
@@ -20,19 +20,12 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    count_name,
 )
 from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.spelling import constant, unsigned
-from protogen.targets.c.storage import (
-    Number,
-    Scope,
-    chosen_case,
-    constant_number,
-    count_member,
-    fills,
-    rest_member,
-)
+from protogen.targets.c.storage import Number, Scope
 
 _INDICES = "ijklmnopqrstuvw"
 
@@ -67,7 +60,7 @@ class Walk:
         """Walk over fields whose members' expressions begin with `base`."""
         inner = dict(scope)
         for index, field in enumerate(fields):
-            count = base + count_member(fields, field) if fills(field) else ""
+            count = base + count_name(fields, field) if field.fills else ""
             at_end = last and index == len(fields) - 1
             value = Value(field, field.type, base + field.name, count, at_end)
             if field.const is not None:
@@ -77,7 +70,7 @@ class Walk:
             self._remember(field, base, inner)
 
     def _remember(self, field: Field, base: str, scope: Scope) -> None:
-        number = constant_number(field)
+        number = field.constant_number
         if number is not None:
             scope[field.name] = number
         elif isinstance(field.type, Integer):
@@ -164,7 +157,7 @@ class Walk:
         """One of several cases."""
         selector = scope[type_.selector]
         if isinstance(selector, int):
-            self._only_case(value, type_, chosen_case(type_, selector), scope)
+            self._only_case(value, type_, type_.case(selector), scope)
             return
         with self.lines.switch(selector.selector):
             for case in type_.cases:
@@ -199,5 +192,5 @@ class Walk:
                 self.rest(self._rest_of(value, type_), type_)
 
     def _rest_of(self, value: Value, type_: Switch) -> Value:
-        expression = f"{value.expression}.{rest_member(type_)}"
+        expression = f"{value.expression}.{type_.rest_name}"
         return Value(value.field, type_, expression, f"{expression}.size", value.last)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.framing import MessageFraming
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.targets.c.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.walk import type_users
 

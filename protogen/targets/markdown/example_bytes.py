@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from protogen.model.annotate import Row, annotate
-from protogen.model.fields import Field
 from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Float, Integer
+from protogen.model.types import Field, Float, Integer
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.parts import identity_value, role
 from protogen.targets.markdown.table import Table, table

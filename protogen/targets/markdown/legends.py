@@ -6,8 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from protogen.model.fields import Field
-from protogen.model.types import BitField, Enum, Flags, Integer, NamedValue
+from protogen.model.types import BitField, Enum, Field, Flags, Integer, NamedValue
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.path import Path
 from protogen.targets.markdown.table import Table, table

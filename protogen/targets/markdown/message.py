@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.frame import Frame
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message, Overload
 from protogen.model.protocol import Sender
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.anchors import decision_link, message_anchor, message_link
 from protogen.targets.markdown.context import Context, by_frame

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
 from protogen.targets.markdown.layout import Slot, slots
 from protogen.targets.markdown.words import hex_bytes, size_text, span
 

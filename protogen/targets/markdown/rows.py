@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Array, Case, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Case, Field, Integer, Struct, Switch, Type
 from protogen.targets.markdown.layout import Place, behind, element
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.path import ROOT, Path

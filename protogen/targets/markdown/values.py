@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from protogen.model.fields import Constant, Field
 from protogen.model.origin import About
-from protogen.model.types import Enum, Flags, Integer, NamedBit, NamedValue
+from protogen.model.types import Constant, Enum, Field, Flags, Integer, NamedBit, NamedValue
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.path import Path
 from protogen.targets.markdown.types import integer_of

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
-from protogen.model.types import Array, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
 from protogen.targets.markdown.path import ROOT, Path
 from protogen.targets.markdown.types import integer_of
 

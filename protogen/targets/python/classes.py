@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     BitField,
     Enum,
+    Field,
     Flags,
     Float,
     Integer,

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.origin import About
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Integer
+from protogen.model.types import Field, Integer
 from protogen.targets import descriptions
 from protogen.targets.escape import python_docstring
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protogen.model.fields import Field
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
     Case,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from protogen.model.fields import Field
 from protogen.model.types import (
     Array,
     Case,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

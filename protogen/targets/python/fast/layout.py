@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from protogen.model.fields import Field
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Counted,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
@@ -12,6 +11,7 @@ from protogen.model.types import (
     Case,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

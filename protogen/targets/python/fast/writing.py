@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from protogen.model.fields import Field
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
     Counted,
     Extent,
+    Field,
     Fill,
     Fixed,
     Float,

@@ -1,33 +1,37 @@
-"""The bytes of constants, as they lie on the wire."""
+"""Raw values as the bytes that lie on the wire."""
 
 from __future__ import annotations
 
 import struct
 
-from protogen.model.fields import Constant, Field
-from protogen.model.types import Array, Fixed, Float, Integer, Octets, Text, Type
+from protogen.model.types import Array, Constant, Field, Fixed, Float, Integer, Octets, Text, Type
 from protogen.runtime.number import Number
-from protogen.targets.c.helpers import bits_of
+
+
+def codec(type_: Integer | Float) -> Number:
+    """Codec of a number's raw value; of a float it is that of its bits."""
+    signed = isinstance(type_, Integer) and type_.signed
+    return Number(type_.bits, signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
 
 
 def constant_bytes(field: Field) -> bytes:
-    """The bytes of a field's constant."""
+    """The wire bytes of a constant field."""
     assert field.const is not None
-    return _bytes(field.type, field.const)
+    return _wire_bytes(field.type, field.const)
 
 
-def _bytes(type_: Type, value: Constant) -> bytes:
+def _wire_bytes(type_: Type, value: Constant) -> bytes:
     match type_, value:
         case Integer(), int():
-            return _number(type_).encode(int(value))
+            return codec(type_).encode(int(value))
         case Float(), int() | float():
-            return _number(bits_of(type_)).encode(float_bits(type_, value))
+            return codec(type_).encode(float_bits(type_, value))
         case Text(), str():
             return _padded(type_, value.encode("latin-1"))
         case Octets(), bytes():
             return value
         case Array(element=element), tuple():
-            return b"".join(_bytes(element, item) for item in value)
+            return b"".join(_wire_bytes(element, item) for item in value)
     raise TypeError(f"{value!r} is no constant of {type_!r}")
 
 
@@ -35,10 +39,6 @@ def float_bits(type_: Float, value: float) -> int:
     """The bits of a float that is that value."""
     form, size = ("<f", 4) if type_.bits == 32 else ("<d", 8)
     return int.from_bytes(struct.pack(form, value)[:size], "little")
-
-
-def _number(type_: Integer) -> Number:
-    return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
 
 
 def _padded(type_: Text, data: bytes) -> bytes:
