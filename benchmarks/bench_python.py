@@ -23,7 +23,7 @@ from statistics import median
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
 
-from peers import MAKERS, formats, made, timing  # noqa: E402
+from peers import MAKERS, made, timing  # noqa: E402
 from peers.cases import FEW, Case, cases  # noqa: E402
 from peers.contender import Contender, check  # noqa: E402
 
@@ -66,8 +66,6 @@ class Results:
     """A stream in which each frame is fed by itself, as a serial port gives it."""
     pieces: dict[str, Times] = field(default_factory=dict)
     """A stream in pieces of `PIECE` bytes."""
-    parse: dict[str, Times] = field(default_factory=dict)
-    build: dict[str, Times] = field(default_factory=dict)
     rates: dict[tuple[str, str], float] = field(default_factory=dict)
     """Bytes on the wire for a message, by case and contender."""
     missing: dict[str, str] = field(default_factory=dict)
@@ -117,8 +115,6 @@ def measure_case(case: Case, found: Sequence[Contender], rounds: int, results: R
         "encode": {item.name: item.encode for item in found if item.encode},
         "live": {item.name: _fed(item, case.frames[:few]) for item in found if item.feeder},
         "pieces": {item.name: _fed(item, pieces(case, few)) for item in found if item.feeder},
-        "parse": formats.parsing(case),
-        "build": formats.building(case),
     }
     for what, calls in single.items():
         getattr(results, what)[case.title] = per_message(calls, rounds, few)
@@ -176,22 +172,6 @@ def targets(results: Results) -> list[Target]:
         found.append(_least(f"stream of {case}, construct", times, OURS, CONSTRUCT, 6))
     for case, times in results.encode.items():
         found.append(_most(f"encoding {case}, by hand with slots", times, SLOTTED, 1.2))
-    for case in SHORT:
-        for what in ("parse", "build"):
-            times = getattr(results, what)[case]
-            name = f"`FORMAT.{what}` of {case}"
-            found.append(_least(f"{name}, compiled", times, formats.OURS, COMPILED, 5))
-            found.append(_least(f"{name}, interpreted", times, formats.OURS, CONSTRUCT, 20))
-    status = "matty status"
-    for what, times, name, most in (
-        (f"parse` of {status}", results.parse[status], formats.OURS, 750),
-        (f"build` of {status} in a `dict`", results.build[status], formats.OF_DICT, 300),
-        (f"build` of {status} in a `Container`", results.build[status], formats.OURS, 300),
-        ("parse` of rn1 lidar", results.parse["rn1 lidar"], formats.OURS, 9000),
-    ):
-        value = median(times[name])
-        aim = f"at most {most / 1000:g} µs"
-        found.append(Target(f"`FORMAT.{what}", aim, f"{value / 1000:.2f} µs", value / most))
     found += [_in_bulk(case, results) for case in results.stream]
     found += [_native(case, results) for case in results.stream]
     return found
@@ -378,16 +358,6 @@ Encoding a frame of a message:
 
 {encode}
 
-## FORMAT
-
-Payloads to construct's `Container`, and back, without frames: the generated `FORMAT` beside
-construct's own declaration of the same fields. Python looks faster into a plain `dict` than into a
-`Container`, which is what a program has that changes what it parsed.
-
-{parse}
-
-{build}
-
 ## Targets
 
 {targets}
@@ -398,8 +368,6 @@ construct's own declaration of the same fields. Python looks faster into a plain
 
 def page(results: Results, rounds: int) -> str:
     any_case = next(iter(results.stream.values()))
-    kinds = (formats.OURS, CONSTRUCT, COMPILED)
-    built = (formats.OURS, formats.OF_DICT, CONSTRUCT, COMPILED)
     values = {
         "rounds": rounds,
         "versions": versions(),
@@ -414,8 +382,6 @@ def page(results: Results, rounds: int) -> str:
         "few": FEW,
         "decode": table(results.decode, OBJECTS),
         "encode": table(results.encode, [name for name in OBJECTS if name != KAITAI]),
-        "parse": table(results.parse, kinds, formats.OURS).replace("ns per", "parse, ns per"),
-        "build": table(results.build, built, formats.OURS).replace("ns per", "build, ns per"),
         "targets": targets_table(results),
         "missing": missing_text(results),
     }
@@ -448,8 +414,8 @@ def summary(results: Results) -> str:
     lines = [
         "Whole streams in Python: framing, checksum, validation and typed results, in ns per",
         "message, and how many times protogen's that is. [python.md](python.md) says what each",
-        "does and does not; live streams, single frames, encoding, `FORMAT` and the targets are",
-        "there, too.",
+        "does and does not; live streams, single frames, encoding and the targets are there,",
+        "too.",
         "",
         table(results.stream, shown),
         "",

@@ -18,8 +18,8 @@ from peers.cases import cases  # noqa: E402
 from peers.contender import check  # noqa: E402
 
 CASES = cases(size=4096)
-TABLES = 8
-"""Streams, in bulk, live and in pieces; decoding and encoding; parsing and building."""
+TABLES = 6
+"""Streams, in bulk, live and in pieces; decoding and encoding."""
 CONSTRUCT = ("with_construct.interpreted", "with_construct.compiled")
 
 

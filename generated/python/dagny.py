@@ -1184,6 +1184,27 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Command: _encode_command,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        Sonar: _read_sonar,
+        Gps: _read_gps,
+        Bump: _read_bump,
+        Odometry: _read_odometry,
+        Speed: _read_speed,
+        WheelSlip: _read_wheel_slip,
+        Battery: _read_battery,
+        ReflexSettings: _read_reflex_settings,
+        HardwareStatus: _read_hardware_status,
+        Motor: _read_motor,
+        Steering: _read_steering,
+        Reflex: _read_reflex,
+        PowerDown: _read_power_down,
+        Power: _read_power,
+        Laser: _read_laser,
+        Command: _read_command,
+    },
+    _TABLES,
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | RobotMessage],
@@ -1270,6 +1291,7 @@ PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     ROBOT_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

@@ -1053,6 +1053,23 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Shutdown: _encode_shutdown,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        Sonar: _read_sonar,
+        Gps: _read_gps,
+        Odometry: _read_odometry,
+        Battery: _read_battery,
+        Compass: _read_compass,
+        Motor: _read_motor,
+        Drive: _read_drive,
+        Steering: _read_steering,
+        Power: _read_power,
+        GpsPosition: _read_gps_position,
+        Laser: _read_laser,
+        Shutdown: _read_shutdown,
+    },
+    _TABLES,
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | RobotMessage],
@@ -1110,6 +1127,7 @@ PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     ROBOT_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

@@ -952,6 +952,23 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Gps: _encode_gps,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        Stop: _read_stop,
+        Reset: _read_reset,
+        Mode: _read_mode,
+        Go: _read_go,
+        Limits: _read_limits,
+        Timing: _read_timing,
+        GpsMode: _read_gps_mode,
+        Ack: _read_ack,
+        Nack: _read_nack,
+        Status: _read_status,
+        Gps: _read_gps,
+    },
+    _TABLES,
+    around=(3, 1),
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], PcMessage | EspMessage],
@@ -1008,6 +1025,7 @@ PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     ESP_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((PC_SENDER, ESP_SENDER), _ENCODERS, ("counter",))
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

@@ -2100,6 +2100,38 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     IrReport: _encode_ir_report,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        RequestSystemStatus: _read_request_system_status,
+        SystemStatus: _read_system_status,
+        LcdDump: _read_lcd_dump,
+        AxisGetSystem: _read_axis_get_system,
+        MotorCommand: _read_motor_command,
+        ConfirmMotorCommand: _read_confirm_motor_command,
+        SetDefaults: _read_set_defaults,
+        BrakeSet: _read_brake_set,
+        BrakeRelease: _read_brake_release,
+        BrakeReleaseAnswer: _read_brake_release_answer,
+        ReadMotor: _read_read_motor,
+        StartStopMotorPackets: _read_start_stop_motor_packets,
+        ConfirmStartStopMotorPackets: _read_confirm_start_stop_motor_packets,
+        RequestJoystickData: _read_request_joystick_data,
+        JoystickData: _read_joystick_data,
+        StartStopSonarPackets: _read_start_stop_sonar_packets,
+        ConfirmStartStopSonarPackets: _read_confirm_start_stop_sonar_packets,
+        SonarData: _read_sonar_data,
+        InitializeDigitalIo: _read_initialize_digital_io,
+        ConfirmInitializeDigitalIo: _read_confirm_initialize_digital_io,
+        ChangedBumpers: _read_changed_bumpers,
+        CheckIoChanged: _read_check_io_changed,
+        CheckIoChangedAnswer: _read_check_io_changed_answer,
+        ChangedByte: _read_changed_byte,
+        IrRun: _read_ir_run,
+        IrReport: _read_ir_report,
+    },
+    _TABLES,
+    around=(4, 1),
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], LinuxMessage | FlexMessage],
@@ -2227,6 +2259,7 @@ PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     FLEX_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((LINUX_SENDER, FLEX_SENDER), _ENCODERS, ("number",))
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

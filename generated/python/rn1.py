@@ -1176,6 +1176,23 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Facing: _encode_facing,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        MoveManual: _read_move_manual,
+        MoveRelativeTwostep: _read_move_relative_twostep,
+        MoveRelativeArc: _read_move_relative_arc,
+        Maintenance: _read_maintenance,
+        Gyro: _read_gyro,
+        Xcel: _read_xcel,
+        Compass: _read_compass,
+        Optflow: _read_optflow,
+        Lidar: _read_lidar,
+        Sonar: _read_sonar,
+        Facing: _read_facing,
+    },
+    _TABLES,
+    seven_bit=True,
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | BrainMessage],
@@ -1232,6 +1249,7 @@ PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     BRAIN_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((HOST_SENDER, BRAIN_SENDER), _ENCODERS, (), _CODES)
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

@@ -1285,6 +1285,26 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     DebugNumbers: _encode_debug_numbers,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {
+        MoveManual: _read_move_manual,
+        MoveRelativeTwostep: _read_move_relative_twostep,
+        DecreasePhaseAngle: _read_decrease_phase_angle,
+        IncreasePhaseAngle: _read_increase_phase_angle,
+        Maintenance: _read_maintenance,
+        Gyro: _read_gyro,
+        Xcel: _read_xcel,
+        Compass: _read_compass,
+        Lidar: _read_lidar,
+        Sonar: _read_sonar,
+        Facing: _read_facing,
+        OptflowIntegral: _read_optflow_integral,
+        MotorControllerMessage: _read_motor_controller_message,
+        DebugNumbers: _read_debug_numbers,
+    },
+    _TABLES,
+    seven_bit=True,
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], HostMessage | BrainMessage],
@@ -1366,6 +1386,7 @@ PROTOCOL: _rt.Protocol[HostMessage | BrainMessage, Parts] = _rt.Protocol(
     BRAIN_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((HOST_SENDER, BRAIN_SENDER), _ENCODERS, (), _CODES)
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

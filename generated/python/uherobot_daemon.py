@@ -516,6 +516,11 @@ _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
     Status: _encode_status,
 }
 _fast.add_encoders(_ENCODERS)
+_fast.add_readers(
+    {MotorsServosLeds: _read_motors_servos_leds, Status: _read_status},
+    _TABLES,
+    around=(2, 0),
+)
 _DECODERS: dict[
     str,
     _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage],
@@ -563,6 +568,7 @@ PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     BOARD_SENDER,
     spec_hash=SPEC_HASH,
 )
+_fast.add_writers((DAEMON_SENDER, BOARD_SENDER), _ENCODERS, ())
 
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.

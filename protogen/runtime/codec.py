@@ -9,7 +9,7 @@ from protogen.runtime import late
 from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import FrameEvent, UnknownEvent
-from protogen.runtime.message import Message
+from protogen.runtime.message import Message, build_payload
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _sends(sender: SenderSpec[Any, Any], message: Message) -> bool:
 def _encode(
     sender: SenderSpec[Any, Any], message: Message, parts: Mapping[str, int | None], strict: bool
 ) -> bytes:
-    payload = message.to_payload(strict)
+    payload = build_payload(message, strict)
     return late.encode_frame(sender, message.IDENTITY, payload, parts, strict)
 
 

@@ -18,9 +18,8 @@ from __future__ import annotations
 
 import copyreg
 import io
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from types import MethodType
 from typing import Any, BinaryIO, Literal, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
@@ -486,61 +485,8 @@ def Latin1Fill(greatest: int | None = None, seven_bit: bool = False) -> Piece:  
 # --- several values -----------------------------------------------------------------------------
 
 
-DIRECT = ("parse", "parse_stream", "build")
-"""The methods of a Struct for which it gets functions of its own."""
-
-
-class _Direct:
-    """A method of Struct that is replaced, where it is first asked for, by a function in front.
-
-    The function belongs to the one struct: it need not look anything up. Classes derived from
-    Struct may read and write in another way, so they have the method itself.
-    """
-
-    def __init__(self, method: Callable[..., Any]) -> None:
-        self._method = method
-        self._name = method.__name__
-
-    def __get__(self, struct: Struct | None, owner: type[Any]) -> Callable[..., Any]:
-        if struct is None:
-            return self._method
-        method: Callable[..., Any] = MethodType(self._method, struct)
-        if type(struct) is not Struct:
-            return method
-        from protogen.runtime.fused import direct
-
-        struct.__dict__[self._name] = entry = direct(struct, self._name, method)
-        return entry
-
-
 class Struct(construct.Struct):  # type: ignore[misc]
-    """construct's Struct, which also rejects missing values and those that no field has.
-
-    Where the layout allows, `parse`, `parse_stream` and `build` ask nothing about it again: see
-    `protogen.runtime.fused`. What they give then is what construct gives, but has no `_io`, the
-    stream that construct leaves in its containers if it is not compiled.
-    """
-
-    @_Direct
-    def parse(self, data: bytes, **contextkw: Any) -> Any:
-        """The values of the first bytes. Raises PayloadError."""
-        return construct.Struct.parse_stream(self, io.BytesIO(data), **contextkw)
-
-    @_Direct
-    def parse_stream(self, stream: BinaryIO, **contextkw: Any) -> Any:
-        """The values of the next bytes. Raises PayloadError."""
-        return super().parse_stream(stream, **contextkw)
-
-    @_Direct
-    def build(self, obj: Any, **contextkw: Any) -> bytes:
-        """The bytes of a mapping of values. Raises PayloadError."""
-        built: bytes = super().build(obj, **contextkw)
-        return built
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Without the direct functions, which belong to this very struct."""
-        state: dict[str, Any] = super().__getstate__()
-        return {name: value for name, value in state.items() if name not in DIRECT}
+    """construct's Struct, which also rejects missing values and those that no field has."""
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         values = {} if obj is None else obj
@@ -719,5 +665,5 @@ def prefix_size(format: Construct, data: bytes) -> int:
     Raises PayloadError; its `missing` is greater than 0 where `data` is a good start but too short.
     """
     stream = io.BytesIO(data)
-    Construct.parse_stream(format, stream)
+    format.parse_stream(stream)
     return stream.tell()

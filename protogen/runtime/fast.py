@@ -10,6 +10,7 @@ import struct
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol, TypeVar
 
+from protogen.runtime import late
 from protogen.runtime.dataclass import dataclass
 from protogen.runtime.decoder import octets
 from protogen.runtime.enums import KEPT, Flags, OpenEnum
@@ -42,6 +43,8 @@ __all__ = [
     "Tables",
     "Unclear",
     "add_encoders",
+    "add_readers",
+    "add_writers",
     "checked",
     "closed",
     "frame_formats",
@@ -88,6 +91,80 @@ def add_encoders(encoders: Mapping[type[Message], Callable[..., bytes]]) -> None
     """Give each message of a module its encoder as a method: the shortest way from one to it."""
     for message, encoder in encoders.items():
         message.__encode__ = encoder  # type: ignore[method-assign]
+
+
+def add_readers(
+    readers: Mapping[type[Message], Callable[[bytes], Any]],
+    tables: Tables | None = None,
+    *,
+    around: tuple[int, int] = (0, 0),
+    seven_bit: bool = False,
+) -> None:
+    """Let messages read their payloads: `readers` want so many bytes `around` them.
+
+    With `seven_bit`, they rely on every byte having its top bit clear.
+    """
+    front, behind = map(bytes, around)
+    for message, read in readers.items():
+        message.__read__ = _reader(message, read, tables, front, behind, seven_bit)
+
+
+def _reader(
+    message: type[Message],
+    read: Callable[[bytes], Any],
+    tables: Tables | None,
+    front: bytes,
+    behind: bytes,
+    is_ascii: bool,
+) -> Callable[[bytes], Any]:
+    """The reader of one message's payloads alone."""
+    sizes = message.SIZES
+
+    def read_payload(payload: bytes) -> Any:
+        if len(payload) not in sizes or (is_ascii and not payload.isascii()):
+            raise Unclear
+        if tables is not None and not tables.are_filled:
+            tables.fill()
+        return read(front + payload + behind)
+
+    return read_payload
+
+
+def add_writers(
+    senders: Iterable[SenderSpec[Any, Any]],
+    encoders: Mapping[type[Message], Callable[..., bytes]],
+    arguments: tuple[str, ...] = (),
+    tables: Tables | None = None,
+) -> None:
+    """Let messages write their payloads: what their encoders put into a frame.
+
+    `arguments` are the names of the parts that callers of the encoders give.
+    """
+    for sender in senders:
+        for message in (*sender.messages, *sender.encode_only):
+            if message in encoders and message.__write__ is None:
+                message.__write__ = _writer(sender, encoders, arguments, tables)
+
+
+def _writer(
+    sender: SenderSpec[Any, Any],
+    encoders: Mapping[type[Message], Callable[..., bytes]],
+    arguments: tuple[str, ...],
+    tables: Tables | None,
+) -> Callable[[Any], bytes]:
+    """What gives the payloads of a sender's messages."""
+    parts: list[int | None] | None = None
+
+    def write_payload(message: Message) -> bytes:
+        nonlocal parts
+        if parts is None:
+            least = {part.name: part.least for part in sender.layout.values}
+            parts = [least.get(name) for name in arguments]
+        if tables is not None and not tables.are_filled:
+            tables.fill()
+        return late.payload_of(sender, message.__encode__(encoders, sender.name, *parts))
+
+    return write_payload
 
 
 class Runs:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from protogen.runtime import late
@@ -91,6 +92,11 @@ class Message(Record):
     SIZES: ClassVar[Sizes]
     """The sizes that its payload can have."""
 
+    __read__: ClassVar[Callable[[bytes], Any] | None] = None
+    """Gives the message of a payload, as the fast engine reads it. Raises where it can't."""
+    __write__: ClassVar[Callable[[Any], bytes] | None] = None
+    """Gives the payload of a message, as the fast engine makes it. Raises where it can't."""
+
     def __init_subclass__(cls, **others: Any) -> None:
         """No class encodes as its base does: only a module's own classes are its messages.
 
@@ -98,6 +104,7 @@ class Message(Record):
         """
         super().__init_subclass__(**others)
         cls.__encode__ = Message.__encode__  # type: ignore[method-assign]
+        cls.__read__ = cls.__write__ = None
 
     def __encode__(self, module: object, sender: str | None, *parts: int | None) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.
@@ -113,19 +120,20 @@ class Message(Record):
         Raises EncodeError where a value is out of range or does not fit; with `strict=False` a
         value may be anything that fits the wire.
         """
-        values = late.record_to_wire(self, late.outermost(), strict)
-        try:
-            payload = bytes(type(self).FORMAT.build(values))
-        except late.PayloadError as error:
-            raise EncodeError(error.path, error.problem) from None
-        if len(payload) not in self.SIZES:
-            problem = f"makes {len(payload)} bytes of payload; {self.NAME} has {self.SIZES}"
-            raise EncodeError("", problem)
-        return payload
+        write = type(self).__write__
+        if write is not None and strict:
+            with suppress(Exception):  # The reference says what is wrong.
+                return write(self)
+        return build_payload(self, strict)
 
     @classmethod
     def from_payload(cls, payload: bytes) -> Self:
         """The message of a payload's bytes. Raises DecodeError: size, value or encoding."""
+        read = cls.__read__
+        if read is not None and type(payload) is bytes:
+            with suppress(Exception):  # The reference says what is wrong.
+                message: Self = read(payload)
+                return message
         try:
             return cls.parse_payload(payload)
         except late.PayloadError as error:
@@ -141,3 +149,16 @@ class Message(Record):
             raise late.PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
         raw = late.whole(cls.FORMAT).parse(payload)
         return late.record_from_wire(cls, raw, late.outermost())
+
+
+def build_payload(message: Message, strict: bool = True) -> bytes:
+    """The payload of a message as construct builds it. Raises EncodeError."""
+    values = late.record_to_wire(message, late.outermost(), strict)
+    try:
+        payload = bytes(type(message).FORMAT.build(values))
+    except late.PayloadError as error:
+        raise EncodeError(error.path, error.problem) from None
+    if len(payload) not in message.SIZES:
+        problem = f"makes {len(payload)} bytes of payload; {message.NAME} has {message.SIZES}"
+        raise EncodeError("", problem)
+    return payload

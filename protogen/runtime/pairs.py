@@ -49,15 +49,6 @@ def pair_codes(bits: int) -> tuple[int, ...]:
     return tuple(raw + (raw & 0x3F80) for raw in range(1 << bits))
 
 
-@lru_cache(16)
-def pair_tables(bits: int, signed: bool) -> tuple[dict[int, int], dict[int, int]]:
-    """The integer of each code that `Pairs` reads, and the code of each integer."""
-    great = 1 << bits
-    codes = pair_codes(bits)
-    values = [*range(great // 2), *range(-great // 2, 0)] if signed else range(great)
-    return dict(zip(codes, values, strict=True)), dict(zip(values, codes, strict=True))
-
-
 @lru_cache(64)
 def _lanes(bits: int, count: int) -> tuple[int, int, int, int]:
     """Bits of a great integer that has `count` numbers of so many, each in 16 bits.

@@ -13,8 +13,9 @@ from protogen.targets.python.fast.lines import Constants
 from protogen.targets.python.fast.reading import message_reader, struct_reader
 from protogen.targets.python.fast.writing import struct_writer
 from protogen.targets.python.formats import classes_of
+from protogen.targets.python.literals import call, mapping, text, tuple_of
 from protogen.targets.python.spelling import class_name
-from protogen.targets.python.wrapping import method
+from protogen.targets.python.wrapping import method, wrapped
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,10 @@ class Fast:
     encoders: tuple[Function, ...]
     table: tuple[str, ...]
     """Entries of the table of encoders by the message's class."""
+    readers: tuple[str, ...]
+    """Arguments that say which function reads which message's payload."""
+    writers: str
+    """Arguments that say how payloads come out of frames."""
     modules: tuple[str, ...]
     """Modules of the standard library that the text names."""
     tables: bool
@@ -83,15 +88,18 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
             for line in item.body
         ]
     joined = "\n".join(lines)
+    tables, codes = constants.use("_TABLES."), constants.use("_CODES.")
     return Fast(
         constants=constants.text,
         records=(*records, *overloads),
         senders=senders,
         encoders=tuple(encoders.values()),
         table=tuple(f"{class_name(name)}: _encode_{name}," for name in encoders),
+        readers=_readers(protocol, around or (0, 0), tables),
+        writers=_writers(protocol, of_caller, codes),
         modules=tuple(name for name in ("re", "struct", "zlib") if _USES[name] in joined),
-        tables=constants.use("_TABLES."),
-        codes=constants.use("_CODES."),
+        tables=tables,
+        codes=codes,
     )
 
 
@@ -125,6 +133,39 @@ def _records(
         body = message_reader(message, constants, around, is_ascii=is_ascii)
         functions.append(_function(f"_read_{message.name}", "data: bytes", name, body))
     return tuple(functions)
+
+
+def _readers(protocol: Protocol, around: tuple[int, int], tables: bool) -> tuple[str, ...]:
+    """The arguments of each call of `add_readers`."""
+    ascii_messages = _seen_to_be_ascii(protocol)
+    alike: dict[bool, dict[str, str]] = {}
+    for message in protocol.messages:
+        names = alike.setdefault(message.name in ascii_messages, {})
+        names[class_name(message.name)] = f"_read_{message.name}"
+    return tuple(
+        _arguments(
+            mapping(names),
+            *(["_TABLES"] if tables else []),
+            around=str(around) if any(around) else None,
+            seven_bit="True" if is_ascii else None,
+        )
+        for is_ascii, names in alike.items()
+    )
+
+
+def _arguments(*given: str, **named: str | None) -> str:
+    """The inside of a call's brackets, broken where the longer of the functions needs it."""
+    return wrapped(call("", *given, **named), len("_fast.add_readers"), 0)[1:-1]
+
+
+def _writers(protocol: Protocol, of_caller: tuple[str, ...], codes: bool) -> str:
+    """The arguments of `add_writers`."""
+    return _arguments(
+        tuple_of(f"{sender.name.upper()}_SENDER" for sender in protocol.senders),
+        "_ENCODERS",
+        tuple_of(map(text, of_caller)),
+        *(["_CODES"] if codes else []),
+    )
 
 
 def _seen_to_be_ascii(protocol: Protocol) -> set[str]:
