@@ -56,7 +56,7 @@ class _Verification:
         self._frame = protocol.sender(example.sender).frame
         self._sender = module.PROTOCOL.sender(example.sender)
         self._class = module.MESSAGES[message.name]
-        self._readers = _readers(protocol, example.sender, message.name)
+        self._received_as = protocol.sender(example.sender).received_as(message.name)
         self._module = module
         self._message = message
         self._example = example
@@ -139,7 +139,7 @@ class _Verification:
     # -- meaning ------------------------------------------------------------------------------
 
     def _values_hold(self, reading: _Reading, values: dict[str, Any] | None) -> bool:
-        if reading.message.NAME not in self._readers:
+        if self._received_as != reading.message.NAME:
             self._report("PG160", f"it is a `{reading.message.NAME}`")
             return False
         wrong = _differences(reading.message, values or {})
@@ -179,14 +179,6 @@ class _Verification:
             self._values_hold(reading, stated.reads)
             if not _differences(reading.message, self._example.values or {}):
                 self._report("PG163", "its bytes mean just what the document says")
-
-
-def _readers(protocol: Protocol, sender: str, message: str) -> set[str]:
-    """The messages that a decoder may take this one for: itself, unless nothing tells it apart."""
-    for overload in protocol.sender(sender).overloads:
-        if overload.yields is not None and message in overload.messages:
-            return {overload.yields}
-    return {message}
 
 
 def _payload_name(frame: Frame) -> str:

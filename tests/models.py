@@ -271,7 +271,8 @@ def sender(name: str, frame: Frame, found: Framing, messages: Sequence[Message])
 
 def protocol(*messages: Message, frame: Frame | None = None, **more: Any) -> Protocol:
     """A protocol of one sender, `pc`, unless `senders` is given."""
-    used = frame or simple_frame()
+    if "senders" not in more:
+        more["senders"] = (sender("pc", frame or simple_frame(), framing(messages), messages),)
     given: dict[str, Any] = {
         "name": "tiny",
         "title": "Tiny protocol",
@@ -282,7 +283,6 @@ def protocol(*messages: Message, frame: Frame | None = None, **more: Any) -> Pro
         "link": Link(baud=115200),
         "byte_bits": 8,
         "endpoints": (Endpoint(name="pc", title="Computer"), Endpoint(name="mcu", title="Board")),
-        "senders": (sender("pc", used, framing(messages), messages),),
         "enums": (),
         "flags": (),
         "structs": (),

@@ -59,7 +59,7 @@ def capture_schema(protocol: Protocol, sender: Sender) -> CaptureSchema:
         protocol=protocol.name,
         sender=sender.name,
         spec_hash=protocol.spec_hash,
-        messages={item.name: _table(framed, item) for item in decoded_messages(sender)},
+        messages={item.name: _table(framed, item) for item in sender.received},
         invalid=TableSchema(row=record([*head, reason])),
         unknown=TableSchema(row=record([*framed, *payload])),
     )
@@ -69,18 +69,6 @@ def shown_parts(sender: Sender) -> tuple[NumberPart, ...]:
     """The parts of a frame that events show."""
     kinds = IdentityPart | CounterPart | ValuePart
     return tuple(part for part in sender.frame.parts if isinstance(part, kinds))
-
-
-def decoded_messages(sender: Sender) -> tuple[Message, ...]:
-    """The messages that a decoder yields."""
-    hidden = {
-        name
-        for overload in sender.overloads
-        if overload.yields is not None
-        for name in overload.messages
-        if name != overload.yields
-    }
-    return tuple(message for message in sender.messages if message.name not in hidden)
 
 
 def _parts(parts: Iterable[NumberPart], taken: Sequence[str]) -> Iterator[Column]:

@@ -114,20 +114,12 @@ def _wrong_with_events(
     event = events[0]
     if event.payload != payload:
         return f"the frame carries another payload: {event.payload.hex()}"
-    if event.message != yielded(sender, case.message):
+    if event.message != sender.received_as(case.message):
         return f"the frame decodes to the message {event.message}"
     if event.message == case.message and not same(event.values, case.values):
         return f"the frame decodes to other values: {event.values}"
     found = {name: (event.parts or {}).get(name) for name in case.parts}
     return "" if found == case.parts else f"the frame decodes to other parts: {found}"
-
-
-def yielded(sender: Sender, message: str) -> str:
-    """The message that a decoder takes this one for, where nothing tells them apart."""
-    for overload in sender.overloads:
-        if message in overload.messages and overload.yields is not None:
-            return overload.yields
-    return message
 
 
 def same_events(left: Sequence[Seen], right: Sequence[Seen]) -> bool:

@@ -23,7 +23,7 @@ from protogen.model.messages import Message
 from protogen.model.numbers import codec
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character, type_name
-from protogen.model.wire import FULL_GROUP, Unit, Wire, fixed_size, unstuff
+from protogen.model.wire import FULL_GROUP, Unit, Wire, unstuff
 from protogen.runtime import checksum as sums
 from protogen.runtime.errors import ByteError
 
@@ -134,7 +134,7 @@ class _Frame:
     # --- parts of a fixed size --------------------------------------------------------------
 
     def _fixed(self, part: Part) -> Row:
-        piece = self._cursor.take(fixed_size(part))
+        piece = self._cursor.take(part.size)
         if isinstance(part, LiteralPart):
             row = piece.row(part.name, "literal", subject=part)
             if part.bytes.startswith(piece.bytes):
@@ -203,7 +203,7 @@ class _Frame:
         if length is None or length.name not in self._numbers:
             return self._size_without_length(behind)
         others = [name for name in length.counts if name != part.name]
-        counted = sum(fixed_size(self._sender.frame.part(name)) for name in others)
+        counted = sum(self._sender.frame.part(name).size for name in others)
         return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
 
     def _size_without_length(self, behind: Sequence[Part]) -> int:
@@ -213,7 +213,7 @@ class _Frame:
             fixed = message.sizes.fixed
             if fixed is not None:
                 return min(fixed, self._cursor.left)
-        return max(0, self._cursor.left - sum(map(fixed_size, behind)))
+        return max(0, self._cursor.left - sum(part.size for part in behind))
 
     def _is_closed(self, last: Part) -> bool:
         """Whether the bytes end as a frame does, as far as that can be told."""

@@ -63,6 +63,20 @@ class Sender:
     overloads: tuple[Overload, ...]
     plan: FramePlan
 
+    @property
+    def received(self) -> tuple[Message, ...]:
+        """The messages that a decoder yields, in the order of the schema."""
+        names = {message.name for group in self.plan.groups for message in group.messages}
+        return tuple(message for message in self.messages if message.name in names)
+
+    def received_as(self, message: str) -> str:
+        """Name of the message that a decoder takes this one for, where nothing tells them apart."""
+        for overload in self.overloads:
+            if message in overload.hidden:
+                assert overload.yields is not None
+                return overload.yields
+        return message
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Protocol:

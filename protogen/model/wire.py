@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 from protogen.model.frame import (
     Base16,
-    ChecksumPart,
     Cobs,
     Encoding,
     Escape,
     Frame,
     LiteralPart,
-    NumberPart,
     Part,
     Substitution,
 )
@@ -56,13 +54,8 @@ def code_size(frame: Frame) -> int:
 
 
 def fixed_size(part: Part) -> int:
-    """Unstuffed bytes of a part other than the payload."""
-    match part:
-        case LiteralPart(bytes=literal):
-            return len(literal)
-        case NumberPart(type=type) | ChecksumPart(type=type):
-            return type.size
-    return 0
+    """Bytes of a part before stuffing; 0 for the payload."""
+    return part.size
 
 
 def unstuff(frame: Frame, data: bytes) -> Wire:
@@ -71,7 +64,7 @@ def unstuff(frame: Frame, data: bytes) -> Wire:
         return Wire(_plain(data))
     names = [part.name for part in frame.parts]
     first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
-    start = min(len(data), sum(map(fixed_size, frame.parts[:first])))
+    start = min(len(data), sum(part.size for part in frame.parts[:first]))
     end = max(start, len(data) - _closing(frame, frame.parts[last + 1 :], data))
     unstuffer = _transparency(frame.transparency.encoding, frame.transparency.lenient).decoder()
     code = data[start : min(end, start + code_size(frame))].strip(b"\0")
@@ -88,8 +81,8 @@ def _plain(data: bytes) -> tuple[Unit, ...]:
 
 def _least(parts: tuple[Part, ...]) -> int:
     """Bytes that parts have even with an empty payload."""
-    present = (part for part in parts if not (isinstance(part, ChecksumPart) and part.when_payload))
-    return sum(map(fixed_size, present))
+    present = (part for part in parts if not part.is_optional)
+    return sum(part.size for part in present)
 
 
 def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
@@ -97,7 +90,7 @@ def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
     last = frame.parts[-1]
     if isinstance(last, LiteralPart) and not data.endswith(last.bytes):
         return 0
-    return sum(map(fixed_size, parts))
+    return sum(part.size for part in parts)
 
 
 def _region(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, Frame, LengthPart, LiteralPart, NumberPart, Part
+from protogen.model.frame import Frame, LengthPart, LiteralPart, Part
 from protogen.model.sizes import SizeSet
 
 GREATEST_FRAME = 1 << 20
@@ -16,25 +16,10 @@ def amount(number: int) -> str:
     return str(number) if number < _MANY else "more than 10^18"
 
 
-def part_size(part: Part) -> int:
-    """Unstuffed bytes of a part; 0 for the payload."""
-    match part:
-        case LiteralPart():
-            return len(part.bytes)
-        case NumberPart() | ChecksumPart():
-            return part.type.size
-    return 0
-
-
-def is_optional(part: Part) -> bool:
-    """Whether the part is absent where the payload is empty."""
-    return isinstance(part, ChecksumPart) and part.when_payload
-
-
 def counted_size(frame: Frame, length: LengthPart, *, empty: bool) -> int:
     """Bytes that the length part counts besides the payload, which is empty or not."""
     counted = (frame.part(name) for name in length.counts)
-    return sum(part_size(part) for part in counted if not (empty and is_optional(part)))
+    return sum(part.size for part in counted if not (empty and part.is_optional))
 
 
 def payload_range(frame: Frame) -> SizeSet | None:

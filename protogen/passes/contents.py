@@ -9,7 +9,6 @@ from functools import cache
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
 from protogen.model.types import Field, Integer
-from protogen.passes.capacity import is_optional, part_size
 from protogen.passes.wire_code import ByteSet, code_of, covered_parts, part_bytes
 from protogen.runtime import checksum as sums
 
@@ -38,7 +37,7 @@ def contents_of(
     size = sum(stretch.count for stretch in payload)
     found: dict[str, tuple[Stretch, ...]] = {}
     for part in frame.parts:
-        if size or not is_optional(part):
+        if size or not part.is_optional:
             found[part.name] = _part(frame, part, payload, identity)
     for checksum in frame.checksums:
         _settle(frame, checksum, found)
@@ -78,7 +77,7 @@ def _part(
 def _stated(frame: Frame, length: LengthPart, payload: int) -> int | None:
     """What the length part says; None where it can't say that, so that there is no such frame."""
     counted = (frame.part(name) for name in length.counts)
-    value = payload + sum(part_size(part) for part in counted if payload or not is_optional(part))
+    value = payload + sum(part.size for part in counted if payload or not part.is_optional)
     return value if length.least <= value <= length.greatest else None
 
 

@@ -15,7 +15,7 @@ from random import Random
 from protogen.model.frame import Base16, Cobs, Frame, LiteralPart, PayloadPart
 from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
-from protogen.passes.capacity import part_size, tail_literals
+from protogen.passes.capacity import tail_literals
 from protogen.passes.contents import checksum_bytes
 from protogen.passes.wire_code import ByteSet, code_of
 
@@ -59,7 +59,7 @@ def _may_join(frame: Frame, start: Start, messages: list[Message]) -> bool:
 
 def _sizes_join(frame: Frame, messages: list[Message]) -> bool:
     """Whether some message can be as long as it and another one are together."""
-    between = sum(part_size(part) for part in frame.parts)
+    between = sum(part.size for part in frame.parts)
     filled = {sizes for message in messages if (sizes := message.sizes.within(1, 1 << 20))}
     groups = defaultdict(list)
     for message in messages:
@@ -97,7 +97,7 @@ def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
         if isinstance(part, LiteralPart):
             parts[part.name] = part.bytes
         else:
-            size = dice.randrange(3, 9) if isinstance(part, PayloadPart) else part_size(part)
+            size = dice.randrange(3, 9) if isinstance(part, PayloadPart) else part.size
             parts[part.name] = bytes(dice.choices(sorted(payload), k=size))
     for checksum in frame.checksums:
         parts[checksum.name] = checksum_bytes(frame, checksum, parts)

@@ -27,8 +27,6 @@ from protogen.passes import framing_words, wire_sizes
 from protogen.passes.capacity import (
     GREATEST_FRAME,
     amount,
-    is_optional,
-    part_size,
     payload_range,
 )
 from protogen.passes.context import Context
@@ -124,7 +122,7 @@ class _Analysis:
         values = part_bytes(first, self._payload)[0]
         used = (used for part, used in wire_bytes(self.frame, self._payload) if part != first)
         others = frozenset().union(*used)
-        protected = values.isdisjoint(others) and part_size(first) == 1
+        protected = values.isdisjoint(others) and first.size == 1
         told = protected or self.frame.length is not None or self._always_checked()
         if not told or others <= values:
             return None
@@ -175,7 +173,7 @@ class _Analysis:
             return  # It makes a byte of nothing.
         names = {part.name for part in (*(head.parts if head else ()), *tail.parts)}
         others = (part for part in self.frame.parts if part.name not in names)
-        if any(part_size(part) and not is_optional(part) for part in others):
+        if any(part.size and not part.is_optional for part in others):
             return
         for message in self._messages:
             if message.sizes.least == 0:

@@ -14,7 +14,7 @@ from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
-from protogen.passes.capacity import part_size, tail_literals
+from protogen.passes.capacity import tail_literals
 from protogen.passes.contents import Contents, Stretch, contents_of, payload_of
 from protogen.passes.together import Together
 from protogen.passes.wire_code import EVERY_BYTE, ByteSet, code_of, covered_parts
@@ -42,19 +42,19 @@ class WireSizes:
     @property
     def head(self) -> int:
         """Unstuffed bytes in front of the payload."""
-        return sum(part_size(part) for part in self._around()[0])
+        return sum(part.size for part in self._around()[0])
 
     @property
     def tail(self) -> int:
         """Unstuffed bytes behind the payload but for the end literal."""
         ends = {part.name for part in tail_literals(self._frame)}
-        return sum(part_size(part) for part in self._around()[1] if part.name not in ends)
+        return sum(part.size for part in self._around()[1] if part.name not in ends)
 
     @property
     def overhead(self) -> SizeSet:
         """Bytes that are not payload, before stuffing."""
-        fixed = sum(part_size(part) for part in self._frame.parts)
-        optional = sum(part_size(part) for part in self._frame.checksums if part.when_payload)
+        fixed = sum(part.size for part in self._frame.parts)
+        optional = sum(part.size for part in self._frame.checksums if part.when_payload)
         return SizeSet.between(fixed - optional, fixed, optional)
 
     def frame(self, payload: SizeSet) -> SizeSet:
@@ -119,7 +119,7 @@ class WireSizes:
         """What no frame is worth more than, whatever length and checksums it has."""
         free = [part.name for part in self._frame.parts if isinstance(part, _FOLLOWING)]
         most = sum(
-            part_size(self._frame.part(name)) * self._byte(name, EVERY_BYTE, sign) for name in free
+            self._frame.part(name).size * self._byte(name, EVERY_BYTE, sign) for name in free
         )
         others = (item for item in contents.items() if item[0] not in free)
         return most + sum(self._part(name, stretches, sign) for name, stretches in others)

@@ -284,15 +284,8 @@ def _unless(expression: str, default: str) -> str | None:
 
 def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
     name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{union}, {parts}] = "
-    hidden = {
-        message
-        for overload in sender.overloads
-        if overload.yields is not None
-        for message in overload.messages
-        if message != overload.yields
-    }
-    shown = [class_name(m.name) for m in sender.messages if m.name not in hidden]
-    encode_only = [class_name(m.name) for m in sender.messages if m.name in hidden]
+    shown = [class_name(m.name) for m in sender.received]
+    encode_only = [class_name(m.name) for m in sender.messages if m not in sender.received]
     expression = call(
         "_rt.SenderSpec",
         text(sender.name),
