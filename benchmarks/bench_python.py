@@ -172,7 +172,6 @@ def targets(results: Results) -> list[Target]:
         found.append(_least(f"stream of {case}, construct", times, OURS, CONSTRUCT, 6))
     for case, times in results.encode.items():
         found.append(_most(f"encoding {case}, by hand with slots", times, SLOTTED, 1.2))
-    found += [_in_bulk(case, results) for case in results.stream]
     found += [_native(case, results) for case in results.stream]
     return found
 
@@ -185,15 +184,6 @@ def _most(what: str, times: Times, other: str, most: float) -> Target:
 def _least(what: str, times: Times, own: str, other: str, least: float) -> Target:
     value = timing.ratio(times[other], times[own])
     return Target(what, f"at least {least:g} x faster", f"{value:.1f} x", least / value)
-
-
-def _in_bulk(case: str, results: Results) -> Target:
-    what, aim = f"Python columns of {case}, by hand with tuples", "at most 1.5 x its time"
-    times = results.stream[case]
-    if PURE not in times or TUPLES not in times:
-        return Target(what, aim, "not measured", None)
-    value = timing.ratio(times[PURE], times[TUPLES])
-    return Target(what, aim, f"{value:.2f} x", value / 1.5)
 
 
 def _native(case: str, results: Results) -> Target:
@@ -331,8 +321,8 @@ What each does, and does not:
 * **hand, NumPy** ([bulk.py](peers/bulk.py)) finds, unstuffs, checks and reads all frames at once
   into a structured array, without offsets. Of rflex and matty it takes whole frames of one message
   only, anything else is an error.
-* **protogen, Python columns** are `protogen.capture.columns` without a compiler: NumPy reads what
-  is plainly in order in bulk, the Python decoder the rest. **Native** ones are by generated C. Both
+* **protogen, Python columns** are `protogen.capture.columns` without a compiler, filled from the
+  Python decoder's events. **Native** ones are by generated C. Both
   have offsets, sequence and sizes of all rows, every message, invalid bytes with their reasons.
   What either decodes with is made before anything is timed.
   Native columns are measured on {loops} streams behind one another, by batches, and on one core;

@@ -1,10 +1,10 @@
-"""Compares native columns, and those read in bulk, with the Python decoder's on a seeded corpus.
+"""Compares native columns with those of the Python decoder's events on a seeded corpus.
 
 Run: python benchmarks/check_columns.py --megabytes 100
 
 Every sender of every schema, dialect and framing has its share: clean, noisy and adversarial
-streams, decoded by one core and in parts of many sizes, in Python at once and in pieces. Ends with
-1 at the first difference; else writes benchmarks/equality.md, from 100 MB on.
+streams, decoded by one core, in pieces and in parts of many sizes. Ends with 1 at the first
+difference; else writes benchmarks/equality.md, from 100 MB on.
 """
 
 from __future__ import annotations
@@ -83,7 +83,6 @@ def shares(size: int, seed: int) -> Iterator[tuple[Path, str, str]]:
 
 def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
     """Bytes and events of a stream whose tables are the same. AssertionError where they differ."""
-    from bulk_support import pieces_of, reading_at, tables_of
     from capture_support import assert_same_tables
     from compiled import protocol_of
 
@@ -95,18 +94,14 @@ def compare(path: Path, sender: str, seed: str) -> tuple[int, int]:
     protocol = protocol_of(path)
     dice = Random(f"{path.stem} {sender} {seed}")
     data = stream(path, sender, dice)
-    expected = tables_of(reading_at(path, sender, 0), [data])
-    in_bulk = reading_at(path, sender, 1)
-    if in_bulk.bulk is not None:
-        assert_same_tables(columns(data, protocol, sender, engine="python"), expected)
-        pieces = pieces_of(data, dice.choice([1000, 10_000, 100_000]))
-        assert_same_tables(tables_of(in_bulk, pieces), expected)
+    expected = columns(data, protocol, sender, engine="python")
     assert_same_tables(columns(data, protocol, sender, engine="native"), expected)
     library = library_of(protocol, protocol.sender(sender))
     in_place = Gathering(len(data))
     decoder = NativeEngine(library, memory=in_place)
-    for piece in pieces_of(data, dice.choice([5000, 20_000, 50_000])):
-        for found in decoder.feed(piece):
+    size = dice.choice([5000, 20_000, 50_000])
+    for start in range(0, len(data), size):
+        for found in decoder.feed(data[start : start + size]):
             in_place.add(found)
     for found in decoder.flush():
         in_place.add(found)

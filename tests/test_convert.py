@@ -515,7 +515,8 @@ class TestErrors:
         capture.write_bytes(capture_of(sink, "board", 3))
         monkeypatch.setenv("CC", f"no-such-cc-{tmp_path.name}")
         lines = convert(sink, "board", capture, "csv", tmp_path / "out")
-        assert lines[0].startswith("warning: captures are read in Python, which is slow: there is")
+        assert lines[0].startswith("warning: columns are filled from Python's events, ")
+        assert "there is no C compiler 'no-such-cc" in lines[0]
         assert lines[1].startswith(f"{capture}: raw bytes")
 
     def test_what_parquet_has_no_place_for(self, tmp_path: Path) -> None:

@@ -10,20 +10,25 @@ import warnings
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
+from typing import Any
 
 import handwritten_streams
 import pytest
-from bulk_support import reading_at, tables_of
 from capture_support import assert_same_tables
 from cli_support import run
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
 from corpus import joined as pieces_joined
-from corpus import marks_of, material_of, stream_of
-from hypothesis import given, settings
+from corpus import known_frames, marks_of, material_of, stream_of
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from schema_fuzzing import Schema, codec, schemas
+from schema_fuzzing.streams import streams
+from schema_fuzzing.text import to_yaml
+from schema_fuzzing.values import parts_of, values_of
 from test_recovery import drawn_pieces
-from tooling import require_tool
+from tooling import require_module, require_tool
 
+import protogen
 from protogen.capture import (
     CaptureError,
     SlowCaptureWarning,
@@ -35,6 +40,8 @@ from protogen.capture import (
 )
 from protogen.capture.gather import Gathering, gathered
 from protogen.capture.native import NativeEngine, library_of
+from protogen.compiler import compile_file
+from protogen.model.protocol import Sender
 from protogen.native import build as building
 from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
@@ -75,8 +82,6 @@ def native_tables(path: Path, sender: str, data: bytes) -> Tables:
 def check(path: Path, sender: str, data: bytes) -> None:
     native = native_tables(path, sender, data)
     assert_same_tables(native, python_tables(path, sender, data))
-    for least in (0, 1):  # By events alone, and all that can be in bulk.
-        assert_same_tables(native, tables_of(reading_at(path, sender, least), [data]))
 
 
 # --- equality -------------------------------------------------------------------------------------
@@ -248,6 +253,101 @@ def test_a_signalling_nan_means_the_same_in_both() -> None:
     assert len(native_tables(path, "station", frame).messages["sensor"]) == 4
 
 
+@settings(max_examples=max(4, EXAMPLES // 25), suppress_health_check=list(HealthCheck))
+@given(schemas(), st.data())
+def test_random_schemas_have_the_tables_that_python_fills(
+    tmp_path_factory: pytest.TempPathFactory, schema: Schema, data: st.DataObject
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "drawn.yaml"
+    path.write_text(to_yaml(schema.data), encoding="utf-8", newline="")
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    module = protogen.module_of(protocol)
+    for sender in protocol.senders:
+        frames = drawn_frames(data, module, sender)
+        if frames:
+            some = data.draw(st.lists(st.sampled_from(frames), min_size=1, max_size=8))
+            for stream in (data.draw(streams(some)).data, b"".join(frames * 3)):
+                native = columns(stream, protocol, sender.name, engine="native")
+                python = columns(stream, protocol, sender.name, engine="python")
+                assert_same_tables(native, python)
+
+
+def drawn_frames(data: st.DataObject, module: Any, sender: Sender) -> list[bytes]:
+    frames = []
+    for message in sender.messages:
+        for _ in range(data.draw(st.integers(1, 3))):
+            values, parts = data.draw(values_of(message)), data.draw(parts_of(sender.frame))
+            made = codec.check_payload(module, message, values)
+            frame = made and codec.encode(module, sender, message, made, parts)
+            frames += [frame] if frame else []
+    return frames
+
+
+ODD = """
+protocol: odd
+title: Frames with optional checksums, padded parts and literals in front
+endpoints: {{one: One side}}
+byte_order: big
+frame:
+  sync: {{literal: {{hex: 7E}}{unprotected}}}
+  mark: {{literal: {{hex: 01 02}}}}
+  level: {{type: uint4}}
+  id: {{type: uint8, id: true}}
+  length: {{type: uint8, counts: [payload, check]}}
+  payload: {{}}
+  check: {{type: uint8, algorithm: {algorithm}, covers: [mark, id, payload], when: payload}}
+{more}
+messages:
+  full: {{id: 1, from: one, fields: {{a: uint16, b: uint8}}}}
+  empty: {{id: 2, from: one, fields: {{}}}}
+"""
+STUFFING = """
+transparency:
+  covers: level..check
+  escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: invert}
+"""
+SYNC = """
+  sync: {literal: {hex: 5A A5}, unprotected: sync_in_data}"""
+DECISION = """
+decisions:
+  sync_in_data: {question: Is it protected?, document: No., choice: Accept., because: It is rare.}
+"""
+
+
+@pytest.mark.parametrize("algorithm", ["xor-8", "sum-8/negated"])
+@pytest.mark.parametrize("stuffed", [False, True])
+def test_odd_frames_have_the_tables_that_python_fills(
+    algorithm: str, stuffed: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "odd.yaml"
+    how = ("", STUFFING) if stuffed else (", unprotected: sync_in_data", DECISION)
+    text = ODD.format(algorithm=algorithm, unprotected=how[0], more=how[1])
+    path.write_text(text, encoding="utf-8")
+    frames = b"".join(known_frames(path, protocol_of(path).sender("one")))
+    check(path, "one", frames)
+    for seed in SEEDS:
+        check(path, "one", stream_of(material_of(path, "one"), Random(seed), 150).data)
+    for place in range(len(frames)):  # Padding, marks, lengths and checksums that are wrong.
+        wrong = frames[:place] + bytes((frames[place] ^ 0x30,)) + frames[place + 1 :]
+        check(path, "one", wrong + frames)
+
+
+@pytest.mark.parametrize("name", ["elements", "sampler"])
+def test_whole_frames_of_every_type_have_the_tables_that_python_fills(
+    name: str, tmp_path: Path
+) -> None:
+    """The samplers with a start: without, no frame is taken whole."""
+    path = tmp_path / f"{name}.yaml"
+    text = (ROOT / "tests" / "c_schemas" / f"{name}.yaml").read_text(encoding="utf-8")
+    path.write_text(text.replace("\nframe:", f"\nframe:{SYNC}") + DECISION, encoding="utf-8")
+    for sender in protocol_of(path).senders:
+        check(path, sender.name, b"".join(known_frames(path, sender)) * 2)
+        for seed in SEEDS:
+            dice = Random(f"{name} {seed}")
+            check(path, sender.name, stream_of(material_of(path, sender.name), dice, 150).data)
+
+
 # --- the compiler ---------------------------------------------------------------------------------
 
 
@@ -293,7 +393,7 @@ def test_what_does_not_compile_is_named(tmp_path: Path) -> None:
     source = tmp_path / "source.c"
     source.write_text("int ours(void) {\n    return absent;\n}\n", encoding="utf-8")
     with pytest.raises(NativeError, match=r"error: .*absent"):
-        compiler.compiler().build(source, tmp_path / "library")
+        compiler.working(compiler.compilers()).build(source, tmp_path / "library")
 
 
 def test_a_compiler_that_does_not_run_is_named(
@@ -320,10 +420,61 @@ def test_a_compiler_that_speaks_another_encoding_is_understood_in_part(
 
 def test_the_usual_names_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CC", raising=False)
-    assert compiler.compiler().command[0].startswith("/")
+    assert compiler.compilers()[0].command[0].startswith("/")
+    without_compilers(monkeypatch)
+    with pytest.raises(NativeError, match=r"no cc, gcc or clang .*protogen-serial\[compiler\]"):
+        compiler.compilers()
+
+
+def without_compilers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
-    with pytest.raises(NativeError, match="no cc, gcc or clang"):
-        compiler.compiler()
+    monkeypatch.setattr(compiler, "ziglang", lambda: ())
+
+
+def compilers_at(folder: Path, monkeypatch: pytest.MonkeyPatch, **scripts: str) -> None:
+    """Let nothing but these scripts be on the PATH."""
+    folder.mkdir()
+    for name, script in scripts.items():
+        (folder / name).write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+        (folder / name).chmod(0o755)
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(folder))
+
+
+def test_the_first_compiler_that_works_is_taken(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = require_tool("cc")
+    lacking = "echo 'stdlib.h: no such file' >&2; exit 1"
+    working = f'PATH={os.defpath} exec {real} "$@"'
+    compilers_at(tmp_path / "bin", monkeypatch, cc=lacking, gcc=working)
+    assert compiler.working(compiler.compilers()).command == (str(tmp_path / "bin" / "gcc"),)
+    assert build().is_new
+    assert not build().is_new
+
+
+def test_where_no_compiler_works_all_are_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compilers_at(tmp_path / "bin", monkeypatch, cc="exit 1", clang="exit 1")
+    monkeypatch.setattr(compiler, "ziglang", lambda: ())
+    with pytest.raises(NativeError, match=r"no C compiler works of .*/cc, .*/clang; pip install"):
+        build()
+
+
+def test_the_package_ziglang_brings_a_compiler(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With no other on the PATH it is found, compiles, and what it compiles reads columns."""
+    require_module("ziglang")
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", "")
+    (zig,) = compiler.compilers()
+    assert "ziglang" in zig.command[0]
+    for path, sender in ((RN1, "brain"), (ROOT / "schemas" / "rflex.yaml", "flex")):
+        check(path, sender, stream_of(material_of(path, sender), Random(1), 300).data)
+    assert len(cache.libraries()) == 2
+    assert {build(RN1, "brain").is_new, build(RN1, "host").is_new} == {False, True}
 
 
 # --- stuffed frames, sixteen bytes at a time ------------------------------------------------------
@@ -439,7 +590,7 @@ def test_what_was_built_ahead_serves_where_no_compiler_is_any_more(
 ) -> None:
     monkeypatch.delenv("CC", raising=False)
     first = build()
-    monkeypatch.setenv("PATH", "")
+    without_compilers(monkeypatch)
     again = build()
     assert (again.path, again.is_new) == (first.path, False)
     with pytest.raises(NativeError, match="no cc, gcc or clang"):
@@ -469,7 +620,7 @@ def test_a_cache_that_can_not_be_looked_at_is_no_reason_to_end(
         raise PermissionError(self)
 
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setenv("PATH", "")
+    without_compilers(monkeypatch)
     monkeypatch.setattr(Path, "is_dir", refuse)
     with pytest.raises(NativeError, match="no cc, gcc or clang"):
         build()
@@ -484,7 +635,7 @@ def test_of_several_built_ahead_the_newest_serves(
     older = build().path
     assert older != newest
     os.utime(older, (1, 1))
-    monkeypatch.setenv("PATH", "")
+    without_compilers(monkeypatch)
     assert build().path == newest
 
 

@@ -325,5 +325,5 @@ def test_without_a_compiler_lines_are_the_same(monkeypatch: pytest.MonkeyPatch) 
     expected = lines_of(batches_of(path, sender, data, None))
     monkeypatch.setenv("CC", "no-such-cc")
     _function.cache_clear()
-    with pytest.warns(UserWarning, match="captures are read in Python"):
+    with pytest.warns(UserWarning, match="columns are filled from Python's events"):
         assert lines_of(batches_of(path, sender, data, None)) == expected

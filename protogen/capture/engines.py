@@ -1,4 +1,4 @@
-"""What fills tables: generated C where there is a compiler, else Python."""
+"""Engines that fill tables: generated C where there is a compiler, else Python."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, Literal, Protocol
 
-from protogen.capture.bulk.stretch import Bulk
 from protogen.capture.errors import CaptureError, SlowCaptureWarning
 from protogen.capture.layout import capture_schema
 from protogen.capture.pure import PythonEngine, Reading
@@ -63,10 +62,10 @@ _STACK = 6
 
 
 def _warn(why: str) -> None:
-    """Say once that it is slow, and why."""
+    """Say once that rows come from events, what that costs, and why it is so."""
     if why not in _warned:
         _warned.add(why)
-        text = f"captures are read in Python, which is slow: {why}"
+        text = f"columns are filled from Python's events, hundreds of times slower than by C: {why}"
         warnings.warn(text, SlowCaptureWarning, stacklevel=_STACK)
 
 
@@ -79,8 +78,7 @@ def reading_of(protocol: Model, sender: Sender) -> Reading:
 
     schema = capture_schema(protocol, sender)
     spec = module_of(protocol).PROTOCOL.sender(sender.name)
-    bulk = Bulk(sender, spec, schema) if Bulk.can_read(sender) else None
-    found = Reading(schema, spec, bulk)
+    found = Reading(schema, spec)
     _READINGS.append((protocol, sender.name, found))
     return found
 

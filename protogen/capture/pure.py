@@ -1,4 +1,4 @@
-"""Fills tables in Python: rows that were read in bulk, and rows from the decoder's events."""
+"""Fills tables in Python, with rows from the decoder's events."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
-from protogen.capture.bulk.cutter import LEAST, BulkCutter
-from protogen.capture.bulk.stretch import Bulk, Run, rows_of_runs
 from protogen.capture.schema import (
     CaptureSchema,
     Choice,
@@ -21,7 +19,7 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
-from protogen.capture.tables import Tables, chosen, concatenated, empty_rows, rows
+from protogen.capture.tables import Tables, empty_rows, rows
 from protogen.runtime.decoder import Decoder
 
 if TYPE_CHECKING:
@@ -34,34 +32,24 @@ Scope = ChainMap[str, Values]
 
 
 class Reading:
-    """What the bytes of one endpoint are read with. It takes a while to make, and never changes."""
+    """Schema, specification and empty tables of one endpoint. Takes a while to make; immutable."""
 
-    def __init__(
-        self, schema: CaptureSchema, spec: SenderSpec[Any, Any], bulk: Bulk | None = None
-    ) -> None:
-        """Without `bulk` all rows come from events."""
+    def __init__(self, schema: CaptureSchema, spec: SenderSpec[Any, Any]) -> None:
         self.schema = schema
         self.spec = spec
-        self.bulk = bulk
         self.empty = empty_rows(schema)
         self.invalid = rows(dtype_of(schema.invalid))
         self.unknown = rows(dtype_of(schema.unknown))
 
 
 class PythonEngine:
-    """A stream that becomes tables, some bytes at a time.
-
-    What is plainly in order becomes rows in bulk, and the decoder's events tell the rest.
-    """
+    """A stream that becomes tables, some bytes at a time."""
 
     name = "python"
 
-    def __init__(self, reading: Reading, least: int = LEAST) -> None:
-        """The rows of fewer bytes than `least` come from events."""
+    def __init__(self, reading: Reading) -> None:
         self._reading = reading
-        spec, bulk = reading.spec, reading.bulk
-        self._cutter = BulkCutter(bulk, spec, least) if bulk is not None else None
-        self._decoder = Decoder(spec.cut_by(self._cutter or spec.cut))
+        self._decoder = Decoder(reading.spec)
         self._fed = 0
         self._offset = 0
         self._sequence = 0
@@ -75,65 +63,34 @@ class PythonEngine:
         """Take the end of the stream."""
         yield self._tables(self._decoder.flush())
 
-    def _tables(self, found: Sequence[Any]) -> Tables:
-        if self._cutter is not None:
-            self._cutter.forget()
-        numbered, runs, count = _numbered(found, self._sequence)
+    def _tables(self, events: Sequence[Any]) -> Tables:
+        by_kind: dict[str, list[tuple[int, Any]]] = {"message": [], "invalid": [], "unknown": []}
+        for item in enumerate(events, self._sequence):
+            by_kind[item[1].kind].append(item)
         offset, sequence = self._offset, self._sequence
         self._offset = self._fed - self._decoder.pending
-        self._sequence += count
-        unknown: list[tuple[int, Any]] = [item for item in numbered if item[1].kind == "unknown"]
+        self._sequence += len(events)
+        unknown = by_kind["unknown"]
         return Tables(
             schema=self._reading.schema,
             engine=self.name,
-            messages=self._messages(numbered, runs),
-            invalid=_invalid(self._reading, numbered),
+            messages=self._messages(by_kind["message"]),
+            invalid=_invalid(self._reading, by_kind["invalid"]),
             unknown=_unknown(self._reading, unknown),
             payloads=_octets(b"".join(event.payload for _, event in unknown)),
             offset=offset,
             size=self._offset - offset,
             sequence=sequence,
-            events=count,
+            events=len(events),
         )
 
-    def _messages(
-        self, numbered: Sequence[tuple[int, Any]], runs: Sequence[tuple[int, Run]]
-    ) -> dict[str, Rows]:
+    def _messages(self, numbered: Sequence[tuple[int, Any]]) -> dict[str, Rows]:
         by_name: dict[str, list[tuple[int, Any]]] = {}
         for item in numbered:
-            if item[1].kind == "message":
-                by_name.setdefault(item[1].message.NAME, []).append(item)
-        pieces = rows_of_runs(runs)
-        for name, items in by_name.items():
-            found = _filled(self._reading.schema.messages[name], items)
-            pieces.setdefault(name, []).append(found)
-        others = {name: _in_order(items) for name, items in pieces.items()}
-        return self._reading.empty | others
-
-
-def _numbered(
-    found: Sequence[Any], first: int
-) -> tuple[list[tuple[int, Any]], list[tuple[int, Run]], int]:
-    """Events and runs with their numbers, and how many events that makes."""
-    events: list[tuple[int, Any]] = []
-    runs: list[tuple[int, Run]] = []
-    number = first
-    for item in found:
-        if isinstance(item, Run):
-            runs.append((number, item))
-            number += item.stop - item.first
-        else:
-            events.append((number, item))
-            number += 1
-    return events, runs, number - first
-
-
-def _in_order(pieces: Sequence[Rows]) -> Rows:
-    """All rows, by their numbers."""
-    if len(pieces) == 1:
-        return pieces[0]
-    together = concatenated(pieces)
-    return chosen(together, numpy().argsort(together["sequence"]))
+            by_name.setdefault(item[1].message.NAME, []).append(item)
+        tables = self._reading.schema.messages
+        filled = {name: _filled(tables[name], items) for name, items in by_name.items()}
+        return self._reading.empty | filled
 
 
 def _octets(data: bytes) -> Rows:
@@ -154,11 +111,10 @@ def _framed(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
 
 
 def _invalid(reading: Reading, numbered: Sequence[tuple[int, Any]]) -> Rows:
-    invalid = [item for item in numbered if item[1].kind == "invalid"]
-    if not invalid:
+    if not numbered:
         return reading.invalid
-    found = _framed(reading.schema.invalid, invalid)
-    found["reason"] = [InvalidReason[event.reason.upper()] for _, event in invalid]
+    found = _framed(reading.schema.invalid, numbered)
+    found["reason"] = [InvalidReason[event.reason.upper()] for _, event in numbered]
     return found
 
 

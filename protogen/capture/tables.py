@@ -75,12 +75,6 @@ def concatenated(pieces: Sequence[Rows]) -> Rows:
     return found
 
 
-def chosen(rows: Rows, places: Rows) -> Rows:
-    """Some rows, by their places or a mask, with what lies between their members."""
-    found: Rows = rows.view(f"V{rows.dtype.itemsize}")[places].view(rows.dtype)
-    return found
-
-
 def payload_column(schema: CaptureSchema) -> str:
     """The column of unknown frames that says where their payloads begin."""
     columns = schema.unknown.columns

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 from protogen.model.protocol import Protocol, Sender
 from protogen.native.cache import SUFFIX, cache_folder, check, safe_folder
-from protogen.native.compiler import Compiler, compiler
+from protogen.native.compiler import Compiler, compilers, working
 from protogen.native.errors import NativeError, NoCompilerError
 from protogen.native.source import Driver, driver_of
 from protogen.version import VERSION
@@ -55,17 +55,20 @@ def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]
     made_from = (VERSION, *words, *_machine(), _digest(text))
     stem = f"{name}-{_digest(*made_from)[:24]}"
     try:
-        found = compiler()
+        found = compilers()
     except NoCompilerError:
         path = _built_ahead(stem)
         if path is None:
             raise
         return path, False
     folder = safe_folder(cache_folder())
-    path = folder / f"{stem}-{_digest(found.identity)[:8]}{SUFFIX}"
-    is_new = not path.exists()
-    if is_new:
-        _compile(text, found, path)
+    paths = [folder / f"{stem}-{_digest(item.identity)[:8]}{SUFFIX}" for item in found]
+    path = next((path for path in paths if path.exists()), None)
+    is_new = path is None
+    if path is None:
+        chosen = working(found)
+        path = paths[found.index(chosen)]
+        _compile(text, chosen, path)
     check(path)
     return path, is_new
 

@@ -114,11 +114,6 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     def __repr__(self) -> str:
         return f"<what {self.name} sends: {', '.join(item.NAME for item in self.messages)}>"
 
-    def cut_by(self, cut: Cutter | None) -> SenderSpec[MessageT_co, PartsT_co]:
-        """The same endpoint, with something else to take its whole frames."""
-        every = (self.name, self._frame, self.parts, self.messages, self.encode_only)
-        return SenderSpec(*every, cut, self.waits)
-
     def kin(self, identity: Identity) -> Kin[MessageT_co] | None:
         """The messages of an identity; None where it is unknown."""
         return self._kin.get(identity)
