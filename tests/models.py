@@ -39,7 +39,7 @@ from protogen.model.types import (
     Type,
     total,
 )
-from protogen.passes.frame_plan import plan_frame
+from protogen.passes.framing.frame_plan import plan_frame
 from protogen.problems.span import Span
 
 SPAN = Span("tiny.yaml", 1, 1, 1, 2)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protogen.passes.codewords import Segment, ambiguity, occurs, prefix_clash
+from protogen.passes.proofs.codewords import Segment, ambiguity, occurs, prefix_clash
 
 Code = Mapping[int, bytes]
 

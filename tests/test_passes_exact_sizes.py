@@ -11,7 +11,7 @@ from random import Random
 import pytest
 from passes_support import HEAD, framing_of, message_framing, repository_protocol
 
-from protogen.passes.correlation import Place, most_summed
+from protogen.passes.proofs.correlation import Place, most_summed
 
 Table = dict[int, bytes]
 Checksum = Callable[[bytes], int]

@@ -93,7 +93,7 @@ def _ask_framing() -> Framing:
 
 def _checked(name: str) -> str:
     """Return a name that a protocol may have. Raises UsageError with one that is close."""
-    from protogen.passes.reserved_words import languages_reserving
+    from protogen.passes.names.reserved_words import languages_reserving
     from protogen.schema.syntax.base import NAME_PATTERN
 
     if not re.fullmatch(NAME_PATTERN, name) or len(name) > _GREATEST_NAME:

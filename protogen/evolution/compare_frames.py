@@ -23,7 +23,7 @@ from protogen.model.frame import (
 from protogen.model.protocol import Sender
 from protogen.model.readings import type_name
 from protogen.model.types import Integer
-from protogen.passes.capacity import payload_range
+from protogen.passes.framing.capacity import payload_range
 
 
 def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:

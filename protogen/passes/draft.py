@@ -10,7 +10,7 @@ from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.protocol import Decision
 from protogen.model.reserved import Reserved
 from protogen.passes.context import Context
-from protogen.passes.named_types import NamedTypes
+from protogen.passes.types.named_types import NamedTypes
 
 
 @dataclass(slots=True)

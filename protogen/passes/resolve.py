@@ -8,21 +8,21 @@ from pathlib import PurePath
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
-from protogen.passes.class_names import check_class_names
-from protogen.passes.codes import check_codes
 from protogen.passes.context import Context, about, source_of
-from protogen.passes.decisions import resolve_decisions
 from protogen.passes.draft import Draft
-from protogen.passes.examples import attach_examples, resolve_exchanges
-from protogen.passes.frame_plan import plan_frame
-from protogen.passes.frames import resolve_frames
-from protogen.passes.framing import analyse_framing
-from protogen.passes.identities import check_identities
-from protogen.passes.messages import resolve_messages
-from protogen.passes.names import check_names
-from protogen.passes.reserved import resolve_reserved
+from protogen.passes.framing.analysis import analyse_framing
+from protogen.passes.framing.codes import check_codes
+from protogen.passes.framing.frame_plan import plan_frame
+from protogen.passes.framing.frames import resolve_frames
+from protogen.passes.messages.building import resolve_messages
+from protogen.passes.messages.examples import attach_examples, resolve_exchanges
+from protogen.passes.messages.identities import check_identities
+from protogen.passes.names.checking import check_names
+from protogen.passes.names.class_names import check_class_names
+from protogen.passes.names.decisions import resolve_decisions
+from protogen.passes.names.reserved import resolve_reserved
 from protogen.passes.spec_hash import message_hash, spec_hash
-from protogen.passes.unused import check_unused
+from protogen.passes.types.unused import check_unused
 
 Pass = Callable[[Context, Draft], None]
 

@@ -13,7 +13,7 @@ from protogen.model.framing import Framing
 from protogen.model.messages import Message, Overload
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
-from protogen.passes.frame_plan import plan_frame
+from protogen.passes.framing.frame_plan import plan_frame
 
 
 def select(

@@ -15,7 +15,7 @@ from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import total
-from protogen.passes.capacity import is_delimited
+from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
 from protogen.targets.c.accessors import Accessors, is_readable
 from protogen.targets.c.checking import Check, field_can_be_wrong, has_wrong_values

@@ -1,0 +1,1 @@
+"""Frames: parts, checksums, transparency, and where a frame starts and ends."""

@@ -1,0 +1,290 @@
+"""How does a receiver find where a frame starts and ends?
+
+Decides, for each sender, what marks the start and the end, whether those marks are protected, and
+how large a frame can be. A schema whose receiver could not tell is a problem here.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from protogen.model.frame import Cobs, Frame, PayloadPart
+from protogen.model.framing import (
+    AfterEnd,
+    Anywhere,
+    End,
+    Framing,
+    MessageFraming,
+    Start,
+    StartLiteral,
+    StartSet,
+)
+from protogen.model.messages import Message
+from protogen.model.protocol import Link
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Array, Integer, Struct, Switch, Type
+from protogen.passes.context import Context
+from protogen.passes.draft import Draft
+from protogen.passes.framing import framing_words
+from protogen.passes.framing.capacity import (
+    GREATEST_FRAME,
+    amount,
+    payload_range,
+)
+from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
+from protogen.passes.proofs import wire_sizes
+from protogen.passes.proofs.undetected import undetected_errors
+from protogen.passes.proofs.wire_code import (
+    EVERY_BYTE,
+    SEVEN_BITS,
+    ByteSet,
+    covered_parts,
+    part_bytes,
+    wire_bytes,
+)
+from protogen.schema.syntax.protocol import ALL_SENDERS
+
+
+def analyse_framing(context: Context, draft: Draft) -> None:
+    """The framing of each sender."""
+    analyses = [_Analysis(context, draft, sender, frame) for sender, frame in draft.frames.items()]
+    judge_delimiters(context, [(item.sender, item.frame, item.delimiters) for item in analyses])
+    for analysis in analyses:
+        framing = analysis.framing()
+        if framing is not None:
+            draft.framings[analysis.sender] = framing
+
+
+class _Analysis:
+    """One sender's frames."""
+
+    def __init__(self, context: Context, draft: Draft, sender: str, frame: Frame) -> None:
+        self._context = context
+        self._key = sender if sender in context.syntax.frame else ALL_SENDERS
+        self._messages = draft.sent_by(sender)
+        self._too_large = any(message.name in draft.too_large for message in self._messages)
+        self._overloads = draft.overloads[sender]
+        self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)
+        self.sender = sender
+        self.frame = frame
+        self.delimiters = delimiters_of(frame, self._payload)
+        self._stated = payload_range(frame)
+
+    def framing(self) -> Framing | None:
+        """The framing, or None where a receiver could not tell."""
+        end = self._end()
+        start = self._start(end)
+        if start is None or not self._ends_known(end):
+            return None
+        self._only_end()
+        if self._region_unclear():
+            return None
+        return self._describe(start, end)
+
+    # -- start and end ------------------------------------------------------------------------
+
+    def _end(self) -> End | None:
+        tail = self.delimiters.tail
+        return None if tail is None else End(bytes=tail.bytes, protected=tail.protected)
+
+    def _start(self, end: End | None) -> Start | None:
+        head = self.delimiters.head
+        if head is not None:
+            return StartLiteral(bytes=head.bytes, protected=head.protected)
+        marked = self._start_set()
+        if marked is not None:
+            return marked
+        if end is not None:
+            return AfterEnd()
+        if self._always_checked():
+            return Anywhere()
+        self._context.error_at_key(
+            "PG146",
+            ("frame", self._key),
+            f"nothing tells a receiver where a frame of {self.sender} starts",
+            "a frame needs a literal, a first byte with a `range` of its own, or at least a "
+            "checksum that is always there",
+        )
+        return None
+
+    def _always_checked(self) -> bool:
+        return any(not part.when_payload for part in self.frame.checksums)
+
+    def _start_set(self) -> StartSet | None:
+        """The first part, where a range sets its byte apart.
+
+        Where other bytes of a frame can be such a byte too, it takes more to tell frames: a length
+        or a checksum. A set that holds all of them tells nothing.
+        """
+        first = self.frame.parts[0]
+        item = self._context.syntax.frame[self._key][first.name]
+        if item.range is None or first.name in covered_parts(self.frame):
+            return None
+        values = part_bytes(first, self._payload)[0]
+        used = (used for part, used in wire_bytes(self.frame, self._payload) if part != first)
+        others = frozenset().union(*used)
+        protected = values.isdisjoint(others) and first.size == 1
+        told = protected or self.frame.length is not None or self._always_checked()
+        if not told or others <= values:
+            return None
+        return StartSet(least=min(values), greatest=max(values), protected=protected)
+
+    # -- what a receiver can tell -------------------------------------------------------------
+
+    def _ends_known(self, end: End | None) -> bool:
+        """Whether the frame, or each message, says where it ends."""
+        if self.frame.length is not None or end is not None:
+            return True
+        if not self._identity_first():
+            text = "the identity comes behind the payload, and nothing else tells where it ends"
+            self._context.error_at_key("PG145", ("frame", self._key), text)
+            return False
+        before = self._context.tally.errors
+        self._messages_end()
+        self._overloads_end()
+        return self._context.tally.errors == before
+
+    def _messages_end(self) -> None:
+        """Fields that fill the payload were refused already; an unspecified one is such a field."""
+        for message in self._messages:
+            if message.unspecified and message.sizes.fixed is None:
+                self._context.error_at_key(
+                    "PG145",
+                    ("messages", message.name),
+                    f"a receiver can't tell where `{message.name}` ends",
+                    "give the frame a length or an end literal, or the message a fixed size",
+                )
+
+    def _overloads_end(self) -> None:
+        """The size tells messages apart only if something else tells the size."""
+        sizes = {message.name: message.sizes.fixed for message in self._messages}
+        for overload in self._overloads:
+            if len({sizes[name] for name in overload.messages} | {None}) != 2:
+                text = "a receiver can't tell where these messages end: they differ in size"
+                hint = "give the frame a length or an end literal"
+                self._context.error_at_key("PG145", ("overloads", overload.name), text, hint)
+
+    def _only_end(self) -> None:
+        """A frame that holds nothing is no frame to a receiver, but a line that is idle."""
+        head, tail = self.delimiters.head, self.delimiters.tail
+        transparency = self.frame.transparency
+        if tail is None or (head is not None and head.bytes != tail.bytes):
+            return
+        if transparency is not None and isinstance(transparency.encoding, Cobs):
+            return  # It makes a byte of nothing.
+        names = {part.name for part in (*(head.parts if head else ()), *tail.parts)}
+        others = (part for part in self.frame.parts if part.name not in names)
+        if any(part.size and not part.is_optional for part in others):
+            return
+        for message in self._messages:
+            if message.sizes.least == 0:
+                text = f"a frame of `{message.name}` can be its end alone, which says nothing"
+                hint = "give the frame an identity or another part, or the message a field"
+                self._context.error_at_key("PG146", ("messages", message.name), text, hint)
+
+    def _identity_first(self) -> bool:
+        names = [part.name for part in self.frame.parts]
+        payload = next(p.name for p in self.frame.parts if isinstance(p, PayloadPart))
+        return all(names.index(p.name) < names.index(payload) for p in self.frame.identity)
+
+    def _region_unclear(self) -> bool:
+        """Raw parts between a stuffed region and the end need a length to be found."""
+        transparency = self.frame.transparency
+        if transparency is None or self.frame.length is not None:
+            return False
+        names = [part.name for part in self.frame.parts]
+        rest = names[names.index(transparency.last) + 1 :]
+        tail = self.delimiters.tail
+        ends = {part.name for part in tail.parts} if tail is not None else set()
+        unclear = [name for name in rest if name not in ends]
+        if unclear:
+            text = f"nothing tells where the stuffed parts end and `{unclear[0]}` begins"
+            self._context.error_at_key("PG149", ("frame", self._key, unclear[0]), text)
+        return bool(unclear)
+
+    # -- results ------------------------------------------------------------------------------
+
+    def _describe(self, start: Start, end: End | None) -> Framing | None:
+        frame = self.frame
+        payload = self._payload_sizes()
+        wire = wire_sizes.WireSizes(frame, self._payload)
+        greatest = wire.frame(payload).greatest
+        if greatest > GREATEST_FRAME:
+            if self._too_large:
+                return None  # Which was said of the message.
+            text = f"a frame of {self.sender} can have {amount(greatest)} bytes; "
+            text = f"{text}at most 1 MiB is allowed"
+            self._context.error_at_key("PG122", ("frame", self._key), text)
+            return None
+        per_message = tuple(self._message(wire, message) for message in self._messages)
+        synchronising, why = framing_words.synchronisation(frame, start, end)
+        return Framing(
+            start=start,
+            end=end,
+            head=wire.head,
+            tail=wire.tail,
+            payload=payload,
+            least=min((item.least for item in per_message), default=0),
+            greatest=greatest,
+            overhead=wire.overhead,
+            seven_bit=self._payload == SEVEN_BITS,
+            cut_ambiguous=end is not None and not end.protected,
+            self_synchronising=synchronising,
+            why_synchronising=why,
+            finds_start=framing_words.finds_start(start),
+            finds_end=framing_words.finds_end(frame, end, self._messages),
+            undetected=undetected_errors(frame, start, end, self._messages, self._payload),
+            messages=per_message,
+        )
+
+    def _payload_sizes(self) -> SizeSet:
+        if self._stated is not None:
+            return self._stated
+        least = min((message.sizes.least for message in self._messages), default=0)
+        greatest = max((message.sizes.greatest for message in self._messages), default=0)
+        return SizeSet.between(least, greatest)
+
+    def _sendable(self, sizes: SizeSet) -> SizeSet:
+        """What this sender's frames can carry of a message that others may send as well."""
+        if self._stated is None:
+            return sizes
+        return sizes.within(self._stated.least, self._stated.greatest) or sizes
+
+    def _message(self, wire: wire_sizes.WireSizes, message: Message) -> MessageFraming:
+        sizes = wire.message(message, self._sendable(message.sizes))
+        return MessageFraming(
+            message=message.name,
+            least=sizes.least,
+            greatest=sizes.greatest,
+            per_second=_rate(self._context, sizes.greatest),
+        )
+
+
+def _rate(context: Context, size: int) -> Fraction | None:
+    link = context.syntax.link
+    bits = Link(data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits)
+    return Fraction(link.baud, bits.bits_per_byte * size) if link.baud else None
+
+
+def payload_alphabet(byte_bits: int, messages: list[Message]) -> ByteSet:
+    """The bytes that a payload can hold."""
+    if byte_bits == 8:
+        return EVERY_BYTE
+    whole = any(_holds_whole_bytes(field.type) for m in messages for field in m.fields)
+    return EVERY_BYTE if whole else SEVEN_BITS
+
+
+def _holds_whole_bytes(type_: Type) -> bool:
+    match type_:
+        case Integer():
+            return type_.role == "byte"
+        case Struct():
+            return any(_holds_whole_bytes(field.type) for field in type_.fields)
+        case Array():
+            return _holds_whole_bytes(type_.element)
+        case Switch():
+            return any(_holds_whole_bytes(case.type) for case in type_.cases)
+    return False
+
+
+__all__ = ["analyse_framing", "payload_alphabet"]

@@ -1,0 +1,97 @@
+"""Can the literals that open and close a frame also occur inside of it?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from protogen.model.frame import Frame, LiteralPart
+from protogen.passes.context import Context, Loc
+from protogen.passes.framing.capacity import head_literals, tail_literals
+from protogen.passes.proofs.codewords import occurs
+from protogen.passes.proofs.wire_code import ByteSet, segments
+from protogen.schema.syntax.protocol import ALL_SENDERS
+
+
+@dataclass(frozen=True, slots=True)
+class Delimiter:
+    """Literals that stand together at one end of a frame."""
+
+    parts: tuple[LiteralPart, ...]
+    witness: tuple[bytes, int] | None
+    """A frame that has the delimiter in another place, and where; None: there is none."""
+
+    @property
+    def bytes(self) -> bytes:
+        """What the literals are together."""
+        return b"".join(part.bytes for part in self.parts)
+
+    @property
+    def protected(self) -> bool:
+        """Whether it occurs nowhere else in a frame."""
+        return self.witness is None
+
+
+@dataclass(frozen=True, slots=True)
+class Delimiters:
+    """What marks the frames of one sender."""
+
+    head: Delimiter | None
+    tail: Delimiter | None
+
+
+def delimiters_of(frame: Frame, payload: ByteSet) -> Delimiters:
+    """The delimiters of a frame whose payload is of such bytes."""
+    head, tail = head_literals(frame), tail_literals(frame)
+    stretches = segments(frame, payload, (part.name for part in (*head, *tail)))
+
+    def delimiter(parts: tuple[LiteralPart, ...]) -> Delimiter | None:
+        literal = b"".join(part.bytes for part in parts)
+        return Delimiter(parts, occurs(literal, b"", stretches, b"")) if parts else None
+
+    return Delimiters(delimiter(head), delimiter(tail))
+
+
+def judge_delimiters(context: Context, senders: Iterable[tuple[str, Frame, Delimiters]]) -> None:
+    """Report what is not protected and not accepted; senders of one frame are judged together."""
+    alike: dict[Loc, list[Delimiter]] = defaultdict(list)
+    for sender, frame, found in senders:
+        loc: Loc = ("frame", sender if sender in context.syntax.frame else ALL_SENDERS)
+        for delimiter in filter(None, (found.head, found.tail)):
+            alike[(*loc, delimiter.parts[0].name)].append(delimiter)
+        _needless_inside(context, frame, found, loc)
+    for loc, delimiters in alike.items():
+        _judge(context, loc, delimiters)
+
+
+def _judge(context: Context, loc: Loc, delimiters: Sequence[Delimiter]) -> None:
+    witness = next((item.witness for item in delimiters if item.witness is not None), None)
+    accepted = [part.name for part in delimiters[0].parts if part.unprotected is not None]
+    if witness is None:
+        for name in accepted:
+            text = f"`{name}` can't occur inside a frame, so nothing needs to be accepted"
+            _needless(context, (*loc[:-1], name), text)
+    elif not accepted:
+        data, offset = witness
+        context.error_at_key(
+            "PG142",
+            loc,
+            f"`{loc[-1]}` can also occur inside a frame, and nothing protects it: "
+            f"{data.hex(' ').upper()} has it at byte {offset}",
+            "add a transparency, or accept it: `unprotected:` and a decision's name",
+        )
+
+
+def _needless_inside(context: Context, frame: Frame, found: Delimiters, loc: Loc) -> None:
+    """A literal that marks neither end needs no protection."""
+    ends = [*(found.head.parts if found.head else ()), *(found.tail.parts if found.tail else ())]
+    for part in frame.parts:
+        accepted = isinstance(part, LiteralPart) and part.unprotected is not None
+        if accepted and part not in ends:
+            text = f"no receiver looks for `{part.name}`, so nothing needs to be accepted"
+            _needless(context, (*loc, part.name), text)
+
+
+def _needless(context: Context, loc: Loc, text: str) -> None:
+    context.error("PG144", (*loc, "unprotected"), text, "remove `unprotected`")

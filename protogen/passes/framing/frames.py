@@ -1,0 +1,249 @@
+"""Which parts does a sender's frame have, and what does each do?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+
+from protogen.model.checksums import SIMPLE_ALGORITHMS
+from protogen.model.frame import (
+    ChecksumPart,
+    CounterPart,
+    Frame,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    ValuePart,
+)
+from protogen.model.types import Integer
+from protogen.passes.context import Context, Loc, about
+from protogen.passes.draft import Draft
+from protogen.passes.framing.capacity import counted_size, stated_range
+from protogen.passes.framing.checksum_parts import PAYLOAD, ChecksumReader, check_checksums
+from protogen.passes.framing.part_runs import Runs
+from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.messages.byte_orders import byte_order_of
+from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
+from protogen.schema.syntax.parts import Part as PartSyntax
+from protogen.schema.syntax.protocol import ALL_SENDERS
+
+_ROLES: dict[str, frozenset[str]] = {
+    "literal": frozenset({"literal", "unprotected"}),
+    "id": frozenset({"id", "type", "range", "byte_order"}),
+    "counts": frozenset({"counts", "type", "range", "byte_order"}),
+    "counter": frozenset({"counter", "type", "range", "default", "byte_order"}),
+    "algorithm": frozenset({"algorithm", "type", "covers", "over", "when", "byte_order"}),
+    "type": frozenset({"type", "range", "default", "byte_order"}),
+    PAYLOAD: frozenset(),
+}
+_COMMON_KEYS = frozenset({"doc", "source"})
+
+
+def resolve_frames(context: Context, draft: Draft) -> None:
+    """One frame for each sender; frames that nobody sends are checked as well."""
+    written = context.syntax.frame
+    for sender in draft.senders:
+        frame = _frame_of(context, sender)
+        if frame is not None:
+            draft.frames[sender] = frame
+    known = {*context.syntax.endpoints, *(() if draft.senders else (ALL_SENDERS,))}
+    for key in dict.fromkeys((*written, *context.syntax.transparency)):
+        idle = key in known and key not in draft.senders
+        if idle and (key in written or ALL_SENDERS in written):
+            FrameBuilder(context, key).frame()
+
+
+def _frame_of(context: Context, sender: str) -> Frame | None:
+    written = context.syntax.frame
+    if sender in written or ALL_SENDERS in written:
+        return FrameBuilder(context, sender).frame()
+    # A key that is no endpoint is most likely this sender's, misspelled; that was reported.
+    if written.keys() <= context.syntax.endpoints.keys():
+        text = f"`{sender}` sends messages but has no frame"
+        context.error_at_key("PG157", ("frame",), text)
+    return None
+
+
+class FrameBuilder:
+    """Resolves the frame of one sender."""
+
+    def __init__(self, context: Context, sender: str) -> None:
+        self._context = context
+        self._sender = sender
+        key = sender if sender in context.syntax.frame else ALL_SENDERS
+        self._loc: Loc = ("frame", key)
+        self._syntax: Mapping[str, PartSyntax] = context.syntax.frame[key]
+        self._runs = Runs(context, self._syntax)
+        self._checksums = ChecksumReader(context, self._loc, self._runs)
+        order = byte_order_of(context, sender)
+        self._layout = Layout(byte_bits=context.syntax.byte_bits, byte_order=order)
+        self._replaced = 0
+        """Errors of checksums that another one stands for."""
+
+    def frame(self) -> Frame | None:
+        """The frame, or None where something about it is wrong."""
+        before = self._context.tally.errors
+        parts = [self._part(name, item) for name, item in self._syntax.items()]
+        if PAYLOAD not in self._syntax:
+            text = "the frame has no part called `payload`"
+            self._context.error_at_key("PG130", self._loc, text)
+        transparency = transparency_of(self._context, self._sender, self._syntax)
+        self._one_length(parts)
+        before += self._replaced
+        if self._context.tally.errors > before or self._loc in self._context.doubtful:
+            return None
+        known = tuple(part for part in parts if part is not None)
+        frame = Frame(parts=known, transparency=transparency)
+        self._check(frame)
+        return frame if self._context.tally.errors == before else None
+
+    def _check(self, frame: Frame) -> None:
+        """What can only be asked when all parts are there."""
+        check_checksums(self._context, frame, self._loc)
+        length = frame.length
+        if length is not None and stated_range(frame, length) is None:
+            around = counted_size(frame, length, empty=True)
+            besides = "1 byte" if around == 1 else f"{around} bytes"
+            text = f"`{length.name}` counts {besides} besides the payload"
+            text = f"{text}, and can't say more than {length.greatest}"
+            self._context.error_at_key("PG137", (*self._loc, length.name), text)
+
+    # -- parts --------------------------------------------------------------------------------
+
+    def _part(self, name: str, item: PartSyntax) -> Part | None:
+        role = self._role(name, item)
+        if role is None:
+            return None
+        text = about(item.doc, item.source, self._context.find_key((*self._loc, name)))
+        if role == PAYLOAD:
+            return PayloadPart(name=name, about=text)
+        if role == "literal":
+            return self._literal(name, item)
+        type_ = self._type(name, item)
+        if type_ is None:
+            return None
+        if role == "algorithm":
+            return self._checksum(name, item, type_)
+        least, greatest = self._range(name, item, type_)
+        part = NumberPart(name=name, type=type_, least=least, greatest=greatest, about=text)
+        return self._number(role, item, part)
+
+    def _checksum(self, name: str, item: PartSyntax, type_: Integer) -> Part:
+        """The checksum; any other of its size serves where the rest of the frame is asked about."""
+        before = self._context.tally.errors
+        part = self._checksums.read(name, item, type_)
+        if part is not None and self._context.tally.errors == before:
+            return part
+        self._replaced += self._context.tally.errors - before
+        plain = SIMPLE_ALGORITHMS[0]
+        return ChecksumPart(name=name, type=type_, algorithm=plain, covers=(PAYLOAD,))
+
+    def _number(self, role: str, item: PartSyntax, part: NumberPart) -> Part:
+        """The part as what its role makes of it."""
+        given = {field.name: getattr(part, field.name) for field in fields(part)}
+        if role == "id":
+            return IdentityPart(**given)
+        if role == "counts":
+            return LengthPart(**given, counts=self._counted(part.name, item))
+        self._default_fits(item, part)
+        if role == "counter":
+            return CounterPart(**given, default=item.default)
+        return ValuePart(**given, default=item.default)
+
+    def _default_fits(self, item: PartSyntax, part: NumberPart) -> None:
+        if item.default is not None and not part.least <= item.default <= part.greatest:
+            text = f"{item.default} is out of {part.least} to {part.greatest}"
+            self._context.error("PG114", (*self._loc, part.name, "default"), text)
+
+    def _role(self, name: str, item: PartSyntax) -> str | None:
+        written = {key for key in item.model_fields_set if getattr(item, key) is not None}
+        role = self._role_key(name, written)
+        if role is None:
+            self._context.error_at_key(
+                "PG131",
+                (*self._loc, name),
+                f"nothing says what `{name}` does in the frame",
+                "give it a literal, id, counts, counter, algorithm, or at least a type",
+            )
+            return None
+        strange = sorted(written - _ROLES[role] - _COMMON_KEYS)
+        for key in strange:
+            text = f"`{key}` does not go together with `{role}`"
+            self._context.error_at_key("PG131", (*self._loc, name, key), text)
+        return None if strange else role
+
+    def _role_key(self, name: str, written: set[str]) -> str | None:
+        if name == PAYLOAD:
+            return PAYLOAD
+        return next((role for role in _ROLES if role in written), None)
+
+    def _literal(self, name: str, item: PartSyntax) -> LiteralPart:
+        if not item.literal:
+            loc = (*self._loc, name, "literal")
+            self._context.error("PG147", loc, "the literal has no bytes")
+        return LiteralPart(
+            name=name,
+            bytes=item.literal or b"\0",
+            unprotected=item.unprotected,
+            about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
+        )
+
+    def _type(self, name: str, item: PartSyntax) -> Integer | None:
+        if item.type is None:
+            text = f"`{name}` needs a `type`"
+            self._context.error_at_key("PG131", (*self._loc, name), text)
+            return None
+        loc = (*self._loc, name, "type")
+        order = item.byte_order or self._layout.byte_order
+        found = integer(item.type, Layout(byte_bits=self._layout.byte_bits, byte_order=order))
+        if not has_width(item.type):
+            text = f"integers are 1 to 64 bits wide, not {integer_width(item.type)}"
+            self._context.error("PG105", loc, text)
+            return None
+        if found is None or found.signed or found.role == "bool":
+            text = f"`{item.type}` is no unsigned integer, which a part of a frame is"
+            self._context.error("PG104", loc, text, type_hint(item.type))
+            return None
+        if found.size > 1 and order is None:
+            hint = "set `byte_order: little` or `big` on the part or the protocol"
+            text = "nothing says in which order the bytes of this number are sent"
+            self._context.error("PG109", loc, text, hint)
+        return found
+
+    def _range(self, name: str, item: PartSyntax, type_: Integer) -> tuple[int, int]:
+        if item.range is None:
+            return type_.least, type_.greatest
+        least, greatest = item.range
+        loc = (*self._loc, name, "range")
+        if least > greatest:
+            text = f"the range is empty: {least} is greater than {greatest}"
+            self._context.error("PG115", loc, text)
+        elif not (type_.holds(least) and type_.holds(greatest)):
+            self._context.error("PG114", loc, f"{least} to {greatest} does not fit {item.type}")
+        return least, greatest
+
+    # -- lengths ------------------------------------------------------------------------------
+
+    def _counted(self, name: str, item: PartSyntax) -> tuple[str, ...]:
+        loc = (*self._loc, name)
+        counts = self._runs.run(item.counts or (), (*loc, "counts"))
+        names = self._runs.names
+        if counts and PAYLOAD not in counts:
+            text = "a length that does not count the payload can't tell where the frame ends"
+            self._context.error("PG133", (*loc, "counts"), text)
+        if PAYLOAD in names and names.index(name) > names.index(PAYLOAD):
+            text = "a length behind the payload comes too late for a receiver"
+            self._context.error_at_key("PG133", loc, text)
+        return counts
+
+    def _one_length(self, parts: Sequence[Part | None]) -> None:
+        lengths = [part for part in parts if isinstance(part, LengthPart)]
+        for part in lengths[1:]:
+            text = f"the frame already has a length: `{lengths[0].name}`"
+            self._context.error_at_key("PG133", (*self._loc, part.name), text)
+
+
+__all__ = ["FrameBuilder", "resolve_frames"]

@@ -1,0 +1,117 @@
+"""What keeps delimiters out of a sender's frame, and where?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from itertools import pairwise
+
+from protogen.model.frame import Base16, Cobs, Encoding, Escape, Substitution, Transparency
+from protogen.passes.context import Context, Loc, about
+from protogen.passes.framing.part_runs import Runs
+from protogen.schema.syntax.parts import EscapeSyntax, TransparencySyntax
+from protogen.schema.syntax.parts import Part as PartSyntax
+from protogen.schema.syntax.protocol import ALL_SENDERS
+
+SLIP = Substitution(table=((0xC0, b"\xdb\xdc"), (0xDB, b"\xdb\xdd")))
+"""RFC 1055: END and ESC, each behind ESC with a byte of its own."""
+
+HDLC = Escape(byte=0x7D, of=(0x7D, 0x7E), xor=0x20)
+"""RFC 1662: flag and control escape, with bit 5 inverted."""
+
+_KINDS = ("substitute", "escape", "encoding", "preset")
+
+
+def transparency_of(
+    context: Context, sender: str, parts: Mapping[str, PartSyntax]
+) -> Transparency | None:
+    """The transparency of a sender's frame, which has these parts."""
+    written = context.syntax.transparency
+    key = sender if sender in written else ALL_SENDERS
+    item = written.get(key)
+    return None if item is None else _Reader(context, ("transparency", key), item).read(parts)
+
+
+class _Reader:
+    """One transparency on its way into the model."""
+
+    def __init__(self, context: Context, loc: Loc, item: TransparencySyntax) -> None:
+        self._context = context
+        self._loc = loc
+        self._item = item
+
+    def read(self, parts: Mapping[str, PartSyntax]) -> Transparency | None:
+        """The transparency, or None where it is not clear."""
+        item = self._item
+        covered = self._region(parts)
+        encoding = self._encoding()
+        if encoding is None or not covered:
+            return None
+        return Transparency(
+            first=covered[0],
+            last=covered[-1],
+            encoding=encoding,
+            preset=item.preset or item.encoding,
+            lenient=item.lenient,
+            about=about(item.doc, item.source, self._context.find_key(self._loc)),
+        )
+
+    def _region(self, parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:
+        if self._item.covers is None:
+            return _between_literals(parts)
+        loc = (*self._loc, "covers")
+        runs = Runs(self._context, parts)
+        covered = runs.run(self._item.covers, loc)
+        places = [runs.names.index(name) for name in covered]
+        if any(behind - place != 1 for place, behind in pairwise(places)):
+            self._context.error("PG138", loc, "the parts under transparency are one run")
+        return covered
+
+    def _encoding(self) -> Encoding | None:
+        item = self._item
+        chosen = [key for key in _KINDS if getattr(item, key) is not None]
+        if len(chosen) != 1:
+            text = f"a transparency is exactly one of {', '.join(_KINDS)}"
+            self._context.error_at_key("PG138", self._loc, text)
+            return None
+        if item.substitute is not None:
+            return self._substitution(item.substitute)
+        if item.escape is not None:
+            return self._escape(item.escape)
+        if item.preset is not None:
+            return SLIP if item.preset == "slip" else HDLC
+        return Base16() if item.encoding == "base16-upper" else Cobs()
+
+    def _substitution(self, table: tuple[tuple[int, bytes], ...]) -> Substitution:
+        for byte, count in Counter(byte for byte, _ in table).items():
+            if count > 1:
+                text = f"the byte {byte:02X} stands in the table twice"
+                self._context.error_at_key("PG138", (*self._loc, "substitute"), text)
+        return Substitution(table=table)
+
+    def _escape(self, item: EscapeSyntax) -> Escape:
+        if item.byte not in item.of:
+            self._context.error(
+                "PG139",
+                (*self._loc, "escape", "of"),
+                f"the escape byte 0x{item.byte:02X} is not escaped itself",
+                "add it to `of`, or a receiver takes it in the data for an escape",
+            )
+        match item.transform:
+            case "invert":
+                xor = 0xFF
+            case "none":
+                xor = 0
+            case _:
+                xor = item.transform.xor
+        return Escape(byte=item.byte, of=tuple(sorted(set(item.of))), xor=xor)
+
+
+def _between_literals(parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:
+    """Everything between the literals that open and those that close the frame."""
+    names = list(parts)
+    while names and parts[names[0]].literal is not None:
+        names.pop(0)
+    while names and parts[names[-1]].literal is not None:
+        names.pop()
+    return tuple(names)

@@ -1,0 +1,225 @@
+"""What does each message carry, and how is it told apart?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from protogen.model.frame import Frame
+from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
+from protogen.model.types import ByteOrder, Field, Fill, Octets, total
+from protogen.passes.context import Context, Loc, about
+from protogen.passes.draft import Draft
+from protogen.passes.framing.capacity import GREATEST_FRAME, amount, is_delimited, payload_range
+from protogen.passes.messages.byte_orders import byte_order_of
+from protogen.passes.messages.identity import Identity, IdentityReader
+from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
+from protogen.passes.types.fields import FieldBuilder
+from protogen.passes.types.setting import Setting
+from protogen.passes.types.type_names import Layout
+from protogen.schema.syntax.messages import MessageSyntax
+
+DATA = "data"
+"""The only field of a message whose payload is not specified."""
+
+
+def resolve_messages(context: Context, draft: Draft) -> None:
+    """Fields, sizes and identity of each message whose senders all have a frame."""
+    builder = FieldBuilder(context, draft.named)
+    frames = {
+        sender: _Framed(sender, frame, payload_range(frame))
+        for sender, frame in draft.frames.items()
+    }
+    begun = [
+        _Resolution(context, name, syntax, [frames[sender] for sender in syntax.from_])
+        for name, syntax in context.syntax.messages.items()
+        if frames.keys() >= set(syntax.from_)
+    ]
+    for resolution in begun:
+        resolution.resolve_fields(builder)
+    draft.used_types = builder.followed
+    for resolution in begun:
+        resolution.add_to(draft)
+
+
+class _Framed(NamedTuple):
+    """What a message of one sender travels in."""
+
+    sender: str
+    frame: Frame
+    payload: SizeSet | None
+    """The payload sizes that its length part can state."""
+
+
+class _Resolution:
+    """One message on its way into the model."""
+
+    def __init__(
+        self, context: Context, name: str, syntax: MessageSyntax, frames: list[_Framed]
+    ) -> None:
+        self._context = context
+        self._name = name
+        self._syntax = syntax
+        self._frames = frames
+        self._loc: Loc = ("messages", name)
+        self._fields: tuple[Field, ...] = ()
+        self._sound = True
+
+    def resolve_fields(self, builder: FieldBuilder) -> None:
+        """Resolve the fields; named types get their bounds when those of all messages are."""
+        before = self._context.tally.errors
+        if isinstance(self._syntax.fields, str):
+            self._fields = self._unspecified()
+        else:
+            self._bounds_misused()
+            loc = (*self._loc, "fields")
+            self._fields = builder.fields(self._syntax.fields, loc, self._setting())
+        self._sound = self._context.tally.errors == before
+
+    def add_to(self, draft: Draft) -> None:
+        """Add the message."""
+        syntax = self._syntax
+        self._fields = draft.named.settled(self._fields)
+        identity = self._identity()
+        sizes = self._sizes(draft)
+        if identity is None:
+            draft.unidentified.add(self._name)
+        draft.messages[self._name] = Message(
+            name=self._name,
+            title=syntax.title or self._name,
+            summary=syntax.summary or "",
+            senders=syntax.from_,
+            identity=identity or (),
+            fields=self._fields,
+            sizes=sizes,
+            unspecified=isinstance(syntax.fields, str),
+            about=about(syntax.doc, syntax.source),
+            span=self._context.find_key(self._loc),
+        )
+
+    # -- fields -------------------------------------------------------------------------------
+
+    def _setting(self) -> Setting:
+        return Setting(
+            layout=Layout(
+                byte_bits=self._context.syntax.byte_bits,
+                byte_order=self._byte_order(),
+            ),
+            capacity=self._capacity(),
+            owner=self._name,
+            delimited=all(is_delimited(framed.frame) for framed in self._frames),
+        )
+
+    def _byte_order(self) -> ByteOrder | None:
+        if self._syntax.byte_order is not None:
+            return self._syntax.byte_order
+        orders = {byte_order_of(self._context, sender) for sender in self._syntax.from_}
+        if len(orders) > 1:
+            text = f"the senders of `{self._name}` use different byte orders"
+            self._context.error_at_key("PG109", self._loc, text, "set `byte_order` on the message")
+        return next(iter(orders))
+
+    def _capacity(self) -> int | None:
+        """The greatest payload that one of the senders can send, where all frames bound it."""
+        bounds = [item.payload.greatest for item in self._frames if item.payload is not None]
+        return max(bounds) if len(bounds) == len(self._frames) else None
+
+    def _unspecified(self) -> tuple[Field, ...]:
+        stated = self._syntax.max_size
+        capacity = self._capacity()
+        if stated is None and capacity is None:
+            text = f"nothing bounds the unspecified payload of `{self._name}`"
+            hint = "add `max_size`, the greatest number of bytes"
+            self._context.error_at_key("PG155", self._loc, text, hint)
+        greatest = stated if stated is not None else capacity or 0
+        extent = Fill(greatest=greatest, stated=stated is not None)
+        data = Octets(extent=extent, byte_bits=self._context.syntax.byte_bits)
+        return (Field(name=DATA, type=data, position=0, unknown=True),)
+
+    def _bounds_misused(self) -> None:
+        for key in ("min_size", "max_size"):
+            if getattr(self._syntax, key) is not None:
+                text = f"`{key}` is for messages whose fields are unspecified"
+                self._context.error_at_key("PG155", (*self._loc, key), text)
+
+    # -- sizes --------------------------------------------------------------------------------
+
+    def _sizes(self, draft: Draft) -> SizeSet:
+        sizes = self._stated_sizes()
+        for framed in self._frames:
+            self._fits(sizes, framed)
+        sizes = self._sendable(sizes)
+        if sizes.greatest > GREATEST_FRAME:
+            text = f"the payload can have {amount(sizes.greatest)} bytes; a frame is at most 1 MiB"
+            self._context.error("PG122", self._greatest(), text)
+            draft.too_large.add(self._name)
+            return sizes.within(0, GREATEST_FRAME) or SizeSet.exactly(0)
+        return sizes
+
+    def _greatest(self) -> Loc:
+        """The place of what makes the payload as long as it can be."""
+        if isinstance(self._syntax.fields, str):
+            return (*self._loc, "max_size")
+        greatest = max(self._fields, key=lambda field: field.type.sizes.greatest).name
+        loc = (*self._loc, "fields", greatest)
+        written = self._syntax.fields[greatest].model_fields_set
+        return next(((*loc, key) for key in ("count", "size") if key in written), loc)
+
+    def _stated_sizes(self) -> SizeSet:
+        sizes = total(self._fields)
+        least = self._least_unspecified()
+        if least > sizes.greatest:
+            text = f"`min_size` is greater than the greatest size, {sizes.greatest}"
+            self._context.error("PG115", (*self._loc, "min_size"), text)
+        return SizeSet.between(least, sizes.greatest) if least else sizes
+
+    def _least_unspecified(self) -> int:
+        is_unspecified = isinstance(self._syntax.fields, str)
+        return (self._syntax.min_size or 0) if is_unspecified else 0
+
+    def _sendable(self, sizes: SizeSet) -> SizeSet:
+        """The sizes that some sender's length part can state; an encoder refuses the others."""
+        known = [framed.payload for framed in self._frames if framed.payload is not None]
+        if len(known) < len(self._frames):
+            return sizes
+        low = min(allowed.least for allowed in known)
+        return sizes.within(low, max(allowed.greatest for allowed in known)) or sizes
+
+    def _fits(self, sizes: SizeSet, framed: _Framed) -> None:
+        """Whether the length part can state all sizes that the schema insists on."""
+        sender, frame, allowed = framed
+        if frame.length is None or allowed is None or not self._sound:
+            return
+        length = f"`{frame.length.name}`"
+        greatest = max(greatest_stated(self._fields), sizes.least)
+        least = self._least_unspecified() or least_stated(self._fields)
+        if greatest > allowed.greatest:
+            self._context.error_at_key(
+                "PG137",
+                self._loc,
+                f"the payload can have {amount(greatest)} bytes, but {length} of {sender}'s "
+                f"frame can't say more than {allowed.greatest}",
+                "make the length part wider, or bound the message",
+            )
+        elif least < allowed.least:
+            text = f"the payload can have {amount(least)} bytes, but {length} says at least "
+            self._context.error_at_key("PG148", self._loc, f"{text}{allowed.least}")
+
+    # -- identity -----------------------------------------------------------------------------
+
+    def _identity(self) -> Identity | None:
+        reader = IdentityReader(self._context, self._loc, f"`{self._name}`")
+        found = [reader.read(self._syntax.id, framed.frame) for framed in self._frames]
+        known = [identity for identity in found if identity is not None]
+        if len(known) < len(found):
+            return None
+        return known[0] if self._is_one(known) else None
+
+    def _is_one(self, identities: Sequence[Identity]) -> bool:
+        if len(set(identities)) == 1:
+            return True
+        text = f"the frames of `{self._name}`'s senders have the identity parts in different orders"
+        hint = "order the parts alike, or write a message for each sender"
+        self._context.error("PG151", (*self._loc, "id"), text, hint)
+        return False

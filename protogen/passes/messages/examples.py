@@ -1,0 +1,160 @@
+"""Do the examples say enough to be verified, and do exchanges name messages that exist?
+
+Whether an example decodes to its values is asked later, by the Python target's own output.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from protogen.model.frame import Frame
+from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
+from protogen.passes.context import Context, Loc, about
+from protogen.passes.draft import Draft
+from protogen.passes.framing.part_runs import Runs
+from protogen.passes.messages.example_values import with_byte_strings
+from protogen.problems import hint_for
+from protogen.schema.syntax.messages import Example as ExampleSyntax
+from protogen.schema.syntax.messages import Exchange as ExchangeSyntax
+from protogen.schema.syntax.messages import Step as StepSyntax
+
+
+def attach_examples(context: Context, draft: Draft) -> None:
+    """Add its examples to each message."""
+    _content_known(context)
+    for name, message in draft.messages.items():
+        written = context.syntax.messages[name].examples or {}
+        built = [
+            _example(context, draft, message, key, item, ("messages", name, "examples", key))
+            for key, item in written.items()
+        ]
+        known = tuple(example for example in built if example is not None)
+        draft.messages[name] = replace(message, examples=known)
+
+
+def _content_known(context: Context) -> None:
+    """What `content` holds by default are parts of some frame at least, examples or not."""
+    frames = [list(frame) for frame in context.syntax.frame.values()]
+    names = dict.fromkeys(name for frame in frames for name in frame)
+    loc: Loc = ("content_covers",)
+    for item in context.syntax.content_covers or ():
+        ends = item.split("..")
+        unknown = [name for name in ends if name not in names]
+        for name in unknown:
+            text = f"no frame has a part called `{name}`"
+            context.error("PG132", loc, text, hint_for(name, names))
+        if not unknown and not any(_in_order(frame, ends) for frame in frames):
+            context.error("PG132", loc, f"in no frame does `{ends[-1]}` come behind `{ends[0]}`")
+
+
+def _in_order(names: list[str], ends: list[str]) -> bool:
+    """Whether a frame of these parts has a run with these ends."""
+    return set(ends) <= set(names) and names.index(ends[0]) <= names.index(ends[-1])
+
+
+def _example(
+    context: Context, draft: Draft, message: Message, name: str, item: ExampleSyntax, loc: Loc
+) -> Example | None:
+    if (item.frame is None) == (item.content is None):
+        text = "an example has either `frame` (all bytes) or `content`"
+        context.error_at_key("PG162", loc, text)
+        return None
+    sender = _sender(context, message, item, loc)
+    if sender is None or sender not in draft.frames:
+        return None
+    covers = None
+    if item.frame is None:
+        covers = _covers(context, draft.frames[sender], item, loc)
+    elif item.covers is not None:
+        text = "`covers` says what `content` holds; a `frame` is all bytes"
+        context.error_at_key("PG162", (*loc, "covers"), text)
+        return None
+    if item.content is not None and not covers:
+        return None
+    if not _parts_known(context, draft.frames[sender], item, loc):
+        return None
+    return Example(
+        name=name,
+        sender=sender,
+        bytes=item.frame if item.frame is not None else item.content or b"",
+        covers=covers,
+        values=None if item.values is None else with_byte_strings(message.fields, item.values),
+        parts=dict(item.parts or {}),
+        contradicts=_contradiction(message, item),
+        about=about(item.doc, item.source),
+        span=context.find_key(loc),
+    )
+
+
+def _sender(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -> str | None:
+    if item.sender is None:
+        if len(message.senders) == 1:
+            return message.senders[0]
+        names = ", ".join(message.senders)
+        text = f"`{message.name}` has several senders; the example must say which: {names}"
+        context.error_at_key("PG162", loc, text, "add `sender`")
+        return None
+    if item.sender not in message.senders:
+        text = f"`{item.sender}` does not send `{message.name}`"
+        hint = hint_for(item.sender, message.senders)
+        context.error("PG162", (*loc, "sender"), text, hint)
+        return None
+    return item.sender
+
+
+def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tuple[str, ...]:
+    """The parts that `content` holds."""
+    written = item.covers or context.syntax.content_covers
+    if written is None:
+        text = "nothing says which parts `content` holds"
+        context.error_at_key("PG162", (*loc, "content"), text, "add `covers`, or `content_covers`")
+        return ()
+    place: Loc = (*loc, "covers") if item.covers else (*loc, "content")
+    return Runs(context, (part.name for part in frame.parts)).run(written, place)
+
+
+def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> bool:
+    known = [part.name for part in (*frame.caller_parts, *frame.identity)]
+    unknown = [name for name in item.parts or {} if name not in known]
+    for name in unknown:
+        text = f"`{name}` is no part whose value a sender chooses"
+        context.error_at_key("PG162", (*loc, "parts", name), text, hint_for(name, known))
+    return not unknown
+
+
+def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | None:
+    if item.contradicts is None:
+        return None
+    written = item.contradicts
+    reads = None if written.reads is None else with_byte_strings(message.fields, written.reads)
+    return Contradiction(fails=written.fails, why=written.why, reads=reads)
+
+
+def resolve_exchanges(context: Context, draft: Draft) -> None:
+    """The exchanges, whose steps name messages and examples."""
+    draft.exchanges = tuple(
+        _exchange(context, draft, name, item) for name, item in context.syntax.exchanges.items()
+    )
+
+
+def _exchange(context: Context, draft: Draft, name: str, item: ExchangeSyntax) -> Exchange:
+    for index, step in enumerate(item.steps):
+        _step_known(context, draft, step, ("exchanges", name, "steps", index))
+    steps = tuple(
+        Step(message=step.message, example=step.example, about=about(step.doc, step.source))
+        for step in item.steps
+    )
+    return Exchange(
+        name=name, title=item.title or name, steps=steps, about=about(item.doc, item.source)
+    )
+
+
+def _step_known(context: Context, draft: Draft, step: StepSyntax, loc: Loc) -> None:
+    written = context.syntax.messages.get(step.message)
+    if written is None:
+        hint = hint_for(step.message, context.syntax.messages)
+        context.error("PG164", (*loc, "message"), f"there is no message `{step.message}`", hint)
+    elif step.example is not None and step.example not in (written.examples or {}):
+        hint = hint_for(step.example, written.examples or {})
+        text = f"`{step.message}` has no example `{step.example}`"
+        context.error("PG164", (*loc, "example"), text, hint)

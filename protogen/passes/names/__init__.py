@@ -1,0 +1,1 @@
+"""Names: usable in every target, unique, not reserved."""

@@ -1,0 +1,115 @@
+"""Can every target use the names, and does each endpoint that is referred to exist?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from protogen.passes.context import Context, Loc
+from protogen.passes.draft import Draft
+from protogen.passes.names.reserved_words import (
+    AS_CLASSES,
+    OWN_ARGUMENTS,
+    OWN_ATTRIBUTES,
+    languages_reserving,
+)
+from protogen.passes.types.type_names import is_builtin
+from protogen.problems import hint_for
+from protogen.schema.syntax.fields import FieldSyntax
+from protogen.schema.syntax.protocol import Frame
+
+_NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
+_VALUE_KEYS = ("values", "flags", "bits", "special")
+_BY_SENDER = ("byte_order", "frame", "transparency")
+
+
+def check_names(context: Context, draft: Draft) -> None:
+    """Reserved words and unknown endpoints; finds the senders."""
+    syntax = context.syntax
+    _usable(context, syntax.protocol, ("protocol",), at_value=True)
+    for key in _NAMED_KEYS:
+        for name in getattr(syntax, key):
+            _usable(context, name, (key, name))
+    for sender, frame in syntax.frame.items():
+        _parts(context, frame, ("frame", sender))
+    for name, declared in syntax.types.items():
+        if is_builtin(name):
+            context.error_at_key("PG107", ("types", name), f"`{name}` is a built-in type")
+        _inside_field(context, declared, ("types", name))
+    for name, message in syntax.messages.items():
+        if not isinstance(message.fields, str):
+            _fields(context, message.fields, ("messages", name, "fields"))
+    if not syntax.messages:
+        context.error("PG157", ("messages",), "the protocol has no messages")
+    draft.senders = _senders(context)
+    _keys_are_endpoints(context)
+
+
+def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) -> None:
+    languages = languages_reserving(name)
+    if languages:
+        report = context.error if at_value else context.error_at_key
+        becomes = f" would be `{name.capitalize()}`, which" if name in AS_CLASSES else ""
+        text = f"`{name}`{becomes} is a reserved word of {', '.join(languages)}"
+        report("PG106", loc, text, f"another name, such as `{name}_value`")
+
+
+def _free(context: Context, name: str, own: frozenset[str], loc: Loc) -> None:
+    if name in own:
+        text = f"`{name}` is a name that generated code uses itself"
+        context.error_at_key("PG106", loc, text)
+
+
+def _parts(context: Context, frame: Frame, loc: Loc) -> None:
+    for name, part in frame.items():
+        _usable(context, name, (*loc, name))
+        if part.literal is None and part.id is None:
+            _free(context, name, OWN_ARGUMENTS, (*loc, name))
+
+
+def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:
+    for name, item in fields.items():
+        _usable(context, name, (*loc, name))
+        _free(context, name, OWN_ATTRIBUTES, (*loc, name))
+        _inside_field(context, item, (*loc, name))
+
+
+def _inside_field(context: Context, item: FieldSyntax, loc: Loc) -> None:
+    """The names that stand inside of a field, those of its cases included."""
+    for key in _VALUE_KEYS:
+        for entry in getattr(item, key) or ():
+            _usable(context, entry, (*loc, key, entry))
+    for name, bits in (item.bits or {}).items():
+        for entry in bits.values or ():
+            _usable(context, entry, (*loc, "bits", name, "values", entry))
+    _fields(context, item.fields or {}, (*loc, "fields"))
+    for key, case in (item.cases or {}).items():
+        _inside_field(context, case, (*loc, "cases", key))
+
+
+def _senders(context: Context) -> tuple[str, ...]:
+    """The endpoints that send something, in the order of the schema."""
+    endpoints = context.syntax.endpoints
+    sending: set[str] = set()
+    for name, message in context.syntax.messages.items():
+        for index, sender in enumerate(message.from_):
+            sending.add(sender)
+            check_endpoint(context, sender, ("messages", name, "from", index))
+    return tuple(name for name in endpoints if name in sending)
+
+
+def check_endpoint(context: Context, name: str, loc: Loc) -> bool:
+    """Whether there is such an endpoint; a problem at `loc` if not."""
+    endpoints = context.syntax.endpoints
+    if name not in endpoints and not context.is_lost("endpoints", name):
+        text = f"there is no endpoint `{name}`"
+        context.error("PG108", loc, text, hint_for(name, endpoints))
+    return name in endpoints
+
+
+def _keys_are_endpoints(context: Context) -> None:
+    endpoints = context.syntax.endpoints
+    for key in _BY_SENDER:
+        for sender in getattr(context.syntax, key):
+            if sender and sender not in endpoints and not context.is_lost("endpoints", sender):
+                text = f"there is no endpoint `{sender}`"
+                context.error_at_key("PG108", (key, sender), text, hint_for(sender, endpoints))

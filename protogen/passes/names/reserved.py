@@ -1,0 +1,69 @@
+"""Does something come back that is reserved?"""
+
+from __future__ import annotations
+
+from protogen.model.reserved import Reserved, ReservedIdentity, ReservedNames, ReservedValues
+from protogen.passes.context import Context, Loc
+from protogen.passes.draft import Draft
+from protogen.passes.messages.identity import IdentityReader
+from protogen.passes.names.checking import check_endpoint
+from protogen.schema.syntax.protocol import ReservedIdentity as IdentitySyntax
+
+
+def resolve_reserved(context: Context, draft: Draft) -> None:
+    """Identities, field names and values that may not come back."""
+    reserved = context.syntax.reserved
+    identities = (
+        _identity(context, draft, ("reserved", "identities", index), entry)
+        for index, entry in enumerate(reserved.identities)
+    )
+    draft.reserved = Reserved(
+        identities=tuple(item for item in identities if item is not None),
+        fields=tuple(
+            ReservedNames(message=name, names=names) for name, names in reserved.fields.items()
+        ),
+        values=tuple(
+            ReservedValues(path=path, values=values) for path, values in reserved.values.items()
+        ),
+    )
+    for name, fields in reserved.fields.items():
+        _fields(context, draft, name, fields)
+    for path, values in reserved.values.items():
+        _values(context, draft, path, values)
+
+
+def _identity(
+    context: Context, draft: Draft, loc: Loc, entry: IdentitySyntax
+) -> ReservedIdentity | None:
+    if not check_endpoint(context, entry.from_, (*loc, "from")) or entry.from_ not in draft.frames:
+        return None
+    reader = IdentityReader(context, loc, "the reserved identity")
+    identity = reader.read(entry.id, draft.frames[entry.from_])
+    for message in draft.sent_by(entry.from_):
+        if message.identity == identity:
+            text = f"the identity of `{message.name}` is reserved"
+            note = (context.find(loc), "reserved here")
+            context.error_at_key("PG156", ("messages", message.name), text, note=note)
+    if identity is None:
+        return None
+    return ReservedIdentity(sender=entry.from_, identity=identity, doc=entry.doc or "")
+
+
+def _fields(context: Context, draft: Draft, name: str, fields: tuple[str, ...]) -> None:
+    message = draft.messages.get(name)
+    for field in message.fields if message else ():
+        if field.name in fields:
+            loc: Loc = ("messages", name, "fields", field.name)
+            context.error_at_key("PG156", loc, f"the field name `{field.name}` is reserved")
+
+
+def _values(context: Context, draft: Draft, path: str, values: tuple[int, ...]) -> None:
+    """`path` is MESSAGE.FIELD, or the name of a declared type."""
+    enum_name = path.replace(".", "_")
+    for enum in draft.named.enums:
+        if enum.name not in (path, enum_name):
+            continue
+        for entry in enum.values:
+            if entry.value in values:
+                text = f"`{entry.name}` = {entry.value} is reserved in `{path}`"
+                context.error_at_key("PG156", ("reserved", "values", path), text)

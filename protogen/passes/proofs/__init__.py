@@ -1,0 +1,1 @@
+"""Proofs about the bytes on the wire: sizes, delimiters, undetected errors."""

@@ -1,0 +1,142 @@
+"""What can the bytes of a frame be, where its message and the size of its payload are known?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
+from protogen.model.types import Field, Integer
+from protogen.passes.proofs.wire_code import ByteSet, code_of, covered_parts, part_bytes
+from protogen.runtime import checksum as sums
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """So many bytes in a row, each of which is one of `values`."""
+
+    values: ByteSet
+    count: int = 1
+
+    @property
+    def known(self) -> bool:
+        """Whether the bytes are always the same."""
+        return len(self.values) == 1
+
+
+Contents = Mapping[str, tuple[Stretch, ...]]
+"""The bytes of each part that is present."""
+
+
+def contents_of(
+    frame: Frame, payload: tuple[Stretch, ...], identity: Mapping[str, int]
+) -> Contents:
+    """The bytes of frames with this payload and, as far as it is known, this identity."""
+    size = sum(stretch.count for stretch in payload)
+    found: dict[str, tuple[Stretch, ...]] = {}
+    for part in frame.parts:
+        if size or not part.is_optional:
+            found[part.name] = _part(frame, part, payload, identity)
+    for checksum in frame.checksums:
+        _settle(frame, checksum, found)
+    return found
+
+
+def payload_of(fields: Sequence[Field], size: int, values: ByteSet) -> tuple[Stretch, ...]:
+    """A payload of these fields, of so many bytes: constants are known, other bytes are not."""
+    varying = [field for field in fields if field.size is None]
+    fixed = sum(field.size or 0 for field in fields)
+    if len(varying) > 1 or fixed > size or (not varying and fixed < size):
+        return (Stretch(values, size),)
+    stretches = (_field(field, size - fixed, values) for field in fields)
+    return tuple(stretch for found in stretches for stretch in found if stretch.count)
+
+
+def _field(field: Field, rest: int, values: ByteSet) -> tuple[Stretch, ...]:
+    """The bytes of one field; `rest` is the size of the one whose size varies."""
+    if isinstance(field.type, Integer) and isinstance(field.const, int):
+        return known_bytes(number_bytes(field.type, field.const))
+    return (Stretch(values, rest if field.size is None else field.size),)
+
+
+def _part(
+    frame: Frame, part: Part, payload: tuple[Stretch, ...], identity: Mapping[str, int]
+) -> tuple[Stretch, ...]:
+    if isinstance(part, PayloadPart):
+        return payload
+    value = identity.get(part.name)
+    if isinstance(part, LengthPart):
+        value = _stated(frame, part, sum(stretch.count for stretch in payload))
+    if isinstance(part, NumberPart) and value is not None:
+        return known_bytes(number_bytes(part.type, value))
+    return tuple(Stretch(values) for values in part_bytes(part, frozenset()))
+
+
+def _stated(frame: Frame, length: LengthPart, payload: int) -> int | None:
+    """What the length part says; None where it can't say that, so that there is no such frame."""
+    counted = (frame.part(name) for name in length.counts)
+    value = payload + sum(part.size for part in counted if payload or not part.is_optional)
+    return value if length.least <= value <= length.greatest else None
+
+
+def _settle(frame: Frame, part: ChecksumPart, found: dict[str, tuple[Stretch, ...]]) -> None:
+    """A checksum of bytes that are always the same is always the same."""
+    if part.name not in found or all(stretch.known for stretch in found[part.name]):
+        return
+    for name in part.covers:
+        other = frame.part(name)
+        if isinstance(other, ChecksumPart):
+            _settle(frame, other, found)
+    covered = [stretch for name in part.covers for stretch in found.get(name, ())]
+    if all(stretch.known for stretch in covered):
+        plain = {name: _plain(found[name]) for name in part.covers if name in found}
+        found[part.name] = known_bytes(checksum_bytes(frame, part, plain))
+
+
+def _plain(stretches: Iterable[Stretch]) -> bytes:
+    return b"".join(bytes(stretch.values) * stretch.count for stretch in stretches)
+
+
+def known_bytes(data: bytes) -> tuple[Stretch, ...]:
+    """Bytes that are always the same."""
+    return tuple(Stretch(frozenset({byte})) for byte in data)
+
+
+def number_bytes(type_: Integer, value: int) -> bytes:
+    """The unstuffed bytes of a number, in wire order."""
+    mask = (1 << type_.byte_bits) - 1
+    value &= (1 << type_.bits) - 1
+    little = bytes((value >> (type_.byte_bits * place)) & mask for place in range(type_.size))
+    return little[::-1] if type_.byte_order == "big" else little
+
+
+def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes]) -> bytes:
+    """The unstuffed bytes of a checksum over these contents of parts."""
+    present = [name for name in part.covers if name in plain]
+    covered = b"".join(
+        _on_wire(frame, name, plain[name]) if part.over_wire else plain[name] for name in present
+    )
+    return number_bytes(part.type, _algorithm(part.algorithm).compute(covered))
+
+
+def _on_wire(frame: Frame, name: str, plain: bytes) -> bytes:
+    """The bytes of one part as an encoder stuffs them; COBS was refused for such checksums."""
+    code = code_of(frame.transparency.encoding) if frame.transparency else None
+    if code is None or name not in covered_parts(frame):
+        return plain
+    return b"".join(code[byte] for byte in plain)
+
+
+@cache
+def _algorithm(spec: ChecksumSpec) -> sums.Checksum:
+    match spec.kind:
+        case "xor":
+            return sums.Xor8(spec.init)
+        case "sum":
+            return sums.Sum8(spec.init, spec.negated)
+        case "fletcher":
+            return sums.Fletcher16(spec.modulus)
+        case "crc":
+            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

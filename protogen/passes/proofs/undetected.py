@@ -1,0 +1,161 @@
+"""Which single wrong bytes go unnoticed?
+
+A byte is checked if a checksum covers it that any change of one byte changes, or if it is fixed.
+What is left is said in one sentence each.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Frame,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    Part,
+    PayloadPart,
+)
+from protogen.model.framing import End, Start, StartLiteral, StartSet
+from protogen.model.messages import Message
+from protogen.passes.proofs.damaged_ends import joined_frames
+from protogen.passes.proofs.misread_sizes import misread_absence, misread_size
+from protogen.passes.proofs.wire_code import SEVEN_BITS, ByteSet
+
+
+def undetected_errors(
+    frame: Frame, start: Start, end: End | None, messages: list[Message], payload: ByteSet
+) -> tuple[str, ...]:
+    """One sentence for each kind of wrong byte that a receiver takes for right."""
+    sentences = [_part(frame, part, end, messages, payload) for part in frame.parts]
+    sentences.append(misread_size(frame, end, messages))
+    sentences.append(misread_absence(frame, messages))
+    sentences.append(_false_start(frame, start))
+    sentences.append(_early_end(frame, start, end, messages))
+    sentences.append(joined_frames(frame, start, end, messages, payload))
+    sentences.append(_weak_checksum(frame))
+    sentences.append(_stuffing(frame))
+    return tuple(sentence for sentence in sentences if sentence)
+
+
+def _part(
+    frame: Frame, part: Part, end: End | None, messages: list[Message], payload: ByteSet
+) -> str:
+    if isinstance(part, LiteralPart | ChecksumPart):
+        return ""
+    covering = [checksum for checksum in frame.checksums if part.name in checksum.covers]
+    if covering:
+        return _sometimes(part, covering, messages)
+    if isinstance(part, LengthPart):
+        return ""  # What comes of a wrong size is asked for the frame as a whole.
+    if isinstance(part, IdentityPart):
+        return _identity(frame, part, end, messages)
+    if isinstance(part, PayloadPart):
+        return f"a wrong byte in the payload{_inside(frame, payload)}: nothing checks it"
+    return f"a wrong `{part.name}`: no checksum covers it"
+
+
+def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]) -> str:
+    """Where each checksum is absent without a payload, a frame without one is not checked."""
+    empty = any(message.sizes.least == 0 for message in messages)
+    always = any(not checksum.when_payload for checksum in covering)
+    if always or not empty or isinstance(part, PayloadPart):
+        return ""
+    return f"a wrong `{part.name}` in a frame without payload: it has no checksum"
+
+
+def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[Message]) -> str:
+    """Messages that differ in this part only are confusable where they can have one size.
+
+    Where nothing but the identity tells the size, a shorter message is one as well.
+    """
+    index = frame.identity.index(part)
+    groups: dict[tuple[int, ...], list[Message]] = defaultdict(list)
+    for message in messages:
+        groups[message.identity[:index] + message.identity[index + 1 :]].append(message)
+    if frame.length is None and end is None:
+        several = any(len({message.identity for message in group}) > 1 for group in groups.values())
+        text = f"a wrong `{part.name}` that makes it another message of the same size, or a shorter"
+        return f"{text} one" if several else ""
+    if any(_share_a_size(group) for group in groups.values()):
+        return f"a wrong `{part.name}` that makes it another message of the same size"
+    return ""
+
+
+def _false_start(frame: Frame, start: Start) -> str:
+    """Inside of a frame that nothing checks, a start makes a message of what follows."""
+    if any(not part.when_payload for part in frame.checksums):
+        return ""
+    match start:
+        case StartLiteral():
+            what = f"makes {start.bytes.hex(' ').upper()}, the start"
+        case StartSet():
+            what = f"makes a start, {start.least:02X} to {start.greatest:02X}"
+        case _:
+            return ""
+    return f"a wrong byte that {what}, where the bytes behind it happen to be a whole frame"
+
+
+def _early_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
+    """A wrong byte can end a frame early, or join two, where nothing else tells the size."""
+    if end is None or frame.length is not None:
+        return ""
+    if all(message.sizes.fixed is not None for message in messages):
+        return ""
+    # Where the end is broken, a start that occurs nowhere else shows it.
+    shown = isinstance(start, StartLiteral | StartSet) and start.protected
+    verb = "makes" if shown else "makes or breaks"
+    what = f"a wrong byte that {verb} {end.bytes.hex(' ').upper()}, the end"
+    return f"{what}, where what is read happens to check" if frame.checksums else what
+
+
+def _share_a_size(messages: list[Message]) -> bool:
+    """Whether two of the messages, which differ in identity, can have the same size."""
+    distinct = {message.identity: message.sizes for message in messages}
+    by_least = sorted(distinct.values(), key=lambda sizes: sizes.least)
+    fixed = {sizes.least for sizes in by_least if sizes.step == 0}
+    varying = [sizes for sizes in by_least if sizes.step]
+    if len(fixed) + len(varying) < len(by_least):
+        return True
+    return any(one.meets(other) for one in varying for other in by_least if one is not other)
+
+
+def _inside(frame: Frame, payload: ByteSet) -> str:
+    """What still shows some wrong bytes: an encoding, or that their highest bit is 0."""
+    encoding = frame.transparency.encoding if frame.transparency else None
+    if isinstance(encoding, Base16):
+        return " that is still a hex digit"
+    return " whose highest bit is still 0" if payload == SEVEN_BITS else ""
+
+
+def _weak_checksum(frame: Frame) -> str:
+    weak = [part for part in frame.checksums if _misses_single_bytes(part.algorithm)]
+    if not weak:
+        return ""
+    names = ", ".join(f"`{part.name}`" for part in weak)
+    return f"some wrong bytes that {names} covers: {weak[0].algorithm.name} does not see them"
+
+
+def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
+    """Sums modulo 255 take 00 for FF; a CRC sees bursts of its width if its polynomial is odd."""
+    if algorithm.kind == "fletcher":
+        return algorithm.modulus == 255
+    return algorithm.kind == "crc" and (algorithm.width < 8 or algorithm.poly % 2 == 0)
+
+
+def _stuffing(frame: Frame) -> str:
+    """One wrong byte on the wire can become several behind the stuffing."""
+    if frame.transparency is None or not frame.checksums:
+        return ""
+    if isinstance(frame.transparency.encoding, Base16):
+        return ""
+    if isinstance(frame.transparency.encoding, Cobs):
+        return "a wrong COBS code byte moves zeros, which the checksum misses in rare cases"
+    return (
+        "a wrong byte that makes or breaks a stuffed sequence changes several bytes and the size, "
+        "which length and checksum miss in rare cases"
+    )

@@ -1,0 +1,147 @@
+"""What can stand where on the wire: a frame as segments of codewords.
+
+The framing analysis asks of these segments whether a delimiter can occur where it must not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Encoding,
+    Escape,
+    Frame,
+    LiteralPart,
+    NumberPart,
+    Part,
+    Substitution,
+)
+from protogen.model.types import Integer
+from protogen.passes.proofs.codewords import Segment
+
+ByteSet = frozenset[int]
+EVERY_BYTE: ByteSet = frozenset(range(256))
+SEVEN_BITS: ByteSet = frozenset(range(128))
+_HEX_DIGITS = b"0123456789ABCDEF"
+
+
+@cache
+def code_of(encoding: Encoding | None) -> Mapping[int, bytes] | None:
+    """The codeword of each byte; None for COBS, which does not work byte by byte."""
+    match encoding:
+        case Substitution():
+            return {**_plain(), **dict(encoding.table)}
+        case Escape():
+            escaped = {byte: bytes((encoding.byte, byte ^ encoding.xor)) for byte in encoding.of}
+            return {**_plain(), **escaped}
+        case Base16():
+            return {byte: f"{byte:02X}".encode() for byte in range(256)}
+        case Cobs():
+            return None
+        case None:
+            return _plain()
+
+
+@cache
+def _plain() -> Mapping[int, bytes]:
+    return {byte: bytes((byte,)) for byte in range(256)}
+
+
+def covered_parts(frame: Frame) -> frozenset[str]:
+    """The names of the parts under transparency."""
+    if frame.transparency is None:
+        return frozenset()
+    names = [part.name for part in frame.parts]
+    first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
+    return frozenset(names[first : last + 1])
+
+
+def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
+    """What each unstuffed byte of a part can be; for the payload, what any of its bytes can be."""
+    match part:
+        case LiteralPart():
+            return tuple(frozenset({byte}) for byte in part.bytes)
+        case NumberPart():
+            return _number_bytes(part.type, part.least, part.greatest)
+        case ChecksumPart():
+            return _number_bytes(part.type, part.type.least, part.type.greatest)
+    return (payload,)
+
+
+def _number_bytes(type_: Integer, least: int, greatest: int) -> tuple[ByteSet, ...]:
+    """The range bounds the number's most significant byte, and all of it if it is one byte."""
+    every = SEVEN_BITS if type_.byte_bits == 7 else EVERY_BYTE
+    shift = type_.byte_bits * (type_.size - 1)
+    top = frozenset(range(least >> shift, (greatest >> shift) + 1))
+    rest = (every,) * (type_.size - 1)
+    return (top, *rest) if type_.byte_order == "big" else (*rest, top)
+
+
+def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[Segment]:
+    """The frame as it can stand on the wire; the parts called `delimiters` are its own literals."""
+    covered = covered_parts(frame)
+    encoding = frame.transparency.encoding if frame.transparency else None
+    code = code_of(encoding)
+    own = frozenset(delimiters)
+    result: list[Segment] = []
+    for part in frame.parts:
+        stuffed = part.name in covered
+        if stuffed and code is None:
+            if part.name == _first_covered(frame):
+                words = frozenset(bytes((byte,)) for byte in range(1, 256))
+                result.append(Segment(words, 1, None))
+            continue
+        result.extend(_part_segments(part, payload, code if stuffed else _plain(), own))
+    return _joined(result)
+
+
+def _first_covered(frame: Frame) -> str:
+    assert frame.transparency is not None
+    return frame.transparency.first
+
+
+def _part_segments(
+    part: Part, payload: ByteSet, code: Mapping[int, bytes] | None, own: frozenset[str]
+) -> Iterable[Segment]:
+    assert code is not None
+    if isinstance(part, LiteralPart):
+        word = b"".join(code[byte] for byte in part.bytes)
+        yield Segment(frozenset({word}), 1, 1, part.name in own)
+        return
+    optional = isinstance(part, ChecksumPart) and part.when_payload
+    for values in part_bytes(part, payload):
+        words = frozenset(code[byte] for byte in values)
+        if isinstance(part, NumberPart | ChecksumPart):
+            yield Segment(words, 0 if optional else 1, 1)
+        else:
+            yield Segment(words, 0, None)
+
+
+def _joined(parts: list[Segment]) -> list[Segment]:
+    """Neighbouring literals that are delimiters are one delimiter."""
+    result: list[Segment] = []
+    for segment in parts:
+        if segment.own and result and result[-1].own:
+            word = b"".join((*result[-1].words, *segment.words))
+            result[-1] = Segment(frozenset({word}), 1, 1, True)
+        else:
+            result.append(segment)
+    return result
+
+
+def wire_bytes(frame: Frame, payload: ByteSet) -> Iterable[tuple[Part, ByteSet]]:
+    """Each part with all bytes that can stand for it on the wire."""
+    covered = covered_parts(frame)
+    code = code_of(frame.transparency.encoding) if frame.transparency else None
+    for part in frame.parts:
+        values = frozenset().union(*part_bytes(part, payload)) if part else frozenset()
+        if part.name not in covered:
+            yield part, values
+        elif code is None:
+            yield part, EVERY_BYTE - {0}
+        else:
+            yield part, frozenset(byte for value in values for byte in code[value])

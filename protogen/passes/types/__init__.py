@@ -1,0 +1,1 @@
+"""Types: what fields are declared as, and how they lie in a payload."""

@@ -1,0 +1,62 @@
+"""Do the keys of a field go together?
+
+The keys about numbers and constants are asked about where their values are.
+"""
+
+from __future__ import annotations
+
+from protogen.passes.context import Context, Loc
+from protogen.passes.types.declared import VALUE_NAMES, Effective
+from protogen.schema.syntax.fields import FieldSyntax
+
+_FORMS = ("type", "fields", "switch")
+_STRINGS = ("ascii", "bytes")
+
+
+def has_one_form(context: Context, item: FieldSyntax, loc: Loc) -> bool:
+    """Whether the field has a type, or is a struct, or a switch, and only one of them."""
+    forms = [key for key in _FORMS if getattr(item, key) is not None]
+    if len(forms) == 1:
+        return True
+    if forms:
+        text = f"a field is one of these, not several: {', '.join(forms)}"
+    else:
+        text = "a field needs a `type`, or `fields` (a struct), or a `switch`"
+    context.error_at_key("PG110", loc, text)
+    return False
+
+
+def check_keys(context: Context, name: str, item: Effective) -> None:
+    """Report the keys that mean nothing for this kind of field."""
+    syntax = item.syntax
+    if syntax.switch is not None or syntax.fields is not None or syntax.type in _STRINGS:
+        _only_for_integers(context, item)
+    if syntax.switch is None and syntax.cases is not None:
+        text = f"`cases` are for a switch, and `{name}` is none"
+        hint = "name the field that chooses: `switch`"
+        context.error_at_key("PG110", item.at("cases"), text, hint)
+    if syntax.size is not None and syntax.type not in _STRINGS:
+        text = f"`size` is for ascii and bytes; `{name}` is neither"
+        hint = "a number of elements is `count`"
+        context.error_at_key("PG110", item.at("size"), text, hint)
+    if syntax.count is not None:
+        _count_fits(context, item)
+
+
+def _only_for_integers(context: Context, item: Effective) -> None:
+    syntax = item.syntax
+    kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
+    for key in VALUE_NAMES:
+        if getattr(syntax, key) is not None:
+            text = f"{key} are for integers, not for {kind}"
+            context.error_at_key("PG110", item.at(key), text)
+
+
+def _count_fits(context: Context, item: Effective) -> None:
+    if item.syntax.switch is not None:
+        text = "a switch has no `count`"
+        hint = "put it in a struct, and count that"
+        context.error_at_key("PG110", item.at("count"), text, hint)
+    elif item.syntax.type in _STRINGS:
+        text = f"the length of {item.syntax.type} is its `size`, in bytes"
+        context.error_at_key("PG110", item.at("count"), text)

@@ -1,0 +1,122 @@
+"""What do the values of a field mean, and does what the schema says of them fit the field?"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from protogen.model.types import Array, Constant, Field, Float, Integer, NamedValue, Type
+from protogen.passes.context import Context, about
+from protogen.passes.types.constants import read_constant
+from protogen.passes.types.declared import Effective
+
+_NUMERIC_KEYS = ("range", "scale", "offset", "special", "unit")
+
+
+def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
+    """The field of this type, with bounds, constants, scale and special values checked."""
+    check = _Check(context, name, type_, item)
+    check.keys_fit()
+    least, greatest = check.bounds()
+    const = read_constant(context, "const", type_, item)
+    default = read_constant(context, "default", type_, item)
+    check.constants_agree(const, default)
+    syntax = item.syntax
+    return Field(
+        name=name,
+        type=type_,
+        position=item.setting.position,
+        const=const,
+        default=default,
+        least=least,
+        greatest=greatest,
+        ranged=syntax.range is not None,
+        scale=check.scale(),
+        offset=syntax.offset if syntax.offset is not None else Fraction(0),
+        unit=syntax.unit,
+        special=check.special(),
+        unknown=syntax.unknown,
+        about=about(syntax.doc, syntax.source, context.find_key(item.chain[0][1])),
+    )
+
+
+class _Check:
+    """The questions about one field; each answers with a value that is safe to go on with."""
+
+    def __init__(self, context: Context, name: str, type_: Type, item: Effective) -> None:
+        self._context = context
+        self._name = name
+        self._element = type_.element if isinstance(type_, Array) else type_
+        self._field = item
+        self._item = item.syntax
+
+    def keys_fit(self) -> None:
+        """Keys about numbers stand only on numbers, `closed` only on enums."""
+        number = isinstance(self._element, Integer | Float) and not self._is_bool()
+        for key in _NUMERIC_KEYS:
+            if getattr(self._item, key) is not None and not number:
+                self._error("PG110", key, f"`{key}` is for numbers, and `{self._name}` is none")
+        if self._item.closed and self._item.values is None:
+            self._error("PG110", "closed", "`closed` is for a field that has `values`")
+
+    def _is_bool(self) -> bool:
+        return isinstance(self._element, Integer) and self._element.role == "bool"
+
+    def constants_agree(self, const: Constant | None, default: Constant | None) -> None:
+        """Nothing but the constant can be the default."""
+        if const is not None and default is not None and const != default:
+            self._error("PG114", "default", "`default` differs from `const`")
+
+    def bounds(self) -> tuple[Fraction | None, Fraction | None]:
+        """The raw bounds: the range, else what the type can hold (None for floats)."""
+        if isinstance(self._element, Integer):
+            return self._integer_bounds(self._element)
+        if isinstance(self._element, Float) and self._item.range is not None:
+            return self._ordered(*self._item.range)
+        return None, None
+
+    def _integer_bounds(self, type_: Integer) -> tuple[Fraction, Fraction]:
+        if self._item.range is None:
+            return Fraction(type_.least), Fraction(type_.greatest)
+        low, high = self._ordered(*self._item.range)
+        for end in (low, high):
+            if end.denominator != 1 or not type_.holds(int(end)):
+                text = f"{end} is not a raw value of {self._item.type}"
+                self._error("PG114", "range", f"{text}: {type_.least} to {type_.greatest}")
+                return Fraction(type_.least), Fraction(type_.greatest)
+        return low, high
+
+    def _ordered(self, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+        if low > high:
+            self._error("PG115", "range", f"the range is empty: {low} is greater than {high}")
+            return high, low
+        return low, high
+
+    def scale(self) -> Fraction:
+        """The scale; zero would lose every value."""
+        if self._item.scale == 0:
+            self._error("PG123", "scale", "a scale of zero makes every value the same")
+            return Fraction(1)
+        return self._item.scale if self._item.scale is not None else Fraction(1)
+
+    def special(self) -> tuple[NamedValue, ...]:
+        """The raw values that mean that there is no reading."""
+        if self._item.special is None or not isinstance(self._element, Integer):
+            return ()
+        values: dict[int, NamedValue] = {}
+        for name, entry in self._item.special.items():
+            here = (*self._field.at("special"), name)
+            if not self._element.holds(entry.value):
+                words = f"{name} = {entry.value} does not fit {self._item.type}"
+                self._context.error("PG114", here, words)
+            if entry.value in values:
+                words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
+                self._context.error("PG120", here, words)
+            text = about(entry.doc, entry.source, self._context.find_key(here))
+            values[entry.value] = NamedValue(name=name, value=entry.value, about=text)
+        return tuple(values.values())
+
+    def _error(self, code: str, key: str, text: str) -> None:
+        self._context.error(code, self._field.at(key), text)
+
+
+__all__ = ["attach"]

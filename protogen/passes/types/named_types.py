@@ -1,0 +1,149 @@
+"""What are enums, flags and structs called, and are the names free?
+
+Every named type is registered under its name. A declared type has one layout: where two uses leave
+it different room, the type takes the greater bounds, whatever a single use could hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from protogen.model.types import (
+    Array,
+    Enum,
+    Field,
+    Flags,
+    Float,
+    Integer,
+    Struct,
+    Switch,
+    Type,
+)
+from protogen.passes.context import Context, Loc
+from protogen.passes.types.declared import VALUE_NAMES, Effective
+from protogen.passes.types.joining import joined_struct
+from protogen.passes.types.positions import placed
+from protogen.passes.types.value_names import bit_fields_of, enum_of, flags_of
+
+Named = Enum | Flags | Struct
+
+
+class NamedTypes:
+    """The enums, flags and structs of a protocol by name, in the order of their first use."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._types: dict[str, Named] = {}
+        self._settled: dict[str, Struct] = {}
+        self.places: dict[str, Loc] = {}
+        """Where each name was used first."""
+
+    @property
+    def enums(self) -> tuple[Enum, ...]:
+        """All enums."""
+        return tuple(item for item in self._types.values() if isinstance(item, Enum))
+
+    @property
+    def flags(self) -> tuple[Flags, ...]:
+        """All sets of flags."""
+        return tuple(item for item in self._types.values() if isinstance(item, Flags))
+
+    @property
+    def structs(self) -> tuple[Struct, ...]:
+        """All structs, inner ones first."""
+        structs = (item for item in self._types.values() if isinstance(item, Struct))
+        return tuple(self._struct(item) for item in structs)
+
+    # -- registering --------------------------------------------------------------------------
+
+    def register(self, item: Named, loc: Loc) -> None:
+        """Take an enum, flags or a struct under its name; `loc` is the field that has it."""
+        known = self._types.get(item.name)
+        self.places.setdefault(item.name, loc)
+        joined = item if known is None else _joined(known, item)
+        if joined is not None:
+            self._types[item.name] = joined
+            return
+        self._context.error_at_key(
+            "PG107",
+            loc,
+            f"two different types would be called `{item.name}`",
+            "rename the field or the declared type; if it is one struct with two byte orders, "
+            "state the byte order in the type",
+        )
+
+    def dress(self, type_: Integer | Float, item: Effective) -> Integer | Float:
+        """Give an integer its enum, flags and bit ranges, as the field says."""
+        kinds = [key for key in VALUE_NAMES if getattr(item.syntax, key) is not None]
+        if not kinds:
+            return type_
+        if not isinstance(type_, Integer) or type_.role == "bool":
+            text = f"{kinds[0]} are for integers, not for {item.syntax.type}"
+            self._context.error_at_key("PG110", item.at(kinds[0]), text)
+            return type_
+        if len(kinds) > 1:
+            text = f"an integer has only one of these: {', '.join(kinds)}"
+            self._context.error_at_key("PG110", item.at(kinds[1]), text)
+        if type_.signed and kinds[0] != "values":
+            text = f"{kinds[0]} name bits of an unsigned integer; {item.syntax.type} is signed"
+            self._context.error_at_key("PG110", item.at(kinds[0]), text)
+        return self._dressed(kinds[0], type_, item)
+
+    def _dressed(self, kind: str, type_: Integer, item: Effective) -> Integer:
+        loc = item.chain[0][1]
+        if kind == "values":
+            enum = enum_of(self._context, type_, item)
+            self.register(enum, loc)
+            return replace(type_, enum=enum)
+        if kind == "flags":
+            flags = flags_of(self._context, type_, item)
+            self.register(flags, loc)
+            return replace(type_, flags=flags)
+        fields = bit_fields_of(self._context, type_, item)
+        for field in fields:
+            if field.enum is not None:
+                self.register(field.enum, loc)
+        return replace(type_, bit_fields=fields)
+
+    # -- settling -----------------------------------------------------------------------------
+
+    def settled(self, fields: tuple[Field, ...]) -> tuple[Field, ...]:
+        """The fields with all structs as they came to be. To be asked when all are registered."""
+        if not any(_holds_struct(field.type) for field in fields):
+            return fields
+        return placed(replace(field, type=self._type(field.type)) for field in fields)
+
+    def _type(self, type_: Type) -> Type:
+        match type_:
+            case Struct():
+                return self._struct(type_)
+            case Array():
+                return replace(type_, element=self._type(type_.element))
+            case Switch():
+                cases = (replace(case, type=self._type(case.type)) for case in type_.cases)
+                return replace(type_, cases=tuple(cases))
+        return type_
+
+    def _struct(self, struct: Struct) -> Struct:
+        if struct.name not in self._settled:
+            latest = self._types.get(struct.name)
+            struct = latest if isinstance(latest, Struct) else struct
+            fields = self.settled(struct.fields)
+            self._settled[struct.name] = replace(struct, fields=placed(fields))
+        return self._settled[struct.name]
+
+
+def _joined(known: Named, other: Named) -> Named | None:
+    """Two registrations as one type, or None; what people read about it may differ."""
+    if isinstance(known, Struct) and isinstance(other, Struct):
+        return joined_struct(known, other)
+    return known if replace(other, about=known.about) == known else None
+
+
+def _holds_struct(type_: Type) -> bool:
+    if isinstance(type_, Array):
+        return _holds_struct(type_.element)
+    return isinstance(type_, Struct | Switch)
+
+
+__all__ = ["NamedTypes"]

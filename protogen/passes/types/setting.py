@@ -1,0 +1,63 @@
+"""What does a field know of the payload around it?"""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from dataclasses import dataclass, field, replace
+
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Field
+from protogen.passes.framing.capacity import GREATEST_FRAME
+from protogen.passes.types.type_names import Layout
+
+Scope = ChainMap[str, Field]
+"""Earlier fields by name, those of the innermost struct first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What the fields at hand are built in."""
+
+    layout: Layout
+    capacity: int | None
+    """Greatest payload in bytes, where the frame bounds it."""
+    owner: str
+    """What unnamed enums and structs are called after."""
+    delimited: bool = True
+    """Whether the frame tells where the payload ends."""
+    last: bool = True
+    """Whether nothing of the payload follows."""
+    used: int = 0
+    """The least number of bytes of the payload in front."""
+    position: int | None = 0
+    """The number of bytes of the struct or message in front, where it is always the same."""
+    outer: Scope = field(default_factory=ChainMap)
+    """Fields that counts and switches may name, from the structs around."""
+    stack: tuple[str, ...] = ()
+    """Declared types that are being resolved, the outermost first."""
+    depth: int = 0
+    """Structs and declared types around."""
+    elsewhere: bool = False
+    """Whether these fields stand in no frame that is known: names may mean fields around them."""
+
+    @property
+    def room(self) -> int | None:
+        """The greatest number of bytes that are left, where the frame bounds them."""
+        return None if self.capacity is None else max(0, self.capacity - self.used)
+
+    def inside(self, name: str, behind: SizeSet, outer: Scope, last: bool) -> Setting:
+        """The setting of the field `name`, behind so many bytes of earlier fields."""
+        return replace(
+            self,
+            used=self.used + behind.least,
+            position=behind.fixed,
+            owner=f"{self.owner}_{name}",
+            outer=outer,
+            last=self.last and last,
+        )
+
+
+def nowhere(layout: Layout, owner: str) -> Setting:
+    """The setting of fields that stand in no frame, so that they still can be checked."""
+    known = replace(layout, byte_order=layout.byte_order or "little")
+    return Setting(layout=known, capacity=GREATEST_FRAME, owner=owner, elsewhere=True)
