@@ -8,7 +8,7 @@ CACHE := .cache
 EXTRAS ?= dev
 LOG := $(CACHE)/test.log
 
-.PHONY: generate check test coverage fuzz bench format clean
+.PHONY: generate check test coverage fuzz bench docs format clean
 
 # What is made from schemas and from the compiler itself, and is checked in.
 generate: $(INSTALLED)
@@ -41,6 +41,12 @@ fuzz: $(INSTALLED)
 bench: $(INSTALLED)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[bench]'
 	@for benchmark in benchmarks/bench_*.py; do $(BIN)/python $$benchmark || exit 1; done
+
+# The site, in .cache/site. Fails if a link leads nowhere.
+docs: $(INSTALLED)
+	@mkdir -p $(CACHE)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[docs]'
+	@$(BIN)/zensical build --strict >$(CACHE)/docs.log 2>&1 || { cat $(CACHE)/docs.log; exit 1; }
 
 format: $(INSTALLED)
 	@$(BIN)/ruff check --quiet --fix --exit-zero

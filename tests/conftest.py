@@ -36,7 +36,7 @@ SLOW = (
     "test_c_feed.py",
     "test_c_fuzz.py",
     "test_c_codecs.py",
-    "test_readme.py",
+    "test_docs.py",
 )
 """The files that take longest, most of it in single tests."""
 

@@ -1,4 +1,4 @@
-"""The hooks for pre-commit and the workflow in `docs/ci.md` do what is said of them."""
+"""The hooks for pre-commit and the workflow of `regenerate-in-ci.md` do what is said of them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tooling import require_module, require_tool
 
 HOOKS = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
 IDS = [hook["id"] for hook in HOOKS]
-PAGE = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "howto" / "regenerate-in-ci.md").read_text(encoding="utf-8")
 BLOCKS = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)]
 
 

@@ -144,7 +144,7 @@ messages:
 def test_a_crc_without_init_does_not_see_a_lost_end(
     tmp_path: Path, algorithm: str, first: str, second: str, kind: str
 ) -> None:
-    # What docs/decoder.md warns of: two good frames, without the C0 between them.
+    # What docs/reference/decoder.md warns of: two good frames, without the C0 between them.
     schema = tmp_path / "merged.yaml"
     schema.write_text(MERGED.replace("ALGORITHM", algorithm))
     (whole,) = run("decode", str(schema), "--hex", f"{first} {second}").output.splitlines()
