@@ -16,9 +16,9 @@ from tooling import require_tool
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.targets.c.emit import texts
-from protogen.targets.c.messages import MessageView
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.writers import is_stateless, writer_parameter
 
 OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)

@@ -12,9 +12,9 @@ from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_tool
 
 from protogen.model.types import Array, Field, Fill, Fixed, Struct
-from protogen.targets.c.accessors import is_readable
 from protogen.targets.c.module import view
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.accessors import is_readable
 
 ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 PATHS = [

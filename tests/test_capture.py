@@ -21,7 +21,7 @@ from protogen.capture.arrays import numpy
 from protogen.capture.gather import gathered
 from protogen.capture.layout import capture_schema
 from protogen.capture.schema import Number, TableSchema
-from protogen.targets.c.struct_sizes import NATURAL, StructSizes
+from protogen.targets.c.payload.struct_sizes import NATURAL, StructSizes
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))

@@ -23,7 +23,7 @@ from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.targets.c.module import view
 from protogen.targets.c.options import COptions
-from protogen.targets.c.struct_sizes import NATURAL, StructSizes
+from protogen.targets.c.payload.struct_sizes import NATURAL, StructSizes
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 STATED = re.compile(

@@ -23,8 +23,8 @@ from protogen.model.types import (
     Type,
     count_name,
 )
+from protogen.targets.c.payload.numbers import Number, Scope
 from protogen.targets.c.spelling import constant
-from protogen.targets.c.storage import Number, Scope
 
 
 def walk_function(name: str, struct: str, fields: Sequence[Field]) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from protogen.model.origin import NOTHING, About
+from protogen.model.payload_plan import PayloadPlan, plan_of
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
 from protogen.problems.span import Span
@@ -35,7 +37,7 @@ class Example:
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Message:
     """One message."""
 
@@ -55,6 +57,11 @@ class Message:
     """SHA-256, in hex, of identity, layout and meaning of values."""
     about: About = NOTHING
     span: Span
+
+    @cached_property
+    def plan(self) -> PayloadPlan:
+        """The steps that read, check and write the payload."""
+        return plan_of(self.fields)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

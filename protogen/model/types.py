@@ -286,20 +286,17 @@ class Struct:
     about: About = NOTHING
     sizes: SizeSet = dataclass_field(init=False, repr=False, compare=False)
     """Wire bytes. Added up once: structs that hold each other are asked at every level."""
+    holds_values: bool = dataclass_field(init=False, repr=False, compare=False)
+    """True if a record keeps anything of it."""
+    needs: frozenset[str] = dataclass_field(init=False, repr=False, compare=False)
+    """Names of fields in front of the struct that count or select something inside of it."""
     extent: ClassVar[None] = None
 
     def __post_init__(self) -> None:
+        stored = any(field.is_stored or field.fills for field in self.fields)
         object.__setattr__(self, "sizes", total(self.fields))
-
-    @property
-    def holds_values(self) -> bool:
-        """True if a record keeps anything of it."""
-        return any(field.is_stored or field.fills for field in self.fields)
-
-    @property
-    def needs(self) -> frozenset[str]:
-        """Names of fields in front of the struct that count or select something inside of it."""
-        return needed_by(self.fields)
+        object.__setattr__(self, "holds_values", stored)
+        object.__setattr__(self, "needs", _needed_by(self.fields))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -443,8 +440,7 @@ def total(fields: tuple[Field, ...]) -> SizeSet:
     return sizes
 
 
-def needed_by(fields: Sequence[Field]) -> frozenset[str]:
-    """Names of numbers in front of some fields that count or select in them."""
+def _needed_by(fields: Sequence[Field]) -> frozenset[str]:
     needed = _NO_NAMES
     for field in reversed(fields):
         needed = (needed - {field.name}) | field.type.needs

@@ -13,8 +13,8 @@ from protogen.capture.schema import CaptureSchema, Choice, Column, Record, Table
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoder import DecoderView, GroupView
 from protogen.targets.c.emit import Unit, texts, unit_of
-from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.printing import environment
 
 _CALL = "decoder->handler(decoder->user, &event)"

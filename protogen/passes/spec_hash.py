@@ -21,7 +21,7 @@ _LEFT_OUT = frozenset(
     {
         "about", "doc", "title", "summary", "source", "span", "examples", "exchanges", "decision",
         "decisions", "unprotected", "unknown", "version", "files", "link", "endpoints", "framing",
-        "ranged", "stated", "preset", "spec_hash", "reserved", "plan",
+        "ranged", "stated", "preset", "spec_hash", "reserved", "plan", "needs", "holds_values",
     }
 )  # fmt: skip
 """What people read, and what follows from the rest."""

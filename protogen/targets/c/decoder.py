@@ -37,7 +37,7 @@ from protogen.targets.c.expressions import (
     wire_bytes,
 )
 from protogen.targets.c.geometry import Geometry, Placed, geometry_of
-from protogen.targets.c.messages import MessageView
+from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import unsigned_type
 from protogen.targets.c.stuffing import Code, Node, Stuffing, stuffing_of
 

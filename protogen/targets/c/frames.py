@@ -25,7 +25,7 @@ from protogen.model.protocol import Sender
 from protogen.targets.c.decoder import ChecksumView, DecoderView
 from protogen.targets.c.expressions import wire_bytes
 from protogen.targets.c.geometry import Geometry, Placed
-from protogen.targets.c.messages import MessageView
+from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import unsigned_type
 
 _STUFFED = 128

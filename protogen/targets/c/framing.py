@@ -10,8 +10,8 @@ from protogen.targets.c.checksums import Checksum
 from protogen.targets.c.decoder import DecoderView, decoder_view
 from protogen.targets.c.frames import FrameView, MessageFrame, frame_view, message_frame
 from protogen.targets.c.handlers import Dispatch, dispatches
-from protogen.targets.c.messages import MessageView
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.writers import is_stateless
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from protogen.targets.c.decoder import DecoderView
-from protogen.targets.c.messages import MessageView
+from protogen.targets.c.payload.messages import MessageView
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,6 @@ from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Enum, Field, Flags, Integer, Struct, Switch, Type
 from protogen.targets import descriptions
 from protogen.targets.c import comments
-from protogen.targets.c.helpers import Helpers
-from protogen.targets.c.messages import MessagePrinter, MessageView
 from protogen.targets.c.named import (
     BitsView,
     EnumView,
@@ -24,7 +22,9 @@ from protogen.targets.c.named import (
 )
 from protogen.targets.c.options import COptions
 from protogen.targets.c.own_names import claim_own_names
-from protogen.targets.c.records import Records
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.messages import MessagePrinter, MessageView
+from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.writers import writer_argument, writer_parameter
 

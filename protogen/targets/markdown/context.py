@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from protogen.model.framing import MessageFraming
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Field, Integer
-from protogen.targets.c.struct_sizes import BYTES, NATURAL, StructSizes
+from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.walk import type_users
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from math import prod
 
 from protogen.model.types import Field, Float, Struct
-from protogen.targets.c.struct_members import Member, Union, members_of
+from protogen.targets.c.payload.struct_members import Member, Union, members_of
 
 NATURAL, BYTES = 8, 1
 """The greatest alignment of anything: on 32-bit machines, and on an AVR."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from protogen.model.payload_plan import plan_of
 from protogen.model.types import Array, Field, Float, Integer, Struct
 from protogen.targets.c.comments import comment
-from protogen.targets.c.helpers import Helpers, is_plain, is_whole, joined, sign_extended
 from protogen.targets.c.lines import Lines, function
-from protogen.targets.c.loading import Load
-from protogen.targets.c.records import Records
+from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
+from protogen.targets.c.payload.loading import Load
+from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
 
 
@@ -53,7 +54,7 @@ class Accessors:
                 type_ = "void"
                 arguments = (*arguments, f"{self._records.spelled(element)} *out")
                 with self._helpers.public():
-                    Load(self._helpers, body).pointed(element.fields, "out->")
+                    Load(self._helpers, body).pointed(plan_of(element.fields), "out->")
             case _:
                 raise AssertionError(element)
         body.drop_unused_places()

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from fractions import Fraction
 from math import inf, nextafter
 
-from protogen.model.types import Float, Integer, Type, storage_bits
+from protogen.model.types import Float, Integer, storage_bits
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import (
     Names,
@@ -96,9 +96,9 @@ class Helpers:
         self._define(f"{integer_type(type_)} {name}", (_AT,), body)
         return name
 
-    def loads_runs(self, type_: Type) -> bool:
+    def loads_runs(self, type_: Integer) -> bool:
         """Whether an array of such numbers is read by a function of its own."""
-        if not isinstance(type_, Integer) or type_.signed or self._is_public:
+        if type_.signed or self._is_public:
             return False
         is_pair = (type_.byte_bits, type_.bits, type_.size) == (7, 14, 2)
         return is_pair and type_.byte_order == "little"

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from protogen.model.types import Array, Field, Float, Struct
 from protogen.targets.c import comments
-from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import INDENT, Lines
-from protogen.targets.c.struct_members import UNUSED, Member, Union, counter_of, value_of
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.struct_members import UNUSED, Member, Union, counter_of, value_of
 
 
 class Records:

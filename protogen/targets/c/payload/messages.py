@@ -14,20 +14,19 @@ from dataclasses import dataclass
 from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import total
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
-from protogen.targets.c.accessors import Accessors, is_readable
-from protogen.targets.c.checking import Check, field_can_be_wrong, has_wrong_values
-from protogen.targets.c.helpers import Helpers
 from protogen.targets.c.lines import Lines, function, prototype
-from protogen.targets.c.loading import Load
-from protogen.targets.c.measuring import Measure
 from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
-from protogen.targets.c.records import Records
+from protogen.targets.c.payload.accessors import Accessors, is_readable
+from protogen.targets.c.payload.checking import Checker
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.loading import Load
+from protogen.targets.c.payload.measuring import Measure
+from protogen.targets.c.payload.records import Records
+from protogen.targets.c.payload.storing import Put, Store
+from protogen.targets.c.payload.validating import Validate, can_be_refused
 from protogen.targets.c.spelling import Names, hexadecimal
-from protogen.targets.c.storing import Put, Store
-from protogen.targets.c.validating import Validate, can_be_refused
 
 _PARAMETERS = ("message", "payload", "size", "need", "writer", "put", "user")
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
@@ -125,7 +124,7 @@ class MessagePrinter:
             least=item.sizes.least,
             greatest=item.sizes.greatest,
             checks=codec.checks,
-            checks_values=has_wrong_values(item.fields),
+            checks_values=item.plan.has_wrong_values,
             needs=codec.needs,
             validates=codec.validates,
             heading=item.name,
@@ -223,11 +222,11 @@ class _Codec:
         self._names = names
         self._prefix = printer.prefix
         self._upper = printer.prefix.upper()
-        self.fixed = self._fixed = total(item.fields).fixed
+        self.fixed = self._fixed = item.plan.sizes.fixed
         """The payload's size, where every value has it. A frame may also allow just one size."""
-        self.checks = self._fixed is None or any(map(field_can_be_wrong, item.fields))
+        self.checks = self._fixed is None or bool(item.plan.checks)
         self.needs = self._fixed is None and not printer.delimited(item)
-        self.validates = can_be_refused(item.fields, item.sizes)
+        self.validates = can_be_refused(item.plan, item.sizes)
 
     def functions(self) -> tuple[str, ...]:
         """All but `put`."""
@@ -253,7 +252,7 @@ class _Codec:
     def _measure(self) -> str:
         lines = Lines()
         measure = Measure(self._printer.helpers, lines)
-        measure.message(self._item.fields)
+        measure.message(self._item.plan)
         known = measure.known
         body = Lines()
         body.add(f"size_t size = {known}u;", *(line[4:] for line in lines.lines), "return size;")
@@ -261,7 +260,7 @@ class _Codec:
 
     def _validate(self) -> str:
         lines = Lines()
-        Validate(self._printer.helpers, lines, self._prefix).message(self._item.fields)
+        Validate(self._printer.helpers, lines, self._prefix).message(self._item.plan)
         self._validate_size(lines)
         lines.add(f"return {self._upper}_OK;")
         return self._static("validate", f"enum {self._prefix}_result", [self._message], lines)
@@ -278,14 +277,14 @@ class _Codec:
 
     def _store(self) -> str:
         lines = Lines()
-        Store(self._printer.helpers, lines).message(self._item.fields)
+        Store(self._printer.helpers, lines).message(self._item.plan)
         return self._static("store", "void", [self._message, "uint8_t *payload"], lines)
 
     def put(self) -> str:
         """The function that hands the payload to a writer."""
         lines = Lines()
         writer, writing = self._printer.writer, self._printer.writing
-        Put(self._printer.sinks, lines, self._prefix, writing).message(self._item.fields)
+        Put(self._printer.sinks, lines, self._prefix, writing).message(self._item.plan)
         return self._static("put", "void", [self._message, writer], lines)
 
     def _encode(self) -> str:
@@ -323,14 +322,14 @@ class _Codec:
         if self._item.sizes.fixed is not None:
             with lines.block(f"if (size != {self._item.sizes.fixed}u)"):
                 lines.add(f"return {self._upper}_ERROR_SIZE;")
-        check = Check(
+        check = Checker(
             self._printer.helpers,
             lines,
             self._prefix,
             fixed=self._fixed is not None,
             needs=self.needs,
         )
-        check.message(self._item.fields)
+        check.message(self._item.plan)
         check.finish(*_bounds(self._item))
         lines.add(f"return {self._upper}_OK;")
         arguments = ["const uint8_t *payload", "size_t size", "size_t *need"]
@@ -338,8 +337,8 @@ class _Codec:
 
     def _load(self) -> str:
         lines = Lines()
-        Load(self._printer.helpers, lines).message(self._item.fields)
-        if not any(field.is_stored or field.fills for field in self._item.fields):
+        Load(self._printer.helpers, lines).message(self._item.plan)
+        if not self._item.plan.holds_values:
             lines.add("message->unused = 0u;")
         head, arguments = self._load_head
         lines.drop_unused_places()
@@ -381,7 +380,7 @@ class _Codec:
 
 def _bounds(item: Message) -> tuple[int, int]:
     """Bounds of the payload's size that its fields do not keep by themselves; 0: they do."""
-    sizes, fields = item.sizes, total(item.fields)
+    sizes, fields = item.sizes, item.plan.sizes
     least = sizes.least if fields.least < sizes.least else 0
     return least, sizes.greatest if fields.greatest > sizes.greatest else 0
 

@@ -1,0 +1,393 @@
+"""Statements that tell whether bytes are a message's payload.
+
+Values are looked at in wire order. Where nothing can be wrong with several values in a row, one
+comparison asks for the bytes of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from protogen.model.names import free_name
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    Check,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    NumberStep,
+    Reference,
+    RepeatStep,
+    RestStep,
+)
+from protogen.model.types import Float, Integer
+from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.loading import loaded
+from protogen.targets.c.payload.placed import times
+from protogen.targets.c.payload.secured import SecuredWalk
+from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
+
+_RESERVED = frozenset(
+    {"payload", "size", "need", "at", "end", "bool", "size_t", "i", "j", "k", "l", "m", "n"}
+    | {f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+)
+"""Names that a local variable may not have."""
+
+
+def _carried(step: NumberStep) -> int:
+    """Bits that a byte may have set before anything else is asked of it; a boolean is 0 or 1."""
+    return 8 if Check.BOOLEAN in step.checks else step.type.byte_bits
+
+
+class Checker(SecuredWalk):
+    """Prints a check of `payload`, which has `size` bytes."""
+
+    def __init__(
+        self, helpers: Helpers, lines: Lines, prefix: str, *, fixed: bool, needs: bool
+    ) -> None:
+        super().__init__(helpers, lines, prefix, fixed=fixed, needs=needs)
+        self._locals = set(_RESERVED)
+        self._numbers: dict[tuple[int, str], str] = {}  # Variables, by the level of their record.
+        self._branches = 0
+
+    # --- numbers that count and select ----------------------------------------------------------
+
+    def record(self, steps: Sequence[AnyStep], base: str) -> None:
+        """Walk over the steps of a record, and keep the numbers that are needed behind."""
+        level = len(self._records)
+        self._records.append(base)
+        for step in steps:
+            self.step(step, base + step.name)
+            if isinstance(step, NumberStep) and step.is_needed:
+                self._numbers[level, step.name] = self._remembered(step)
+        self._records.pop()
+
+    def _remembered(self, step: NumberStep) -> str:
+        """A local variable that has the value of a number in front of the place."""
+        assert isinstance(step.type, Integer)
+        name = free_name(step.name, self._locals)
+        self._locals.add(name)
+        self._offset -= step.type.size
+        value = loaded(self.helpers, step.type, self._byte(), self._address())
+        self._offset += step.type.size
+        self.lines.add(f"const {integer_type(step.type)} {name} = {value};")
+        return name
+
+    def referred(self, number: Reference) -> str:
+        """The variable of an earlier number."""
+        return self._numbers[number.level, number.name]
+
+    def count(self, count: Count) -> int | str:
+        """How many elements or bytes there are."""
+        if count.by is not None:
+            self._bounded(count, count.by)
+        return super().count(count)
+
+    def filled(self, count: Count) -> str:
+        """Nothing that was read says how much there is of what fills."""
+        return ""
+
+    def _bounded(self, count: Count, by: Reference) -> None:
+        """Refuse numbers of elements that a struct has no room for."""
+        self._flush()
+        number, tests = self.referred(by), []
+        if count.least > 0:
+            tests.append(f"{number} < {unsigned(count.least)}")
+        if by.type is not None and count.greatest < by.type.greatest:
+            tests.append(f"{number} > {unsigned(count.greatest)}")
+        if tests:
+            self._refuse(" || ".join(tests), "SIZE")
+
+    # --- numbers ----------------------------------------------------------------------------------
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number."""
+        self._begin(_carried(step))
+        if step.can_be_wrong or step.is_needed:
+            self._require(step.type.size)
+        if step.can_be_wrong:
+            self._number(step)
+        elif step.is_needed:
+            self._flush()
+        self._offset += step.type.size
+
+    def _number(self, step: NumberStep) -> None:
+        type_ = step.type
+        if _carried(step) == 7:
+            self._seven_bit(type_.size)
+        if step.has_wrong_values:
+            self._flush(type_.size)
+        if Check.BOOLEAN in step.checks:
+            self._refuse(f"{self._byte()} > 1u", "VALUE")
+            return
+        if Check.PADDING in step.checks:
+            unused = type_.byte_bits * type_.size - type_.bits
+            top = type_.size - 1 if type_.byte_order == "little" else 0
+            greatest = (1 << (type_.byte_bits - unused)) - 1
+            self._refuse(f"{self._byte(top)} > {hexadecimal(greatest)}", "VALUE")
+        if isinstance(type_, Integer) and type_.enum is not None and type_.enum.closed:
+            values = tuple(item.value for item in type_.enum.values)
+            known = self.helpers.known(type_.enum.name, type_, values)
+            number = loaded(self.helpers, type_, self._byte(), self._address())
+            self._refuse(f"!{known}({number})", "VALUE")
+
+    # --- constants --------------------------------------------------------------------------------
+
+    def constant(self, step: ConstantStep) -> None:
+        """Its bytes, after its elements have been looked at."""
+        value, data = step.value, step.data
+        match value:
+            case RepeatStep():
+                self._constant_elements(value, data)
+            case BytesStep():
+                self._right_count(value.count, len(data), 1)
+                self._begin(value.type.byte_bits)
+                self._require(len(data))
+                if Check.SEVEN_BIT in value.checks and data:
+                    self._seven_bit(len(data))
+                self._offset += len(data)
+                self._same(data)
+            case NumberStep():
+                self._begin(_carried(value))
+                self._require(len(data))
+                if _carried(value) == 7:
+                    self._seven_bit(len(data))
+                self._offset += len(data)
+                if step.field.const == 0 and isinstance(value.type, Float):
+                    self._zero(value.type)
+                else:
+                    self._same(data)
+
+    def _constant_elements(self, step: RepeatStep, data: bytes) -> None:
+        element, size = step.element, step.element.sizes.least
+        count = len(data) // size if size else 0
+        self._right_count(step.count, count, size)
+        if not element.can_be_wrong:
+            self._flush()
+        for _ in range(count):
+            if isinstance(element, NumberStep) and element.can_be_wrong:
+                self._require(size)
+                self._number(element)
+            self._offset += size
+        self._require(0)
+        self._same(data)
+
+    def _right_count(self, found: Count, count: int, size: int) -> None:
+        """Refuse another size: a constant of another size is another constant."""
+        if found.known is not None and not found.field:
+            return
+        self._flush()
+        self._require(0)
+        if found.by is not None:
+            self._refuse(f"{self.referred(found.by)} != {unsigned(count)}", "VALUE")
+        elif found.fills:
+            here = f"size - {self._sum(self._offset)}" if self._at or self._offset else "size"
+            self._refuse(f"{here} != {unsigned(count * size)}", "VALUE")
+
+    def _same(self, data: bytes) -> None:
+        """Refuse other bytes than these in front of the place."""
+        self._flush()
+        for index, byte in enumerate(data):
+            self._refuse(f"{self._byte(index - len(data))} != {hexadecimal(byte)}", "VALUE")
+
+    def _zero(self, type_: Float) -> None:
+        """Refuse other numbers than 0 in front of the place; its sign does not matter."""
+        self._flush()
+        sign = (type_.bits - 1) // type_.byte_bits
+        place = sign if type_.byte_order == "little" else type_.size - 1 - sign
+        mask = ((1 << type_.byte_bits) - 1) & ~(1 << (type_.bits - 1) % type_.byte_bits)
+        for index in range(type_.size):
+            byte = self._byte(index - type_.size)
+            other = f"({byte} & {hexadecimal(mask)}) != 0u"
+            self._refuse(other if index == place else f"{byte} != 0u", "VALUE")
+
+    # --- bytes ------------------------------------------------------------------------------------
+
+    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+        """A text, or bytes."""
+        seven = Check.SEVEN_BIT in step.checks
+        if step.count.fills:
+            self._filled(step.count.greatest, seven=seven)
+            return
+        self._begin(step.type.byte_bits)
+        if isinstance(count, int):
+            if seven:
+                self._require(count)
+                self._seven_bit(count)
+            self._offset += count
+            return
+        self._settle()
+        self._require(0, count)
+        if seven:
+            self._refuse(f"!{self.helpers.seven_bit()}(payload + at, {count})", "ENCODING")
+        self._move(count)
+
+    def rest(self, step: RestStep, place: str) -> None:
+        """The bytes of a value without a case."""
+        self._filled(step.greatest, seven=step.seven_bit)
+
+    def _filled(self, greatest: int, *, seven: bool) -> None:
+        """All bytes that are left; where the size is always the same there are none."""
+        self._flush()
+        if self._fixed:
+            return
+        self._require(0)
+        offset = self._sum(self._offset)
+        left = f"size - {offset}" if offset != "0" else "size"
+        left = f"size - ({offset})" if "+" in offset else left
+        self._refuse(f"{left} > {unsigned(greatest)}", "SIZE")
+        if seven:
+            check = f"!{self.helpers.seven_bit()}({self._address()}, {left})"
+            self._refuse(check, "ENCODING")
+        if greatest:
+            self._end()
+
+    def _end(self) -> None:
+        """Nothing is left."""
+        if self._branches:
+            self._settle()
+            self.lines.add("at = size;")
+            self._secured = 0
+        else:
+            self._ended = True
+
+    # --- elements ---------------------------------------------------------------------------------
+
+    def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Elements."""
+        element, size = step.element, step.element.sizes.fixed
+        if step.count.fills:
+            self._filling(step, place)
+        elif size is not None and not element.can_be_wrong:
+            self._run(count, size)
+        elif isinstance(count, int) and self._is_seven_bit_run(element):
+            self._seven_bit(count * (size or 0))
+            self._offset += count * (size or 0)
+        elif size is not None:
+            self._each_of(size, element, place, count)
+        else:
+            self._each(element, place, count)
+
+    def _is_seven_bit_run(self, element: AnyStep) -> bool:
+        is_seven_bit = isinstance(element, NumberStep) and element.checks == {Check.SEVEN_BIT}
+        return self._fixed and is_seven_bit
+
+    def _run(self, count: int | str, size: int) -> None:
+        """Elements that can't be wrong."""
+        self._flush()
+        if isinstance(count, int):
+            self._offset += count * size
+            return
+        self._settle()
+        amount = times(count, size)
+        self._require(0, str(amount))
+        self._move(amount)
+
+    def _each(self, element: AnyStep, place: str, count: int | str) -> None:
+        """Check elements of different sizes."""
+        self._settle()
+        with self.loop(count) as index:
+            self._secured = 0
+            self.step(element, f"{place}[{index}]")
+            self._settle()
+        self._secured = 0
+
+    def _each_of(self, size: int, element: AnyStep, place: str, count: int | str) -> None:
+        """Check elements of one size."""
+        self._flush()
+        self._require(0)
+        before = self._at, self._offset
+        with self.loop(count) as index:
+            step = f"{size} * {index}" if size > 1 else index
+            start = self._sum(self._offset)
+            start = step if start == "0" else f"{start} + {step}"
+            self._at, self._offset, self._secured = f"at_{index}", 0, 0
+            self.lines.add(f"const size_t {self._at} = {start};")
+            self.step(element, f"{place}[{index}]")
+            self._flush()
+            self._require(0)
+            self._at, self._offset = before
+        if isinstance(count, int):
+            self._offset += count * size
+            self._secured = self._offset
+        else:
+            self._require_nothing(times(count, size))
+
+    def _require_nothing(self, distance: int | str) -> None:
+        """Go on behind bytes that were looked at."""
+        self._secured = self._offset
+        self._move(f"{self._offset}u + {distance}" if self._offset else distance)
+
+    def _filling(self, step: RepeatStep, place: str) -> None:
+        """Check as many elements as the payload has left."""
+        if self._fixed:
+            return
+        self._settle()
+        size, greatest = step.element.sizes.fixed, step.count.greatest
+        if size and not self._needs and not step.element.can_be_wrong:
+            self._filling_of(size, greatest)
+            return
+        index = free_name("count", self._locals)
+        self._locals.add(index)
+        with self.lines.block(f"for (size_t {index} = 0; at < size; {index}++)"):
+            self._refuse(f"{index} == {unsigned(greatest)}", "SIZE")
+            self._secured = 0
+            self.step(step.element, f"{place}[{index}]")
+            self._settle()
+        self._ended = self._branches == 0
+        self._secured = 0
+
+    def _filling_of(self, size: int, greatest: int) -> None:
+        """Check the number of elements of one size that can't be wrong.
+
+        Small controllers do not divide.
+        """
+        self._refuse(f"size - at > {unsigned(greatest * size)}", "SIZE")
+        if size > 1 and greatest:
+            with self.lines.block("while (at < size)"):
+                self.lines.add(f"at += {size};")
+            self._refuse("at != size", "SIZE")
+        self._end()
+        self._secured = 0
+
+    # --- cases ------------------------------------------------------------------------------------
+
+    def choose(self, step: ChooseStep, place: str) -> None:
+        """One of several cases; behind it, `at` stands where the case has ended."""
+        self._flush()
+        if isinstance(step.selector, int):
+            super().choose(step, place)
+            return
+        size = step.sizes.fixed
+        if size is None:
+            self._settle()
+        super().choose(step, place)
+        if size is None:
+            self._offset, self._secured = 0, 0
+        else:
+            self._offset += size
+            self._secured = self._offset
+
+    @contextmanager
+    def branch(self) -> Iterator[None]:
+        """Every case begins where the choice does."""
+        before = self._at, self._offset, self._secured
+        self._branches += 1
+        yield
+        self._branches -= 1
+        self._at, self._offset, self._secured = before
+
+    def end_case(self, step: ChooseStep) -> None:
+        """Make clear where the case has ended."""
+        self._flush()
+        if step.sizes.fixed is None:
+            self._settle()
+        else:
+            self._require(0)
+
+    def no_case(self) -> None:
+        """A value without a case."""
+        self.lines.add(f"{self._error}VALUE;")

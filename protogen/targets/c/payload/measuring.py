@@ -1,0 +1,81 @@
+"""Statements that add up the payload's size of a valid message."""
+
+from __future__ import annotations
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    RepeatStep,
+    RestStep,
+)
+from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.placed import times
+from protogen.targets.c.payload.walk import Walk
+
+
+class Measure(Walk):
+    """Adds to a variable `size`, which starts as `known`."""
+
+    def __init__(self, helpers: Helpers, lines: Lines) -> None:
+        super().__init__(helpers, lines)
+        self.known = 0
+        """Bytes that were not added yet, because they are always the same."""
+
+    def _add(self, size: int | str) -> None:
+        if isinstance(size, int):
+            self.known += size
+        else:
+            self.lines.add(f"size += {size};")
+
+    def _settle(self) -> None:
+        if self.known:
+            self.lines.add(f"size += {self.known};")
+        self.known = 0
+
+    def step(self, step: AnyStep, place: str) -> None:
+        """Walk over a step of any kind; one of a fixed size is not looked into."""
+        fixed = step.sizes.fixed
+        if fixed is not None:
+            self._add(fixed)
+        else:
+            super().step(step, place)
+
+    def constant(self, step: ConstantStep) -> None:
+        """A constant."""
+        self._add(len(step.data))
+
+    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+        """A text, or bytes."""
+        self._add(count)
+
+    def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Elements."""
+        size = step.element.sizes.fixed
+        if size is not None:
+            self._add(times(count, size))
+            return
+        with self.loop(count) as index:
+            known, self.known = self.known, 0
+            self.step(step.element, f"{place}[{index}]")
+            self._settle()
+            self.known = known
+
+    def choose(self, step: ChooseStep, place: str) -> None:
+        """One of several cases."""
+        if isinstance(step.selector, int):
+            super().choose(step, place)
+            return
+        known, self.known = self.known, 0
+        super().choose(step, place)
+        self.known = known
+
+    def end_case(self, step: ChooseStep) -> None:
+        """Add what the case has."""
+        self._settle()
+
+    def rest(self, step: RestStep, place: str) -> None:
+        """The bytes of a value without a case."""
+        self._add(f"{place}.size")

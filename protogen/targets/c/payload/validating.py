@@ -1,0 +1,151 @@
+"""Statements that tell whether a message can be sent."""
+
+from __future__ import annotations
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ConstantStep,
+    Count,
+    NumberStep,
+    PayloadPlan,
+    Reference,
+    RepeatStep,
+    RestStep,
+)
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Float, Integer, Text, counting_bits
+from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.walk import Walk, amount
+from protogen.targets.c.spelling import constant, unsigned
+
+
+def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:
+    """True if some values of a message's members can't be sent."""
+    return not sizes.holds(plan.sizes) or plan.is_refusable
+
+
+def _outside(step: NumberStep, type_: Integer, expression: str) -> str:
+    """A condition that holds where a number can't be sent; empty where all can."""
+    if type_.role == "bool" and not step.field.ranged:
+        return ""
+    least, greatest = step.bounds
+    types_greatest = (1 << (type_.width - type_.signed)) - 1
+    types_least = -types_greatest - 1 if type_.signed else 0
+    tests = []
+    if least > types_least:
+        tests.append(f"{expression} < {constant(least, type_)}")
+    if greatest < types_greatest:
+        tests.append(f"{expression} > {constant(greatest, type_)}")
+    both = " || ".join(tests)
+    special = [item.value for item in step.field.special if not least <= item.value <= greatest]
+    if not tests or not special:
+        return both
+    others = [f"{expression} != {constant(value, type_)}" for value in special]
+    return " && ".join([f"({both})" if len(tests) > 1 else both, *others])
+
+
+def _is_bounded_by_bits(step: NumberStep, type_: Integer) -> bool:
+    """True if numbers can't be sent just where some of their upper bits are set."""
+    least, greatest = step.bounds
+    is_plain = not type_.signed and type_.role != "bool" and not type_.is_closed
+    fits = least == 0 and greatest & (greatest + 1) == 0 and bool(_outside(step, type_, "x"))
+    return is_plain and fits and not any(item.value > greatest for item in step.field.special)
+
+
+class Validate(Walk):
+    """Prints a check of what `message` points to."""
+
+    def __init__(self, helpers: Helpers, lines: Lines, prefix: str) -> None:
+        super().__init__(helpers, lines)
+        self._error = f"return {prefix.upper()}_ERROR_RANGE;"
+
+    def _refuse(self, condition: str) -> None:
+        with self.lines.block(f"if ({condition})"):
+            self.lines.add(self._error)
+
+    def step(self, step: AnyStep, place: str) -> None:
+        """A step of any kind; nothing is said of values that can't be wrong."""
+        if step.is_refusable:
+            super().step(step, place)
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number."""
+        type_ = step.type
+        if isinstance(type_, Float):
+            self._float(step, type_, place)
+            return
+        outside = _outside(step, type_, place)
+        if outside:
+            self._refuse(outside)
+        if type_.enum is not None and type_.enum.closed:
+            values = tuple(item.value for item in type_.enum.values)
+            known = self.helpers.known(type_.enum.name, type_, values)
+            self._refuse(f"!{known}({place})")
+
+    def _float(self, step: NumberStep, type_: Float, place: str) -> None:
+        bounds = self.helpers.float_bounds(type_, step.field.least, step.field.greatest)
+        tests = bounds(place)
+        if tests:
+            self._refuse(f"!({' && '.join(tests)})")
+
+    def constant(self, step: ConstantStep) -> None:
+        """What counts it has to say how long it is."""
+        value = step.value
+        if isinstance(value, NumberStep) or value.count.by is None:
+            return
+        const = step.field.const
+        size = len(const) if isinstance(const, str | bytes | tuple) else 0
+        self._refuse(f"{self.referred(value.count.by)} != {unsigned(size)}")
+
+    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+        """A text, or bytes."""
+        if isinstance(step.type, Text) or step.type.byte_bits == 7:
+            self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
+
+    def count(self, count: Count) -> int | str:
+        """How many elements or bytes there are, which a struct has to have room for."""
+        if count.fills:
+            self._fitting(self.filled(count), count.greatest)
+        elif count.by is not None:
+            self._counted(count, count.by)
+        return super().count(count)
+
+    def _fitting(self, count: str, greatest: int) -> None:
+        if greatest < (1 << counting_bits(greatest)) - 1:
+            self._refuse(f"{count} > {unsigned(greatest)}")
+
+    def _counted(self, count: Count, by: Reference) -> None:
+        assert by.type is not None
+        number, tests = self.referred(by), []
+        if count.least > 0:
+            tests.append(f"{number} < {unsigned(count.least)}")
+        if count.greatest < (1 << by.type.width) - 1:
+            tests.append(f"{number} > {unsigned(count.greatest)}")
+        if tests:
+            self._refuse(" || ".join(tests))
+
+    def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Elements."""
+        element = step.element
+        if (
+            isinstance(element, NumberStep)
+            and isinstance(element.type, Integer)
+            and _is_bounded_by_bits(element, element.type)
+        ):
+            found = f"{self.helpers.all_bits(element.type)}({place}, {amount(count)})"
+            self._refuse(_outside(element, element.type, found))
+        elif element.is_refusable:
+            with self.loop(count) as index:
+                self.step(element, f"{place}[{index}]")
+
+    def rest(self, step: RestStep, place: str) -> None:
+        """The bytes of a value without a case."""
+        self._fitting(f"{place}.size", step.greatest)
+        if step.seven_bit:
+            self._refuse(f"!{self.helpers.seven_bit()}({place}.bytes, {place}.size)")
+
+    def no_case(self) -> None:
+        """A value without a case."""
+        self.lines.add(self._error)

@@ -1,0 +1,163 @@
+"""Walks over the steps of a payload plan, to print statements for each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    NumberStep,
+    PayloadPlan,
+    RecordStep,
+    Reference,
+    RepeatStep,
+    RestStep,
+)
+from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.spelling import constant, unsigned
+
+_INDICES = "ijklmnopqrstuvw"
+
+
+def amount(count: int | str) -> str:
+    """A number of elements or bytes as an argument."""
+    return unsigned(count) if isinstance(count, int) else count
+
+
+class Walk:
+    """Order of the steps. A subclass says what is printed for each kind of step.
+
+    `place` is the member that a step belongs to, as `message->points[i]`.
+    """
+
+    def __init__(self, helpers: Helpers, lines: Lines) -> None:
+        self.helpers = helpers
+        self.lines = lines
+        self._loops = 0
+        self._records: list[str] = []  # What the members of each record around begin with.
+
+    def message(self, plan: PayloadPlan) -> None:
+        """Walk over all steps of a message."""
+        self.record(plan.steps, "message->")
+
+    def record(self, steps: Sequence[AnyStep], base: str) -> None:
+        """Walk over the steps of a record whose members begin with `base`."""
+        self._records.append(base)
+        for step in steps:
+            self.step(step, base + step.name)
+        self._records.pop()
+
+    def step(self, step: AnyStep, place: str) -> None:
+        """Walk over a step of any kind."""
+        match step:
+            case NumberStep():
+                self.number(step, place)
+            case ConstantStep():
+                self.constant(step)
+            case BytesStep():
+                count = self.count(step.count)
+                if count != 0:
+                    self.bytes(step, place, count)
+            case RecordStep():
+                self.record(step.steps, f"{place}.")
+            case RepeatStep():
+                count = self.count(step.count)
+                if count != 0 and step.element.sizes.greatest:
+                    self.repeat(step, place, count)
+            case ChooseStep():
+                self.choose(step, place)
+
+    # --- numbers that count and select ----------------------------------------------------------
+
+    def count(self, count: Count) -> int | str:
+        """How many elements or bytes there are."""
+        if count.known is not None:
+            return count.known
+        if count.by is None:
+            return self.filled(count)
+        name = self.referred(count.by)
+        assert count.by.type is not None
+        return f"(size_t){name}" if count.by.type.bits > 16 else name
+
+    def filled(self, count: Count) -> str:
+        """The member for the number of what fills the payload."""
+        return self._records[-1] + count.member
+
+    def referred(self, number: Reference) -> str:
+        """The expression of an earlier number."""
+        return self._records[number.level] + number.name
+
+    # --- what subclasses say ----------------------------------------------------------------------
+
+    def constant(self, step: ConstantStep) -> None:
+        """Print a constant."""
+        raise NotImplementedError
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """Print a number."""
+        raise NotImplementedError
+
+    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+        """Print a text, or bytes."""
+        raise NotImplementedError
+
+    def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Print elements; there are some, and they have bytes."""
+        raise NotImplementedError
+
+    def rest(self, step: RestStep, place: str) -> None:
+        """Print the bytes of a value without a case; `place` has a `size` and `bytes`."""
+        raise NotImplementedError
+
+    def no_case(self) -> None:
+        """Print what follows from a value without a case that is invalid."""
+
+    def end_case(self, step: ChooseStep) -> None:
+        """Print the end of a case."""
+
+    # --- loops and cases ------------------------------------------------------------------------
+
+    @contextmanager
+    def loop(self, count: int | str) -> Iterator[str]:
+        """A loop over so many elements; yields the index."""
+        index = _INDICES[self._loops]
+        self._loops += 1
+        with self.lines.block(f"for (size_t {index} = 0; {index} < {amount(count)}; {index}++)"):
+            yield index
+        self._loops -= 1
+
+    def choose(self, step: ChooseStep, place: str) -> None:
+        """One of several cases."""
+        if isinstance(step.selector, int):
+            self._chosen(step.case(step.selector), place)
+            return
+        selector = step.selector.type
+        assert selector is not None
+        number = self.referred(step.selector)
+        with self.lines.switch(f"(uint8_t){number}" if selector.role == "bool" else number):
+            for case in step.cases:
+                label = f"case {constant(case.value, selector)}"
+                with self.lines.case(label), self.branch():
+                    self._chosen(case.step, place)
+                    self.end_case(step)
+            with self.lines.case("default"), self.branch():
+                self._chosen(step.rest, place)
+
+    @contextmanager
+    def branch(self) -> Iterator[None]:
+        """Surroundings of what is printed for one of several cases."""
+        yield
+
+    def _chosen(self, step: AnyStep | RestStep | None, place: str) -> None:
+        if step is None:
+            self.no_case()
+        elif isinstance(step, RestStep):
+            self.rest(step, f"{place}.{step.name}")
+        else:
+            self.step(step, f"{place}.{step.name}")
