@@ -111,15 +111,15 @@ def library_of(path: Path, way: str) -> Any:
     """The C of a schema, compiled once in a process; None where there is no compiler."""
     from compiled import protocol_of
 
-    from protogen.fuzzing.c_driver import Driver
     from protogen.fuzzing.c_library import CLibrary, find_compiler
+    from protogen.targets.c.fuzz_driver.driver import driver_of
 
     compiler = find_compiler()
     if compiler is None:
         return None
     protocol = protocol_of(path)
     flags = ("-std=c99", "-O1", "-fPIC", "-shared", f"-D{protocol.name.upper()}_{way}=1")
-    return CLibrary(Driver(protocol), compiler, flags)
+    return CLibrary(driver_of(protocol), compiler, flags)
 
 
 def steps(library: Any, sender: str, data: bytes, kind: str, size: int) -> Any:

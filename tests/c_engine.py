@@ -26,6 +26,7 @@ from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.trips import same
 from protogen.model.protocol import Protocol
+from protogen.targets.c.fuzz_driver.driver import driver_of
 from protogen.targets.c.options import COptions
 
 MACHINES = Path(__file__).with_name("c_engine_machines")
@@ -83,7 +84,8 @@ class Process:
         flags: Sequence[str] = ("-O0", *SANITIZERS),
         compile: Callable[..., Path] = build,
     ) -> None:
-        self.driver = Driver(protocol, options)
+        self.options = options
+        self.driver = driver_of(protocol, options)
         self.calls = Calls(self.driver)
         self._folder = TemporaryDirectory(prefix="protogen-c-")
         folder = Path(self._folder.name)
@@ -200,7 +202,7 @@ def same_events(found: Sequence[CEvent], expected: Sequence[CEvent]) -> bool:
 def check_events(process: Process, module: Any, sender: str, steps: Sequence[Step]) -> None:
     """C gives the events that Python gives, or the messages among them, each in the same step."""
     everything = python_events(module, sender, steps)
-    only_messages = process.driver.options.events == "messages"
+    only_messages = process.options.events == "messages"
     count = comparable(process.driver.protocol, everything)
     if count is not None:
         events = list(chain.from_iterable(everything))[:count]

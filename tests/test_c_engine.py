@@ -19,6 +19,7 @@ from protogen.fuzzing.c_values import Answers, Unfit, pack, unpack
 from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.trips import cases, same, same_events, smallest, try_case
+from protogen.targets.c.fuzz_driver.driver import driver_of
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 MATTY = ROOT / "schemas" / "matty.yaml"
@@ -28,7 +29,7 @@ SAMPLER = ROOT / "tests" / "c_schemas" / "sampler.yaml"
 
 @cache
 def engine_of(path: Path) -> CEngine:
-    return CEngine(protocol_of(path), require_tool("cc"))
+    return CEngine(driver_of(protocol_of(path)), require_tool("cc"))
 
 
 # --- the engine -----------------------------------------------------------------------------------
@@ -70,7 +71,7 @@ def test_events_of_noise() -> None:
 
 def test_answers_may_be_longer_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(c_library, "_ROOM", 8)
-    engine = CEngine(protocol_of(MATTY), require_tool("cc"))
+    engine = CEngine(driver_of(protocol_of(MATTY)), require_tool("cc"))
     assert engine.events("pc", [bytes(1000)]) == engine_of(MATTY).events("pc", [bytes(1000)])
 
 
@@ -100,9 +101,9 @@ def test_c_that_does_not_compile_is_an_error() -> None:
 @pytest.mark.parametrize("path", [*DOCUMENTS, *SAMPLERS], ids=name_of)
 def test_values_survive_being_packed(path: Path) -> None:
     for case in cases(protocol_of(path), 10, 1):
-        fields = protocol_of(path).message(case.message).fields
-        data = io.BytesIO(pack(fields, case.values))
-        found = unpack(fields, Answers(data))
+        plan = protocol_of(path).message(case.message).plan
+        data = io.BytesIO(pack(plan, case.values))
+        found = unpack(plan, Answers(data))
         assert same(found, case.values)
         assert data.read() == b""
 
@@ -121,7 +122,7 @@ def test_values_survive_being_packed(path: Path) -> None:
 def test_what_no_struct_can_hold_does_not_fit(message: str, change: dict[str, Any]) -> None:
     case = next(case for case in cases(protocol_of(SAMPLER), 1, 1, message))
     with pytest.raises(Unfit):
-        pack(protocol_of(SAMPLER).message(message).fields, case.values | change)
+        pack(protocol_of(SAMPLER).message(message).plan, case.values | change)
 
 
 def test_an_answer_that_ends_early_is_an_error() -> None:

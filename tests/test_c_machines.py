@@ -28,12 +28,12 @@ from test_c_frames import frame_of
 from tooling import require_tool
 
 from protogen.fuzzing.c_calls import OK, RANGE, VALUE, Calls, Encoded, Sent
-from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.fuzzing.trips import same
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
+from protogen.targets.c.fuzz_driver.driver import driver_of
 from protogen.targets.c.options import COptions
 from protogen.targets.python.live import module_of
 
@@ -252,7 +252,7 @@ def _are_events(expected: Any) -> Callable[[Any], bool]:
 def test_every_machine_gives_the_same(name: str, path: Path, tmp_path: Path) -> None:
     machine = ALL[name]
     only = selection(path, machine.greatest)
-    driver = Driver(protocol_of(path), COptions(only=only))
+    driver = driver_of(protocol_of(path), COptions(only=only))
     command = [require_tool(machine.compiler), *FLAGS, *machine.flags]
     if machine.compiler == "arm-none-eabi-gcc":
         command.remove("-Wpedantic")  # newlib's own headers

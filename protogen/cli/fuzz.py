@@ -67,6 +67,7 @@ def _engines(codec: Codec) -> tuple[list[Engine], bool]:
     from protogen.fuzzing.c_engine import CEngine
     from protogen.fuzzing.c_library import CompileError, find_compiler
     from protogen.fuzzing.python_engine import PythonEngine
+    from protogen.targets.c.fuzz_driver.driver import driver_of
 
     found: list[Engine] = [
         PythonEngine(codec.runtime),
@@ -77,7 +78,7 @@ def _engines(codec: Codec) -> tuple[list[Engine], bool]:
         typer.echo("c: there is no C compiler (cc, gcc or clang), so generated C is not tried")
         return found, True
     try:
-        return [*found, CEngine(codec.protocol, compiler)], True
+        return [*found, CEngine(driver_of(codec.protocol), compiler)], True
     except CompileError as error:
         typer.echo(f"c: {compiler} refuses the generated C:\n{error}", err=True)
         return found, False

@@ -103,10 +103,10 @@ class Calls:
     def encode(self, message: str, values: Values, capacity: int | None = None) -> Call[Encoded]:
         """Encode a payload. Raises Unfit where no struct can have the values."""
         index = self._driver.message(message)
-        fields = self._driver.messages[index].model
-        room = fields.sizes.greatest if capacity is None else capacity
+        model = self._driver.messages[index].model
+        room = model.sizes.greatest if capacity is None else capacity
         head = b"P" + number(index, 2) + number(room, 4)
-        return Call(head + pack(fields.fields, values), _read_encoded)
+        return Call(head + pack(model.plan, values), _read_encoded)
 
     def decode(self, message: str, payload: bytes) -> Call[Decoded]:
         """Decode a payload."""
@@ -118,7 +118,7 @@ class Calls:
         result = answers.number(1)
         if result != OK:
             return Decoded(result, None, bool(answers.number(1)))
-        return Decoded(result, unpack(self._driver.messages[index].model.fields, answers))
+        return Decoded(result, unpack(self._driver.messages[index].model.plan, answers))
 
     # --- frames ---------------------------------------------------------------------------------
 
@@ -157,7 +157,7 @@ class Calls:
     ) -> bytes:
         numbers = [number(parts[part.name], part.size) for part in taken]
         model = self._driver.messages[self._driver.message(message)].model
-        return b"".join(numbers) + pack(model.fields, values)
+        return b"".join(numbers) + pack(model.plan, values)
 
     # --- events ---------------------------------------------------------------------------------
 
@@ -217,7 +217,7 @@ class Calls:
         assert answers.number(1) == 1
         assert answers.number(2) == index
         assert _parts(answers, decoder) == parts
-        return unpack(self._driver.messages[index].model.fields, answers)
+        return unpack(self._driver.messages[index].model.plan, answers)
 
 
 def _parts(answers: Answers, decoder: DrivenDecoder) -> Values:

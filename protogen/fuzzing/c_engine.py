@@ -10,19 +10,17 @@ from protogen.fuzzing.c_library import CLibrary
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.engine import Refused, Seen
 from protogen.fuzzing.samples import Values
-from protogen.model.protocol import Protocol
 
 _WHY = ("", "size", "value", "encoding", "out of range", "no space")
 
 
 class CEngine:
-    """What the C target makes of a protocol, compiled. Raises CompileError."""
+    """Generated C with its driver, compiled. Raises CompileError."""
 
     name = "c"
 
-    def __init__(self, protocol: Protocol, compiler: str) -> None:
-        self._protocol = protocol
-        self._library = CLibrary(Driver(protocol), compiler)
+    def __init__(self, driver: Driver, compiler: str) -> None:
+        self._library = CLibrary(driver, compiler)
         self._calls = self._library.calls
 
     def payload(self, message: str, values: Values) -> bytes:

@@ -2,7 +2,7 @@
 
 The members of a struct one after another, numbers in big-endian order and as wide as their members
 are, so that the bytes are the same for every machine. Of arrays, texts and bytes only what is in
-use; of a union only the case that the selector chooses. `c_walk` writes the same as C.
+use; of a union only the case that the selector chooses. A driver's functions in C do the same.
 """
 
 from __future__ import annotations
@@ -13,25 +13,20 @@ from collections.abc import Mapping, Sequence
 from typing import Any, BinaryIO
 
 from protogen.fuzzing.samples import Values
-from protogen.model.types import (
-    Array,
-    Extent,
-    Field,
-    Fill,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
-    counting_bits,
-    storage_bits,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    PayloadPlan,
+    RecordStep,
+    RepeatStep,
+    RestStep,
 )
-
-Scope = dict[str, int]
-"""The numbers in front, which count and select."""
+from protogen.model.types import Fixed, Text, counting_bits
 
 
 class Unfit(Exception):  # noqa: N818 - a verdict, not a failure
@@ -68,161 +63,167 @@ def number(value: int, size: int, *, signed: bool = False) -> bytes:
         raise Unfit from None
 
 
-def member_size(type_: Integer | Float) -> int:
-    """Bytes of the member that holds such numbers."""
-    return storage_bits(type_.bits) // 8
+class _Walk:
+    """The numbers of the records around a step, which count and select."""
 
+    def __init__(self) -> None:
+        self._records: list[Mapping[str, Any]] = []
 
-def counting_size(extent: Extent | int) -> int:
-    """Bytes of the member that counts elements or bytes."""
-    greatest = extent if isinstance(extent, int) else extent.room
-    return counting_bits(greatest) // 8
+    def _count(self, count: Count, filled: int) -> int:
+        """How many elements or bytes there are; `filled` if they fill the payload."""
+        if count.by is not None:
+            return int(self._records[count.by.level][count.by.name])
+        return filled if count.known is None else count.known
+
+    def _chosen(self, step: ChooseStep) -> AnyStep | RestStep | None:
+        by = step.selector
+        return step.case(by if isinstance(by, int) else int(self._records[by.level][by.name]))
 
 
 # --- values into bytes ----------------------------------------------------------------------------
 
 
-def pack(fields: Sequence[Field], values: Mapping[str, Any], scope: Scope | None = None) -> bytes:
+def pack(plan: PayloadPlan, values: Mapping[str, Any]) -> bytes:
     """The bytes of a struct with these values; raises Unfit where no struct can have them."""
-    inner = dict(scope or {})
-    parts = []
-    for field in fields:
-        value: Any = values[field.name] if field.const is None else field.const
-        if isinstance(field.type, Integer):
-            inner[field.name] = int(value)
-        if field.const is not None:
-            continue
-        if field.fills:
-            extent = field.type.extent
-            assert extent is not None
-            size = len(value) // (2 if isinstance(field.type, Octets) else 1)
-            parts.append(number(size, counting_size(extent)))
-        parts.append(_pack(field.type, value, inner))
-    return b"".join(parts)
+    return _Pack().record(plan.steps, values)
 
 
-def _pack(type_: Type, value: Any, scope: Scope) -> bytes:
-    match type_:
-        case Integer():
-            return number(value, member_size(type_), signed=type_.signed)
-        case Float():
-            return _float_bytes(type_, float(value))
-        case Text(extent=extent):
-            data = value.encode("latin-1")
-            return _padded(data, extent, scope)
-        case Octets(extent=extent):
-            return _padded(bytes.fromhex(value), extent, scope)
-        case Struct(fields=fields):
-            return pack(fields, value, scope)
-        case Array(element=element, extent=extent):
-            if len(value) != _count(extent, len(value), scope) or len(value) > extent.room:
-                raise Unfit
-            return b"".join(_pack(element, item, scope) for item in value)
-        case Switch():
-            return _pack_case(type_, value, scope)
+class _Pack(_Walk):
+    def record(self, steps: Sequence[AnyStep], values: Mapping[str, Any]) -> bytes:
+        self._records.append(values)
+        data = b"".join(
+            self._bytes(step, values[step.name]) for step in steps if step.field.const is None
+        )
+        self._records.pop()
+        return data
+
+    def _bytes(self, step: AnyStep | RestStep | None, value: Any) -> bytes:
+        match step:
+            case FloatStep():
+                return _float_bytes(step.type.bits, float(value))
+            case IntegerStep(type=type_):
+                return number(value, type_.width // 8, signed=type_.signed)
+            case BytesStep():
+                data = _of_text(step, value)
+                return self._prefix(step.count, len(data)) + self._padded(data, step.count)
+            case RecordStep(steps=steps):
+                return self.record(steps, value)
+            case RepeatStep():
+                return self._elements(step, value)
+            case ChooseStep():
+                chosen = self._chosen(step)
+                return b"" if value is None else self._bytes(chosen, value)
+            case RestStep():
+                data = bytes.fromhex(value)
+                if len(data) > step.greatest:
+                    raise Unfit
+                return _counted(len(data), step.greatest) + data
+            case _:
+                return b""
+
+    def _elements(self, step: RepeatStep, values: Sequence[Any]) -> bytes:
+        prefix, size = self._prefix(step.count, len(values)), len(values)
+        if size != self._count(step.count, size) or size > step.count.greatest:
+            raise Unfit
+        return prefix + b"".join(self._bytes(step.element, item) for item in values)
+
+    def _padded(self, data: bytes, count: Count) -> bytes:
+        size = self._count(count, len(data))
+        if len(data) > size or size > count.greatest:
+            raise Unfit
+        return data.ljust(size, b"\0")
+
+    def _prefix(self, count: Count, size: int) -> bytes:
+        return _counted(size, count.greatest) if count.fills else b""
 
 
-def _pack_case(type_: Switch, value: Any, scope: Scope) -> bytes:
-    case = type_.case(scope[type_.selector])
-    if case is not None:
-        return b"" if value is None else _pack(case.type, value, scope)
-    if type_.rest is None:
-        return b""
-    data = bytes.fromhex(value)
-    if len(data) > type_.rest:
-        raise Unfit
-    return number(len(data), counting_size(type_.rest)) + data
+def _of_text(step: BytesStep, value: str) -> bytes:
+    return value.encode("latin-1") if isinstance(step.type, Text) else bytes.fromhex(value)
 
 
-def _padded(data: bytes, extent: Extent, scope: Scope) -> bytes:
-    size = _count(extent, len(data), scope)
-    if len(data) > size or size > extent.room:
-        raise Unfit
-    return data.ljust(size, b"\0")
+def _counted(size: int, greatest: int) -> bytes:
+    return number(size, counting_bits(greatest) // 8)
 
 
-def _float_bytes(type_: Float, value: float) -> bytes:
+def _float_bytes(bits: int, value: float) -> bytes:
     try:
-        return struct.pack(">f" if type_.bits == 32 else ">d", value)
+        return struct.pack(">f" if bits == 32 else ">d", value)
     except OverflowError:
         raise Unfit from None
-
-
-def _count(extent: Extent, count: int, scope: Scope) -> int:
-    match extent:
-        case Fixed(count=fixed):
-            return fixed
-        case Fill():
-            return count
-        case _:
-            return scope[extent.field]
 
 
 # --- bytes into values ----------------------------------------------------------------------------
 
 
-def unpack(fields: Sequence[Field], answers: Answers, scope: Scope | None = None) -> Values:
+def unpack(plan: PayloadPlan, answers: Answers) -> Values:
     """The values of a struct."""
-    inner = dict(scope or {})
-    found: Values = {}
-    for field in fields:
-        if field.const is not None:
-            found[field.name] = _shown(field.type, field.const)
-        else:
-            count = 0
-            if field.fills:
-                extent = field.type.extent
-                assert extent is not None
-                count = answers.number(counting_size(extent))
-            found[field.name] = _unpack(field.type, answers, count, inner)
-        if isinstance(field.type, Integer):
-            inner[field.name] = int(found[field.name])
-    return found
+    return _Unpack(answers).record(plan.steps)
 
 
-def _shown(type_: Type, constant: Any) -> Any:
+class _Unpack(_Walk):
+    def __init__(self, answers: Answers) -> None:
+        super().__init__()
+        self._answers = answers
+
+    def record(self, steps: Sequence[AnyStep]) -> Values:
+        found: Values = {}
+        self._records.append(found)
+        for step in steps:
+            found[step.name] = self._value(step)
+        self._records.pop()
+        return found
+
+    def _value(self, step: AnyStep | RestStep | None) -> Any:
+        match step:
+            case FloatStep():
+                return self._float(step.type.bits)
+            case IntegerStep(type=type_):
+                raw = self._answers.number(type_.width // 8, signed=type_.signed)
+                return bool(raw) if type_.role == "bool" else raw
+            case ConstantStep():
+                return _shown(step)
+            case BytesStep():
+                return self._text(step, self._answers.take(self._size(step.count)))
+            case RecordStep(steps=steps):
+                return self.record(steps)
+            case RepeatStep():
+                return [self._value(step.element) for _ in range(self._size(step.count))]
+            case ChooseStep():
+                chosen = self._chosen(step)
+                is_empty = isinstance(chosen, RecordStep) and not chosen.steps
+                return None if is_empty else self._value(chosen)
+            case RestStep():
+                return self._answers.take(self._filled(step.greatest)).hex()
+            case _:
+                raise AssertionError("a decoder takes no value without a case")
+
+    def _float(self, bits: int) -> float | str:
+        data = self._answers.take(bits // 8)
+        value: float = struct.unpack(">f" if bits == 32 else ">d", data)[0]
+        return value if math.isfinite(value) else str(value)
+
+    def _size(self, count: Count) -> int:
+        return self._count(count, self._filled(count.greatest) if count.fills else 0)
+
+    def _filled(self, greatest: int) -> int:
+        return self._answers.number(counting_bits(greatest) // 8)
+
+    @staticmethod
+    def _text(step: BytesStep, data: bytes) -> str:
+        if not isinstance(step.type, Text):
+            return data.hex()
+        text = data.decode("latin-1")
+        return text.rstrip("\0") if isinstance(step.type.extent, Fixed) else text
+
+
+def _shown(step: ConstantStep) -> Any:
     """A constant as JSON lines have it."""
-    if isinstance(type_, Integer) and type_.role == "bool":
-        return bool(constant)
-    if isinstance(type_, Float):
+    constant, value = step.field.const, step.value
+    if isinstance(value, FloatStep):
+        assert isinstance(constant, int | float)
         return float(constant)
+    if isinstance(value, IntegerStep) and value.type.role == "bool":
+        return bool(constant)
     if isinstance(constant, bytes):
         return constant.hex()
     return list(constant) if isinstance(constant, tuple) else constant
-
-
-def _unpack(type_: Type, answers: Answers, count: int, scope: Scope) -> Any:
-    match type_:
-        case Integer():
-            value = answers.number(member_size(type_), signed=type_.signed)
-            return bool(value) if type_.role == "bool" else value
-        case Float():
-            return _float(type_, answers)
-        case Text(extent=extent):
-            text = answers.take(_count(extent, count, scope)).decode("latin-1")
-            return text.rstrip("\0") if isinstance(extent, Fixed) else text
-        case Octets(extent=extent):
-            return answers.take(_count(extent, count, scope)).hex()
-        case Struct(fields=fields):
-            return unpack(fields, answers, scope)
-        case Array(element=element, extent=extent):
-            elements = range(_count(extent, count, scope))
-            return [_unpack(element, answers, 0, scope) for _ in elements]
-        case Switch():
-            return _unpack_case(type_, answers, scope)
-
-
-def _unpack_case(type_: Switch, answers: Answers, scope: Scope) -> Any:
-    case = type_.case(scope[type_.selector])
-    if case is None:
-        assert type_.rest is not None
-        return answers.take(answers.number(counting_size(type_.rest))).hex()
-    if isinstance(case.type, Struct) and not case.type.fields:
-        return None
-    return _unpack(case.type, answers, 0, scope)
-
-
-def _float(type_: Float, answers: Answers) -> float | str:
-    form = ">f" if type_.bits == 32 else ">d"
-    value: float = struct.unpack(form, answers.take(type_.bits // 8))[0]
-    return value if math.isfinite(value) else str(value)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import struct
-from collections import ChainMap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,23 +12,20 @@ from typing import Any
 
 from protogen.model.frame import CounterPart, ValuePart
 from protogen.model.messages import Message
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Field,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    Check,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    Reference,
+    RepeatStep,
 )
-
-Scope = ChainMap[str, Any]
-"""The values in front, which count and select what follows."""
+from protogen.model.types import Fixed, Text
 
 _USUAL_COUNT = 24
 """Random arrays, texts and bytes are no longer than this where they need not be."""
@@ -59,11 +55,9 @@ def part_choices(part: CounterPart | ValuePart) -> Choices:
 
 def unspecified_choices(message: Message) -> Choices:
     """The payload of a message of which only the size is known."""
-    data = message.fields[0].type
-    assert isinstance(data, Octets)
+    seven = Check.SEVEN_BIT in message.plan.checks
     greatest = min(message.sizes.greatest, _GREATEST_COUNT)
-    highest = SEVEN_BITS if data.byte_bits == 7 else 0xFF
-    return bytes_choices(message.sizes.least, greatest, highest)
+    return bytes_choices(message.sizes.least, greatest, SEVEN_BITS if seven else 0xFF)
 
 
 # --- numbers that count or select ----------------------------------------------------------------
@@ -77,7 +71,7 @@ class Need:
     greatest: int
     cases: tuple[int, ...] = ()
     others: bool = True
-    """Whether it may be none of the cases."""
+    """True if it may be none of the cases."""
 
     def also(self, other: Need) -> Need:
         """What it has to be for both reasons."""
@@ -89,68 +83,80 @@ class Need:
         )
 
 
-def needs_of(fields: Sequence[Field]) -> dict[str, Need]:
-    """What those behind them and inside of these need of the fields, by the fields' names."""
-    return _needs_of_fields(fields)[0]
+Needs = dict[tuple[int, str], Need]
+"""The needs of numbers, by the level of the record that holds each, and its name."""
 
 
-def _needs_of_fields(fields: Sequence[Field]) -> tuple[dict[str, Need], dict[str, Need]]:
-    """What is needed of the fields themselves, and of numbers in front of all of them."""
-    own: dict[str, Need] = {}
-    needs: dict[str, Need] = {}
-    for field in reversed(fields):
-        if field.name in needs:
-            own[field.name] = needs.pop(field.name)
-        for name, need in _needs(field.type):
-            needs[name] = needs[name].also(need) if name in needs else need
-    return own, needs
+def needs_of(steps: Sequence[AnyStep], level: int) -> Needs:
+    """What the steps of a record at some level need of its numbers and of those around it."""
+    needs: Needs = {}
+    for step in steps:
+        for number, need in _needs(step, level):
+            place = number.level, number.name
+            needs[place] = needs[place].also(need) if place in needs else need
+    return needs
 
 
-def _needs(type: Type) -> Iterator[tuple[str, Need]]:
-    match type:
-        case Struct(fields=fields):
-            yield from _needs_of_fields(fields)[1].items()
-        case Array(element=element, extent=extent):
-            yield from _needs_of_extent(extent)
-            yield from _needs(element)
-        case Text(extent=extent) | Octets(extent=extent):
-            yield from _needs_of_extent(extent)
-        case Switch(selector=selector, cases=cases, rest=rest):
-            values = tuple(case.value for case in cases)
-            yield selector, Need(-_ANY, _ANY, values, others=rest is not None)
-            for case in cases:
-                yield from _needs(case.type)
+def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
+    match step:
+        case ConstantStep():
+            yield from _needs(step.value, level)
+        case RecordStep():
+            for (outer, name), need in needs_of(step.steps, level + 1).items():
+                if outer <= level:
+                    yield Reference(name, outer, None), need
+        case BytesStep() | RepeatStep():
+            yield from _needs_of_count(step.count)
+            if isinstance(step, RepeatStep):
+                yield from _needs(step.element, level)
+        case ChooseStep():
+            if isinstance(step.selector, Reference):
+                values = tuple(case.value for case in step.cases)
+                yield step.selector, Need(-_ANY, _ANY, values, others=step.rest is not None)
+            for case in step.cases:
+                yield from _needs(case.step, level)
 
 
-def _needs_of_extent(extent: Extent) -> Iterator[tuple[str, Need]]:
-    if isinstance(extent, Counted):
-        yield extent.field, Need(extent.least, min(extent.greatest, _GREATEST_COUNT))
+def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
+    if count.by is not None:
+        yield count.by, Need(count.least, min(count.greatest, _GREATEST_COUNT))
 
 
 # --- single values ------------------------------------------------------------------------------
 
+Lengths = tuple[int, int]
+"""The least and the greatest number of elements or bytes."""
+
 
 def scalar_choices(
-    field: Field, type: Integer | Float | Text | Octets, scope: Scope, need: Need | None
+    step: IntegerStep | FloatStep | BytesStep, lengths: Lengths, need: Need | None
 ) -> Choices:
     """What a single value may be; `need` is what others need of it."""
-    match type:
-        case Integer():
-            return _integer_choices(field, type, need)
-        case Float():
-            return _float_choices(field, type)
-        case Text():
-            return _text_choices(field, type, scope)
-        case Octets():
-            return _octets_choices(field, type, scope)
+    match step:
+        case IntegerStep():
+            return _integer_choices(step, need)
+        case FloatStep():
+            return _float_choices(step)
+        case BytesStep():
+            return _text_choices(step, lengths)
 
 
-def _integer_choices(field: Field, type: Integer, need: Need | None) -> Choices:
-    if isinstance(field.const, int):
-        return _only(field.const)
-    values = _known(field, type)
-    least, greatest = _bounds(field, type)
-    closed = type.enum is not None and type.enum.closed
+def constant_choices(step: ConstantStep) -> Choices:
+    """The only value of a constant."""
+    constant = step.field.const
+    if isinstance(constant, bytes):
+        return _only(constant.hex())
+    if isinstance(constant, tuple):
+        return _only(list(constant))
+    if isinstance(step.value, FloatStep) and isinstance(constant, int):
+        return _only(float(constant))
+    return _only(constant)
+
+
+def _integer_choices(step: IntegerStep, need: Need | None) -> Choices:
+    values = _known(step)
+    least, greatest = _bounds(step)
+    closed = step.type.is_closed
     if not closed:
         near = [value for value in (0, 1, -1) if least <= value <= greatest]
         values = _distinct([*values, least, greatest, *near])
@@ -174,24 +180,20 @@ def _selecting(values: Sequence[int], need: Need) -> Choices:
     return Choices(choices, lambda random: random.choice([*choices, *others]))
 
 
-def _known(field: Field, type: Integer) -> list[int]:
+def _known(step: IntegerStep) -> list[int]:
     """The values that the schema names: of the enum, special ones, single bits and runs of bits."""
+    type, special = step.type, [item.value for item in step.field.special]
     named = [item.value for item in (type.enum.values if type.enum is not None else ())]
-    named += [item.value for item in field.special]
+    named += special
     named += [1 << flag.bit for flag in (type.flags.bits if type.flags is not None else ())]
     if not type.signed:
         named += [run.mask for run in type.bit_fields]
-    least, greatest = _bounds(field, type)
-    special = {item.value for item in field.special}
+    least, greatest = _bounds(step)
     return _distinct(value for value in named if least <= value <= greatest or value in special)
 
 
-def _bounds(field: Field, type: Integer) -> tuple[int, int]:
-    if type.role == "bool":
-        return 0, 1
-    least = type.least if field.least is None else math.ceil(field.least)
-    greatest = type.greatest if field.greatest is None else math.floor(field.greatest)
-    return max(least, type.least), min(greatest, type.greatest)
+def _bounds(step: IntegerStep) -> tuple[int, int]:
+    return (0, 1) if step.type.role == "bool" else step.bounds
 
 
 def _any_integer(least: int, greatest: int, random: Random) -> int:
@@ -200,16 +202,15 @@ def _any_integer(least: int, greatest: int, random: Random) -> int:
     return min(max(value, least), greatest)
 
 
-def _float_choices(field: Field, type: Float) -> Choices:
-    if isinstance(field.const, int | float):
-        return _only(float(field.const))
+def _float_choices(step: FloatStep) -> Choices:
+    field, bits = step.field, step.type.bits
     if field.ranged and field.least is not None and field.greatest is not None:
-        low = _fitting(field.least, type.bits, math.inf)
-        high = _fitting(field.greatest, type.bits, -math.inf)
+        low = _fitting(field.least, bits, math.inf)
+        high = _fitting(field.greatest, bits, -math.inf)
         # Rounding to 32 bits never leaves two numbers of 32 bits.
-        return Choices((low, high), lambda random: _rounded(random.uniform(low, high), type.bits))
-    form = "<f" if type.bits == 32 else "<d"
-    greatest = (2 - 2**-23) * 2.0**127 if type.bits == 32 else math.ldexp(2 - 2**-52, 1023)
+        return Choices((low, high), lambda random: _rounded(random.uniform(low, high), bits))
+    form = "<f" if bits == 32 else "<d"
+    greatest = (2 - 2**-23) * 2.0**127 if bits == 32 else math.ldexp(2 - 2**-52, 1023)
     values = (0.0, -0.0, 1.0, -1.5, greatest, -greatest, math.inf, -math.inf, math.nan)
     return Choices(
         [_json_float(value) for value in values], lambda random: _any_float(form, random)
@@ -243,11 +244,11 @@ def _json_float(value: float) -> float | str:
     return value if math.isfinite(value) else str(value)
 
 
-def _text_choices(field: Field, type: Text, scope: Scope) -> Choices:
-    if isinstance(field.const, str):
-        return _only(field.const)
-    least, greatest = _lengths(type.extent, scope)
-    if isinstance(type.extent, Fixed):
+def _text_choices(step: BytesStep, lengths: Lengths) -> Choices:
+    least, greatest = lengths
+    if not isinstance(step.type, Text):
+        return bytes_choices(least, greatest, SEVEN_BITS if step.type.byte_bits == 7 else 0xFF)
+    if isinstance(step.type.extent, Fixed):
         least = 0
     values = [character * greatest for character in ("A", "\n", chr(_LAST_OF_ASCII))]
     return Choices(
@@ -259,12 +260,6 @@ def _text_choices(field: Field, type: Text, scope: Scope) -> Choices:
 def _any_text(random: Random, length: int) -> str:
     # NUL pads a text of a fixed size, so no text has it.
     return "".join(chr(random.randint(1, _LAST_OF_ASCII)) for _ in range(length))
-
-
-def _octets_choices(field: Field, type: Octets, scope: Scope) -> Choices:
-    if isinstance(field.const, bytes):
-        return _only(field.const.hex())
-    return bytes_choices(*_lengths(type.extent, scope), 0x7F if type.byte_bits == 7 else 0xFF)
 
 
 def bytes_choices(least: int, greatest: int, highest: int) -> Choices:
@@ -281,21 +276,19 @@ def _any_bytes(random: Random, length: int, highest: int) -> str:
     return bytes(byte & highest for byte in random.randbytes(length)).hex()
 
 
-def count_choices(extent: Extent, scope: Scope) -> Choices:
+def count_choices(lengths: Lengths) -> Choices:
     """How many elements there may be."""
-    least, greatest = _lengths(extent, scope)
+    least, greatest = lengths
     values = _distinct((least, max(least, min(1, greatest)), greatest))
     return Choices(values, lambda random: _any_length(least, greatest, random))
 
 
-def _lengths(extent: Extent, scope: Scope) -> tuple[int, int]:
-    """The least and the greatest number of elements or bytes."""
-    if isinstance(extent, Fixed):
-        return extent.count, extent.count
-    if isinstance(extent, Counted):
-        count = scope.get(extent.field, 0)
-        return count, count
-    return 0, min(extent.greatest, _GREATEST_COUNT)
+def lengths_of(count: Count, said: int) -> Lengths:
+    """The least and the greatest number of elements or bytes; `said` is what a number says."""
+    if count.fills:
+        return 0, min(count.greatest, _GREATEST_COUNT)
+    found = said if count.known is None else count.known
+    return found, found
 
 
 def _any_length(least: int, greatest: int, random: Random) -> int:

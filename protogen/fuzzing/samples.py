@@ -6,8 +6,7 @@ structs.
 
 from __future__ import annotations
 
-from collections import ChainMap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from random import Random
 from typing import Any
 
@@ -15,9 +14,10 @@ from protogen.fuzzing.choices import (
     SEVEN_BITS,
     Choices,
     Need,
-    Scope,
     bytes_choices,
+    constant_choices,
     count_choices,
+    lengths_of,
     needs_of,
     part_choices,
     scalar_choices,
@@ -25,7 +25,17 @@ from protogen.fuzzing.choices import (
 )
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
-from protogen.model.types import Array, Field, Struct, Switch, Type
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    RecordStep,
+    Reference,
+    RepeatStep,
+    RestStep,
+)
 
 Values = dict[str, Any]
 """Names of fields or parts with their values."""
@@ -92,14 +102,14 @@ def boundary_rounds(message: Message, frame: Frame) -> int:
     parts = [len(part_choices(part).boundaries) for part in frame.caller_parts]
     if message.unspecified:
         return max([len(unspecified_choices(message).boundaries), *parts])
-    return max([1, _rounds_of_fields(message.fields), *parts])
+    return max([1, _rounds_of(message.plan.steps), *parts])
 
 
 def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values]:
     if message.unspecified:
         fields = {message.fields[0].name: chooser.choose(unspecified_choices(message))}
     else:
-        fields = _fields(message.fields, ChainMap(), chooser)
+        fields = _Sampler().record(message.plan.steps, chooser)
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
     return fields, parts
 
@@ -107,64 +117,82 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
 # --- how many rounds ----------------------------------------------------------------------------
 
 
-def _rounds_of_fields(fields: Iterable[Field]) -> int:
-    fields = tuple(fields)
-    needs = needs_of(fields)
-    return max((_rounds(field, field.type, needs.get(field.name)) for field in fields), default=1)
+def _rounds_of(steps: Sequence[AnyStep], level: int = 0) -> int:
+    needs = needs_of(steps, level)
+    rounds = (_rounds(step, level, needs.get((level, step.name))) for step in steps)
+    return max(rounds, default=1)
 
 
-def _rounds(field: Field, type: Type, need: Need | None = None) -> int:
-    match type:
-        case Struct(fields=fields):
-            return _rounds_of_fields(fields)
-        case Array(element=element, extent=extent):
-            return max(len(count_choices(extent, ChainMap()).boundaries), _rounds(field, element))
-        case Switch(cases=cases):
-            return _branches(type) * max(_rounds(field, case.type) for case in cases)
+def _rounds(step: AnyStep, level: int, need: Need | None = None) -> int:
+    match step:
+        case RecordStep():
+            return _rounds_of(step.steps, level + 1)
+        case RepeatStep():
+            counts = count_choices(lengths_of(step.count, 0)).boundaries
+            return max(len(counts), _rounds(step.element, level))
+        case ChooseStep():
+            return _branches(step) * max(_rounds(case.step, level) for case in step.cases)
+        case ConstantStep():
+            return 1
         case _:
-            return len(scalar_choices(field, type, ChainMap(), need).boundaries)
+            lengths = lengths_of(step.count, 0) if isinstance(step, BytesStep) else (0, 0)
+            return len(scalar_choices(step, lengths, need).boundaries)
 
 
-def _branches(type: Switch) -> int:
-    return len(type.cases) + (type.rest is not None)
+def _branches(step: ChooseStep) -> int:
+    return len(step.cases) + (step.rest is not None)
 
 
 # --- composites ---------------------------------------------------------------------------------
 
 
-def _fields(fields: Sequence[Field], scope: Scope, chooser: Chooser) -> Values:
-    inner = scope.new_child()
-    needs = needs_of(fields)
-    for field in fields:
-        inner[field.name] = _value(field, field.type, inner, chooser, needs.get(field.name))
-    return dict(inner.maps[0])
+class _Sampler:
+    """Chooses values step by step; those in front count and select what follows."""
 
+    def __init__(self) -> None:
+        self._records: list[Values] = []
 
-def _value(
-    field: Field, type: Type, scope: Scope, chooser: Chooser, need: Need | None = None
-) -> Any:
-    match type:
-        case Struct(fields=fields):
-            return _fields(fields, scope, chooser)
-        case Array():
-            return _elements(field, type, scope, chooser)
-        case Switch():
-            return _case(field, type, scope, chooser)
-        case _:
-            return chooser.choose(scalar_choices(field, type, scope, need))
+    def record(self, steps: Sequence[AnyStep], chooser: Chooser) -> Values:
+        """The values of a record."""
+        level = len(self._records)
+        needs = needs_of(steps, level)
+        values: Values = {}
+        self._records.append(values)
+        for step in steps:
+            values[step.name] = self._value(step, chooser, needs.get((level, step.name)))
+        self._records.pop()
+        return values
 
+    def _value(self, step: AnyStep, chooser: Chooser, need: Need | None = None) -> Any:
+        match step:
+            case RecordStep():
+                return self.record(step.steps, chooser)
+            case RepeatStep():
+                length = chooser.choose(count_choices(self._lengths(step.count)))
+                places = range(length)
+                return [self._value(step.element, chooser.element(index)) for index in places]
+            case ChooseStep():
+                return self._case(step, chooser)
+            case ConstantStep():
+                return chooser.choose(constant_choices(step))
+            case _:
+                lengths = self._lengths(step.count) if isinstance(step, BytesStep) else (0, 0)
+                return chooser.choose(scalar_choices(step, lengths, need))
 
-def _elements(field: Field, type: Array, scope: Scope, chooser: Chooser) -> list[Any]:
-    if isinstance(field.const, tuple):
-        return list(field.const)
-    length = chooser.choose(count_choices(type.extent, scope))
-    return [_value(field, type.element, scope, chooser.element(index)) for index in range(length)]
+    def _number(self, number: int | Reference) -> int:
+        if isinstance(number, int):
+            return number
+        return int(self._records[number.level][number.name])
 
+    def _lengths(self, count: Count) -> tuple[int, int]:
+        return lengths_of(count, 0 if count.by is None else self._number(count.by))
 
-def _case(field: Field, type: Switch, scope: Scope, chooser: Chooser) -> Any:
-    inside = chooser.inside(_branches(type))
-    for case in type.cases:
-        if case.value == scope[type.selector]:
-            empty = isinstance(case.type, Struct) and not case.type.fields
-            return None if empty else _value(field, case.type, scope, inside)
-    return inside.choose(bytes_choices(0, type.rest or 0, SEVEN_BITS))
+    def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
+        inside = chooser.inside(_branches(step))
+        chosen = step.case(self._number(step.selector))
+        if isinstance(chosen, RecordStep) and not chosen.steps:
+            return None
+        if chosen is None or isinstance(chosen, RestStep):
+            greatest = 0 if chosen is None else chosen.greatest
+            return inside.choose(bytes_choices(0, greatest, SEVEN_BITS))
+        return self._value(chosen, inside)

@@ -118,9 +118,23 @@ class Step:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NumberStep(Step):
-    """An integer or a float at this place."""
+    """An integer or a float."""
 
     type: Integer | Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloatStep(NumberStep):
+    """A float."""
+
+    type: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntegerStep(NumberStep):
+    """An integer."""
+
+    type: Integer
     is_needed: bool = False
     """True if it counts or selects something that follows."""
 
@@ -143,7 +157,7 @@ class ConstantStep(Step):
     """Bytes that are always the same."""
 
     data: bytes
-    value: NumberStep | BytesStep | RepeatStep
+    value: IntegerStep | FloatStep | BytesStep | RepeatStep
     """The step that the field would be without the constant."""
 
 
@@ -197,7 +211,7 @@ class ChooseStep(Step):
         return next((case.step for case in self.cases if case.value == value), self.rest)
 
 
-AnyStep = NumberStep | BytesStep | ConstantStep | RecordStep | RepeatStep | ChooseStep
+AnyStep = IntegerStep | FloatStep | BytesStep | ConstantStep | RecordStep | RepeatStep | ChooseStep
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -259,7 +273,7 @@ class _Builder:
             member = count_name(fields, field) if field.fills else ""
             at_end = is_last and index == len(fields) - 1
             step = self._step(field, field.type, field.name, at_end, member)
-            if isinstance(step, NumberStep) and field.name in needed[index]:
+            if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
             steps.append(_constant(field, step) if field.const is not None else step)
             self._remember(field)
@@ -279,13 +293,23 @@ class _Builder:
         self, field: Field, type_: Type, name: str, is_last: bool, member: str = ""
     ) -> AnyStep:
         match type_:
-            case Integer() | Float():
-                return NumberStep(
+            case Integer():
+                return IntegerStep(
                     name=name,
                     field=field,
                     sizes=type_.sizes,
                     checks=_number_checks(type_),
                     is_refusable=_is_number_refusable(field, type_),
+                    is_last=is_last,
+                    type=type_,
+                )
+            case Float():
+                return FloatStep(
+                    name=name,
+                    field=field,
+                    sizes=type_.sizes,
+                    checks=_number_checks(type_),
+                    is_refusable=field.ranged,
                     is_last=is_last,
                     type=type_,
                 )
@@ -454,10 +478,8 @@ def _count_checks(extent: Extent) -> frozenset[Check]:
     return frozenset({Check.COUNT}) if isinstance(extent, Counted) else _NOTHING
 
 
-def _is_number_refusable(field: Field, type_: Integer | Float) -> bool:
+def _is_number_refusable(field: Field, type_: Integer) -> bool:
     """True if the machine number that holds the value can have one that is not allowed."""
-    if isinstance(type_, Float):
-        return field.ranged
     if type_.is_closed:
         return True
     if type_.role == "bool" and not field.ranged:
@@ -468,8 +490,7 @@ def _is_number_refusable(field: Field, type_: Integer | Float) -> bool:
     return least > machine_least or greatest < machine_greatest
 
 
-def _bounds(field: Field, type_: Integer | Float) -> tuple[int, int]:
-    assert isinstance(type_, Integer)
+def _bounds(field: Field, type_: Integer) -> tuple[int, int]:
     if not field.ranged:
         return type_.least, type_.greatest
     least = type_.least if field.least is None else ceil(field.least)

@@ -17,12 +17,13 @@ from protogen.model.payload_plan import (
     ChooseStep,
     ConstantStep,
     Count,
+    FloatStep,
+    IntegerStep,
     NumberStep,
     Reference,
     RepeatStep,
     RestStep,
 )
-from protogen.model.types import Float, Integer
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
@@ -61,13 +62,12 @@ class Checker(SecuredWalk):
         self._records.append(base)
         for step in steps:
             self.step(step, base + step.name)
-            if isinstance(step, NumberStep) and step.is_needed:
+            if isinstance(step, IntegerStep) and step.is_needed:
                 self._numbers[level, step.name] = self._remembered(step)
         self._records.pop()
 
-    def _remembered(self, step: NumberStep) -> str:
+    def _remembered(self, step: IntegerStep) -> str:
         """A local variable that has the value of a number in front of the place."""
-        assert isinstance(step.type, Integer)
         name = free_name(step.name, self._locals)
         self._locals.add(name)
         self._offset -= step.type.size
@@ -106,11 +106,12 @@ class Checker(SecuredWalk):
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
         self._begin(_carried(step))
-        if step.can_be_wrong or step.is_needed:
+        is_needed = isinstance(step, IntegerStep) and step.is_needed
+        if step.can_be_wrong or is_needed:
             self._require(step.type.size)
         if step.can_be_wrong:
             self._number(step)
-        elif step.is_needed:
+        elif is_needed:
             self._flush()
         self._offset += step.type.size
 
@@ -128,9 +129,8 @@ class Checker(SecuredWalk):
             top = type_.size - 1 if type_.byte_order == "little" else 0
             greatest = (1 << (type_.byte_bits - unused)) - 1
             self._refuse(f"{self._byte(top)} > {hexadecimal(greatest)}", "VALUE")
-        if isinstance(type_, Integer) and type_.enum is not None and type_.enum.closed:
-            values = tuple(item.value for item in type_.enum.values)
-            known = self.helpers.known(type_.enum.name, type_, values)
+        if isinstance(step, IntegerStep) and Check.CLOSED in step.checks:
+            known = self.helpers.known(step.type)
             number = loaded(self.helpers, type_, self._byte(), self._address())
             self._refuse(f"!{known}({number})", "VALUE")
 
@@ -156,8 +156,8 @@ class Checker(SecuredWalk):
                 if _carried(value) == 7:
                     self._seven_bit(len(data))
                 self._offset += len(data)
-                if step.field.const == 0 and isinstance(value.type, Float):
-                    self._zero(value.type)
+                if step.field.const == 0 and isinstance(value, FloatStep):
+                    self._zero(value)
                 else:
                     self._same(data)
 
@@ -193,9 +193,10 @@ class Checker(SecuredWalk):
         for index, byte in enumerate(data):
             self._refuse(f"{self._byte(index - len(data))} != {hexadecimal(byte)}", "VALUE")
 
-    def _zero(self, type_: Float) -> None:
+    def _zero(self, step: FloatStep) -> None:
         """Refuse other numbers than 0 in front of the place; its sign does not matter."""
         self._flush()
+        type_ = step.type
         sign = (type_.bits - 1) // type_.byte_bits
         place = sign if type_.byte_order == "little" else type_.size - 1 - sign
         mask = ((1 << type_.byte_bits) - 1) & ~(1 << (type_.bits - 1) % type_.byte_bits)

@@ -312,9 +312,11 @@ class Helpers:
         self._define(head, ("size_t *need", "size_t due"), body)
         return name
 
-    def known(self, enum: str, type_: Integer, values: tuple[int, ...]) -> str:
+    def known(self, type_: Integer) -> str:
         """The function that says whether a closed enum has a value."""
-        key = f"is_{enum}"
+        assert type_.enum is not None
+        values = [item.value for item in type_.enum.values]
+        key = f"is_{type_.enum.name}"
         name = self._name(key)
         if name is None:
             return self._known[key]

@@ -6,6 +6,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     ConstantStep,
     Count,
+    IntegerStep,
     NumberStep,
     PayloadPlan,
     RepeatStep,
@@ -91,11 +92,7 @@ class Load(PlacedWalk):
             self._copy(place, count)
         elif size is not None and not element.holds_values:
             self._place.skip(times(count, size))
-        elif (
-            isinstance(element, NumberStep)
-            and isinstance(element.type, Integer)
-            and self.helpers.loads_runs(element.type)
-        ):
+        elif isinstance(element, IntegerStep) and self.helpers.loads_runs(element.type):
             run = self.helpers.load_run(element.type)
             self.lines.add(f"{run}({place}, {self._place.address()}, {amount(count)});")
             self._place.skip(times(count, element.type.size))

@@ -6,6 +6,7 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ConstantStep,
+    IntegerStep,
     NumberStep,
     RepeatStep,
     RestStep,
@@ -34,7 +35,7 @@ def raw_of(type_: Integer, expression: str) -> str:
 
 def is_bytes(element: AnyStep) -> bool:
     """True if elements lie in memory as they lie on the wire."""
-    if not isinstance(element, NumberStep) or not isinstance(element.type, Integer):
+    if not isinstance(element, IntegerStep):
         return False
     return is_plain(element.type) and element.type.role != "bool"
 

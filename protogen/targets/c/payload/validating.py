@@ -5,8 +5,11 @@ from __future__ import annotations
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
+    Check,
     ConstantStep,
     Count,
+    FloatStep,
+    IntegerStep,
     NumberStep,
     PayloadPlan,
     Reference,
@@ -14,7 +17,7 @@ from protogen.model.payload_plan import (
     RestStep,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Float, Integer, Text, counting_bits
+from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk, amount
@@ -26,8 +29,9 @@ def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:
     return not sizes.holds(plan.sizes) or plan.is_refusable
 
 
-def _outside(step: NumberStep, type_: Integer, expression: str) -> str:
+def _outside(step: IntegerStep, expression: str) -> str:
     """A condition that holds where a number can't be sent; empty where all can."""
+    type_ = step.type
     if type_.role == "bool" and not step.field.ranged:
         return ""
     least, greatest = step.bounds
@@ -46,11 +50,12 @@ def _outside(step: NumberStep, type_: Integer, expression: str) -> str:
     return " && ".join([f"({both})" if len(tests) > 1 else both, *others])
 
 
-def _is_bounded_by_bits(step: NumberStep, type_: Integer) -> bool:
+def _is_bounded_by_bits(step: IntegerStep) -> bool:
     """True if numbers can't be sent just where some of their upper bits are set."""
+    type_ = step.type
     least, greatest = step.bounds
     is_plain = not type_.signed and type_.role != "bool" and not type_.is_closed
-    fits = least == 0 and greatest & (greatest + 1) == 0 and bool(_outside(step, type_, "x"))
+    fits = least == 0 and greatest & (greatest + 1) == 0 and bool(_outside(step, "x"))
     return is_plain and fits and not any(item.value > greatest for item in step.field.special)
 
 
@@ -72,20 +77,17 @@ class Validate(Walk):
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
-        type_ = step.type
-        if isinstance(type_, Float):
-            self._float(step, type_, place)
-            return
-        outside = _outside(step, type_, place)
-        if outside:
-            self._refuse(outside)
-        if type_.enum is not None and type_.enum.closed:
-            values = tuple(item.value for item in type_.enum.values)
-            known = self.helpers.known(type_.enum.name, type_, values)
-            self._refuse(f"!{known}({place})")
+        if isinstance(step, FloatStep):
+            self._float(step, place)
+        elif isinstance(step, IntegerStep):
+            outside = _outside(step, place)
+            if outside:
+                self._refuse(outside)
+            if Check.CLOSED in step.checks:
+                self._refuse(f"!{self.helpers.known(step.type)}({place})")
 
-    def _float(self, step: NumberStep, type_: Float, place: str) -> None:
-        bounds = self.helpers.float_bounds(type_, step.field.least, step.field.greatest)
+    def _float(self, step: FloatStep, place: str) -> None:
+        bounds = self.helpers.float_bounds(step.type, step.field.least, step.field.greatest)
         tests = bounds(place)
         if tests:
             self._refuse(f"!({' && '.join(tests)})")
@@ -129,13 +131,9 @@ class Validate(Walk):
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
         element = step.element
-        if (
-            isinstance(element, NumberStep)
-            and isinstance(element.type, Integer)
-            and _is_bounded_by_bits(element, element.type)
-        ):
+        if isinstance(element, IntegerStep) and _is_bounded_by_bits(element):
             found = f"{self.helpers.all_bits(element.type)}({place}, {amount(count)})"
-            self._refuse(_outside(element, element.type, found))
+            self._refuse(_outside(element, found))
         elif element.is_refusable:
             with self.loop(count) as index:
                 self.step(element, f"{place}[{index}]")

@@ -1,0 +1,142 @@
+"""Makes a driver of a protocol: the generated C, and the program that calls it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from protogen.fuzzing.c_driver import (
+    DrivenDecoder,
+    DrivenFrame,
+    DrivenHandler,
+    DrivenMessage,
+    DrivenPart,
+    Driver,
+)
+from protogen.model.protocol import Protocol
+from protogen.targets.c.decoder import DecoderView
+from protogen.targets.c.emit import Unit, emit, unit_of
+from protogen.targets.c.frames import MessageFrame
+from protogen.targets.c.fuzz_driver.exchange import exchange_function
+from protogen.targets.c.handlers import Dispatch
+from protogen.targets.c.options import COptions
+from protogen.targets.printing import environment
+
+
+def driver_of(whole: Protocol, options: COptions = COptions()) -> Driver:  # noqa: B008
+    """The driver of what the options choose of a protocol."""
+    unit = unit_of(whole, options)
+    protocol, name = unit.protocol, unit.protocol.name
+    indices = {item.name: index for index, item in enumerate(unit.module.messages)}
+    messages = _messages(unit)
+    frames = _frames(unit, indices)
+    decoders = tuple(
+        _decoder(index, decoder, dispatch, indices)
+        for index, (decoder, dispatch) in enumerate(
+            zip(unit.framing.decoders, unit.framing.dispatches, strict=True)
+        )
+    )
+    files = {
+        file.path.name: file.bytes
+        for file in emit([whole], options)
+        if file.path.name in (f"{name}.c", f"{name}.h")
+    }
+    if options.style == "single":
+        text = f'#define {name.upper()}_IMPLEMENTATION\n#include "{name}.h"\n'
+        files[f"{name}.c"] = text.encode()
+    files["driver.c"] = _text(protocol, messages, frames, decoders).encode()
+    return Driver(
+        protocol,
+        messages,
+        decoders,
+        frames,
+        _frame_of(unit, frames),
+        files,
+        (f"{name}.c", "driver.c"),
+    )
+
+
+def _text(
+    protocol: Protocol,
+    messages: tuple[DrivenMessage, ...],
+    frames: tuple[DrivenFrame, ...],
+    decoders: tuple[DrivenDecoder, ...],
+) -> str:
+    """The driver's source."""
+    largest = [
+        32,
+        *(item.model.sizes.greatest + 16 for item in messages),
+        *(item.room + 8 for item in frames),
+    ]
+    template = environment("protogen.targets.c.fuzz_driver").get_template("driver.c.j2")
+    return template.render(
+        name=protocol.name,
+        upper=protocol.name.upper(),
+        messages=messages,
+        frames=frames,
+        decoders=decoders,
+        sends=any(frame.send for frame in frames),
+        largest=max(largest),
+    )
+
+
+def _messages(unit: Unit) -> tuple[DrivenMessage, ...]:
+    return tuple(
+        DrivenMessage(
+            model := unit.protocol.message(item.name),
+            item.struct,
+            exchange_function(f"exchange_{index}", item.struct, model.plan),
+            item.encode,
+            item.decode,
+        )
+        for index, item in enumerate(unit.module.messages)
+    )
+
+
+def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
+    return tuple(
+        DrivenFrame(
+            index,
+            indices[item.name],
+            item.function,
+            item.send if item.sends else "",
+            _frame_parts(item),
+            item.room,
+        )
+        for index, item in enumerate(unit.framing.messages)
+    )
+
+
+def _frame_parts(item: MessageFrame) -> tuple[DrivenPart, ...]:
+    """The parts by their names in the schema; those of arguments may differ."""
+    frame = item.frame
+    return tuple(
+        DrivenPart(part.name, argument.type)
+        for part, argument in zip(frame.geometry.frame.caller_parts, frame.arguments, strict=True)
+    )
+
+
+def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, str], DrivenFrame]:
+    return {
+        (sender.name, item.name): frame
+        for frame, item in zip(frames, unit.framing.messages, strict=True)
+        for sender in unit.protocol.senders
+        if any(message.name == item.name for message in sender.messages)
+        and sender.frame == item.frame.decoder.geometry.frame
+    }
+
+
+def _decoder(
+    index: int, decoder: DecoderView, dispatch: Dispatch, indices: Mapping[str, int]
+) -> DrivenDecoder:
+    return DrivenDecoder(
+        index,
+        decoder.name,
+        decoder.prefix,
+        decoder.all_events,
+        decoder.flat,
+        tuple(DrivenPart(part.name, part.type) for part in decoder.parts),
+        tuple(
+            DrivenHandler(item.function, item.message.struct, indices[item.message.name])
+            for item in dispatch.handlers
+        ),
+    )

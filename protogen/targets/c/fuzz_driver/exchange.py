@@ -1,0 +1,63 @@
+"""Functions of C that take a struct's values from a driver's input, or write them to its output.
+
+The bytes are those of `protogen.fuzzing.c_values`. One function does both, so that they can't
+differ.
+"""
+
+from __future__ import annotations
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ConstantStep,
+    NumberStep,
+    PayloadPlan,
+    RepeatStep,
+    RestStep,
+)
+from protogen.targets.c.lines import Lines, function
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.walk import Walk
+from protogen.targets.c.spelling import Names
+
+
+def exchange_function(name: str, struct: str, plan: PayloadPlan) -> str:
+    """The function for a message's struct."""
+    lines = Lines()
+    lines.add("(void)message;")
+    _Exchange(Helpers(Names("")), lines).message(plan)
+    return function(f"static void {name}", (f"{struct} *message",), lines)
+
+
+class _Exchange(Walk):
+    def step(self, step: AnyStep, place: str) -> None:
+        """A step of any kind; in front of what fills the payload goes the number of it."""
+        if isinstance(step, BytesStep | RepeatStep) and step.count.fills:
+            self._scalar(self.filled(step.count))
+        if step.holds_values:
+            super().step(step, place)
+
+    def _scalar(self, place: str) -> None:
+        self.lines.add(f"scalar(&{place}, (uint8_t)sizeof {place});")
+
+    def constant(self, step: ConstantStep) -> None:
+        """Nothing, as no member holds it."""
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number."""
+        self._scalar(place)
+
+    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+        """A text, or bytes."""
+        self.lines.add(f"octets({place}, (size_t){count});")
+
+    def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Elements."""
+        if step.element.holds_values:
+            with self.loop(count) as index:
+                self.step(step.element, f"{place}[{index}]")
+
+    def rest(self, step: RestStep, place: str) -> None:
+        """The bytes of a value without a case."""
+        self._scalar(f"{place}.size")
+        self.lines.add(f"octets({place}.bytes, (size_t){place}.size);")
