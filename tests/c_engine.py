@@ -19,7 +19,7 @@ import c_reference
 import pytest
 from c_library import FLAGS
 from compiled import protocol_of
-from tooling import require_tool
+from tooling import require_compiler
 
 from protogen.fuzzing.c_calls import Call, Calls, CEvent, Step
 from protogen.fuzzing.c_driver import Driver
@@ -89,7 +89,7 @@ class Process:
         self.calls = Calls(self.driver)
         self._folder = TemporaryDirectory(prefix="protogen-c-")
         folder = Path(self._folder.name)
-        compiler = require_tool("cc")
+        compiler = require_compiler("cc", *flags)
         command = [compiler, *FLAGS, *flags, *shortcuts(compiler)]
         self._errors = (folder / "errors").open("w+")
         self._process = subprocess.Popen(

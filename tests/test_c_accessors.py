@@ -9,7 +9,7 @@ from c_library import write_sources
 from c_structs import count_name
 from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
-from tooling import require_tool
+from tooling import require_compiler, require_tool
 
 from protogen.model.types import Array, Field, Fill, Fixed, Struct
 from protogen.targets.c.module import view
@@ -69,7 +69,7 @@ def test_every_element_is_what_the_decoder_reads(way: str, path: Path, tmp_path:
     write_sources(made, tmp_path, payloads_only=True)
     (tmp_path / "main.c").write_text(program(path))
     sources = ["main.c", f"{made.name}.c"]
-    run([require_tool(compiler), *FLAGS, *flags, *sources, "-o", "main"], tmp_path)
+    run([require_compiler(compiler, *flags), *FLAGS, *flags, *sources, "-o", "main"], tmp_path)
     run([*map(require_tool, runner), tmp_path / "main"], tmp_path)
 
 

@@ -25,7 +25,7 @@ from corpus import material_of, stream_of
 from test_c_codecs import Case, damages
 from test_c_decoder import steps_of
 from test_c_frames import frame_of
-from tooling import require_tool
+from tooling import PROGRAM, require_compiler, require_tool
 
 from protogen.fuzzing.c_calls import OK, RANGE, VALUE, Calls, Encoded, Sent
 from protogen.fuzzing.c_values import Answers
@@ -90,7 +90,8 @@ def simulator() -> Path:
     require_tool("simavr")
     folder = Path(_folders().mktemp("simulator"))
     source = MACHINES / "simulator.c"
-    output_of([require_tool("cc"), "-O2", "-o", str(folder / "run"), str(source), "-lsimavr"])
+    compiler = require_compiler("cc", "-lsimavr", source=f"#include <simavr/sim_avr.h>\n{PROGRAM}")
+    output_of([compiler, "-O2", "-o", str(folder / "run"), str(source), "-lsimavr"])
     return folder / "run"
 
 

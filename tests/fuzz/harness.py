@@ -24,7 +24,7 @@ if __name__ == "__main__":
 from c_proof.generated import generate
 from compiled import protocol_of
 from corpus import material_of, stream_of
-from tooling import require_tool
+from tooling import require_compiler, require_tool
 
 from protogen.model.protocol import Protocol
 from protogen.targets.c.options import EVENTS, COptions, Events
@@ -110,9 +110,22 @@ def build(
     return build_from(made.header, protocol, seeds, *flags)
 
 
+_ANY = (
+    "#include <stddef.h>\n#include <stdint.h>\n"
+    "int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);\n"
+    "int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)\n"
+    "{ (void)data; (void)size; return 0; }\n"
+)
+
+
+def require_fuzzer() -> str:
+    """Path of a clang that has libFuzzer and its sanitizers; without it, skip the test or fail."""
+    return require_compiler("clang", SANITIZERS, source=_ANY, arguments=("-runs=0",))
+
+
 def build_from(header: Path, protocol: Protocol, seeds: Path, *flags: str) -> Fuzzer:
     """Compile the fuzzer of the generated C beside a header."""
-    clang = require_tool("clang")
+    clang = require_fuzzer()
     folder = header.parent
     program, source = folder / "fuzzer", folder / "fuzzer.c"
     text = harness_of(protocol.name, header.read_text(encoding="utf-8"))
@@ -182,7 +195,7 @@ def coverage(protocol: Protocol, fuzzer: Fuzzer) -> tuple[str, str]:
     program, raw, merged = folder / "covered", folder / "raw", folder / "merged"
     flags = ["-std=c99", "-O0", "-g", "-fsanitize=fuzzer", "-fprofile-instr-generate"]
     sources = [str(folder / "fuzzer.c"), str(folder / f"{protocol.name}.c")]
-    clang = [require_tool("clang"), *flags, "-fcoverage-mapping", f"-I{folder}"]
+    clang = [require_fuzzer(), *flags, "-fcoverage-mapping", f"-I{folder}"]
     subprocess.run([*clang, "-o", str(program), *sources], check=True)
     subprocess.run(
         [str(program), "-runs=0", str(fuzzer.corpus)],
