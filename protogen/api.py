@@ -60,6 +60,6 @@ def generate(
 
 def module_of(protocol: Protocol) -> ModuleType:
     """The Python codec of a protocol, imported from memory."""
-    from protogen.targets.python import live
+    from protogen import live
 
     return live.module_of(protocol)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
+from protogen.live import module_of
 from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
@@ -19,7 +20,6 @@ from protogen.runtime.assembly import join_parts
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
 from protogen.schema.syntax.octets import to_octets
-from protogen.targets.python.live import module_of
 
 
 def verify_examples(protocol: Protocol, problems: Problems) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 from types import ModuleType
 
 from protogen.compiler import compile_file
+from protogen.live import module_of
 from protogen.model.protocol import Protocol
-from protogen.targets.python.live import module_of
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = sorted((ROOT / "schemas").glob("*.yaml"))

@@ -23,8 +23,8 @@ from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Gate, findings
 from protogen.evolution.observe import Reading
 from protogen.evolution.rules import BY_NAME, RULES
 from protogen.evolution.witness import Harm, Witness
+from protogen.live import module_of
 from protogen.model.protocol import Protocol
-from protogen.targets.python.live import module_of
 
 FOLDER = Path(__file__).parent / "breaking"
 NAMES = sorted(path.name for path in FOLDER.iterdir())

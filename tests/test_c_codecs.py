@@ -28,6 +28,7 @@ from tooling import require_tool
 
 from protogen.compiler import compile_file
 from protogen.fuzzing.samples import boundary_rounds, samples
+from protogen.live import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
@@ -37,7 +38,6 @@ from protogen.targets.c import options
 from protogen.targets.c.emit import emit
 from protogen.targets.c.options import COptions
 from protogen.targets.c.spelling import Names
-from protogen.targets.python.live import module_of
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 

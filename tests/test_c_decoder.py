@@ -27,10 +27,10 @@ from test_vectors import FILES, agrees, brief, message_of
 from vectors import ExpectedEvent, Stream, Vector, VectorFile
 
 from protogen.fuzzing.c_calls import OK, CEvent, Step
+from protogen.live import module_of
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
 from protogen.targets.c.options import COptions
-from protogen.targets.python.live import module_of
 
 ALL = COptions()
 MESSAGES = COptions(events="messages")

@@ -23,12 +23,12 @@ from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.fuzzing.trips import same
+from protogen.live import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.frame import LiteralPart
 from protogen.targets.c.options import COptions
-from protogen.targets.python.live import module_of
 
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
 RUNS = 200 if THOROUGH else 12

@@ -13,8 +13,8 @@ from corpus import material_of
 
 from protogen.evolution.findings import findings
 from protogen.evolution.lock import LockError, lock_text, read_lock
+from protogen.live import module_of
 from protogen.model.protocol import Protocol
-from protogen.targets.python.live import module_of
 
 
 def locked(protocol: Protocol, folder: Path) -> Protocol:

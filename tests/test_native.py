@@ -41,12 +41,12 @@ from protogen.capture import (
 from protogen.capture.gather import Gathering, gathered
 from protogen.capture.native import NativeEngine, library_of
 from protogen.compiler import compile_file
+from protogen.live.rows import driver_of
 from protogen.model.protocol import Sender
 from protogen.native import build as building
 from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
 from protogen.native.library import Decoder, Library
-from protogen.native.source import driver_of
 from protogen.runtime.assembly import encode_frame
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
@@ -386,7 +386,7 @@ def test_a_compiler_that_does_not_work_is_named(
 ) -> None:
     monkeypatch.setenv("CC", given)
     with pytest.raises(NativeError, match=problem):
-        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+        build(RN1, "brain")
 
 
 def test_what_does_not_compile_is_named(tmp_path: Path) -> None:
@@ -404,7 +404,7 @@ def test_a_compiler_that_does_not_run_is_named(
     broken.chmod(0o755)
     monkeypatch.setenv("CC", str(broken))
     with pytest.raises(NativeError, match="broken-cc does not run"):
-        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+        build(RN1, "brain")
 
 
 def test_a_compiler_that_speaks_another_encoding_is_understood_in_part(
@@ -415,7 +415,7 @@ def test_a_compiler_that_speaks_another_encoding_is_understood_in_part(
     foreign.chmod(0o755)
     monkeypatch.setenv("CC", str(foreign))
     with pytest.raises(NativeError, match=r"foreign-cc does not compile the decoder: g.*kaputt"):
-        building.build(protocol_of(RN1), protocol_of(RN1).sender("brain"))
+        build(RN1, "brain")
 
 
 def test_the_usual_names_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -565,7 +565,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def build(path: Path = RN1, sender: str = "host") -> building.Built:
-    return building.build(protocol_of(path), protocol_of(path).sender(sender))
+    return building.build(driver_of(protocol_of(path), protocol_of(path).sender(sender)))
 
 
 def test_a_library_is_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,11 +12,11 @@ import pytest
 from passes_support import HEAD, SCHEMAS, protocol_of, repository_protocol
 
 from protogen.fuzzing.samples import samples
+from protogen.live import module_of
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import MessageEvent
-from protogen.targets.python.live import module_of
 
 NAMES = sorted(
     path.relative_to(SCHEMAS).with_suffix("").as_posix() for path in SCHEMAS.glob("**/*.yaml")

@@ -22,13 +22,13 @@ from schema_fuzzing.text import to_styled_yaml, to_yaml
 from schema_fuzzing.values import all_parts, parts_of, values_of
 
 from protogen.compiler import Compilation, compile_file
+from protogen.live import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.problems import Problems, Span, render_text, to_github, to_json
 from protogen.runtime.api import DecodeError
 from protogen.schema.document import parse_document
 from protogen.schema.nodes import to_data
-from protogen.targets.python.live import module_of
 
 Compile = Callable[[str], Compilation]
 

@@ -11,6 +11,7 @@ from protogen.capture.arrays import dtype_of, numpy
 from protogen.capture.memory import Lender, Memory
 from protogen.capture.schema import CaptureSchema
 from protogen.capture.tables import Tables
+from protogen.live.rows import driver_of
 from protogen.model.protocol import Protocol, Sender
 from protogen.native.build import build
 from protogen.native.library import Decoder, Library
@@ -28,9 +29,10 @@ _LIBRARIES: dict[Path, Library] = {}
 
 def library_of(protocol: Protocol, sender: Sender) -> Library:
     """The library for what `sender` sends. Raises NativeError."""
-    built = build(protocol, sender)
+    driver = driver_of(protocol, sender)
+    built = build(driver)
     if built.path not in _LIBRARIES:
-        _LIBRARIES[built.path] = Library(built.path, built.driver)
+        _LIBRARIES[built.path] = Library(built.path, driver)
     return _LIBRARIES[built.path]
 
 

@@ -56,7 +56,7 @@ class Codec:
 
 def open_codec(schema: Path) -> Codec:
     """Compile a schema and import its codec. With an error in it, ends the command."""
-    from protogen.targets.python.live import module_of
+    from protogen.live import module_of
 
     protocol = open_protocol(schema)
     return Codec(protocol, module_of(protocol))

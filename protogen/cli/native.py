@@ -21,10 +21,12 @@ def build(
 ) -> int:
     """Compile what reads captures of these schemas fast, ahead of its first use.
 
-    Uses the compiler that CC names, else cc. Libraries are kept in a cache that only you can write
-    to; what is there already is not compiled again.
+    Uses the compiler that CC names, else one on the PATH, else that of the package ziglang.
+    Libraries are kept in a cache that only you can write to; what is there already is not compiled
+    again.
     """
     from protogen.cli.schemas import open_protocol, schema_files
+    from protogen.live.rows import driver_of
     from protogen.native.build import build as build_library
     from protogen.native.build import build_printer
     from protogen.native.errors import NativeError
@@ -33,7 +35,7 @@ def build(
     try:
         for protocol in protocols:
             for sender in protocol.senders:
-                built = build_library(protocol, sender)
+                built = build_library(driver_of(protocol, sender))
                 _say(f"{protocol.name} {sender.name}", is_new=built.is_new)
         _, is_new = build_printer()
     except NativeError as error:

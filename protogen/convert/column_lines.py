@@ -21,7 +21,6 @@ from protogen.convert.plain_rows import json_fields, plain_rows
 from protogen.convert.printed_lines import PrintedLines
 from protogen.model.types import Field, Struct
 from protogen.native.errors import NativeError
-from protogen.native.source import has_one_spelling
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.lines import encode_line
 from protogen.runtime.sender import SenderSpec
@@ -51,7 +50,7 @@ class LineWriter:
         self._printed: PrintedLines | None = None
         self._readings = readings
         self._spec = spec
-        one_spelling = has_one_spelling(readings.tables.sender)
+        one_spelling = readings.tables.sender.plan.has_one_spelling
         self._templates = {
             name: _template(reading, readings) if one_spelling else None
             for name, reading in readings.messages.items()

@@ -21,7 +21,6 @@ from protogen.convert.line_programs import (
 from protogen.convert.programs import Programs
 from protogen.native.library import Library
 from protogen.native.printer import Printer, Table
-from protogen.native.source import has_one_spelling
 
 if TYPE_CHECKING:
     from protogen.convert.column_lines import Lines, LineWriter
@@ -39,7 +38,7 @@ class PrintedLines:
         self._plain = plain
         sender = readings.tables.sender
         self._library: Library | None = None
-        if not has_one_spelling(sender):
+        if not sender.plan.has_one_spelling:
             self._library = library_of(readings.tables.protocol, sender)
         self._numbers = {name: number for number, name in enumerate(readings.messages)}
         programs = Programs()

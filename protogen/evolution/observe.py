@@ -13,13 +13,13 @@ from protogen.evolution.quantities import quantity
 from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
+from protogen.live import kept_module
 from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.protocol import Protocol
 from protogen.model.readings import physical, value_name
 from protogen.model.types import Field, Integer
 from protogen.model.wire import Unit
 from protogen.runtime.decoder import Decoder
-from protogen.targets.python.live import kept_module
 
 
 @dataclass(frozen=True)

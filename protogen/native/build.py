@@ -10,11 +10,10 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from protogen.model.protocol import Protocol, Sender
 from protogen.native.cache import SUFFIX, cache_folder, check, safe_folder
 from protogen.native.compiler import Compiler, compilers, working
+from protogen.native.driver import Driver
 from protogen.native.errors import NativeError, NoCompilerError
-from protogen.native.source import Driver, driver_of
 from protogen.version import VERSION
 
 
@@ -22,20 +21,18 @@ from protogen.version import VERSION
 class Built:
     """A library, and whether it was compiled just now."""
 
-    driver: Driver
     path: Path
     is_new: bool
 
 
-def build(protocol: Protocol, sender: Sender) -> Built:
-    """The library for what `sender` sends; compiled unless it was before.
+def build(driver: Driver) -> Built:
+    """The library of a driver; compiled unless it was before.
 
     Two processes may do this at once. Raises NativeError where it can't be done.
     """
-    driver = driver_of(protocol, sender)
-    name = f"{protocol.name}_{sender.name}"
-    path, is_new = _compiled(name, driver.text, (protocol.spec_hash, sender.name))
-    return Built(driver, path, is_new)
+    schema = driver.schema
+    name = f"{schema.protocol}_{schema.sender}"
+    return Built(*_compiled(name, driver.text, (schema.spec_hash, schema.sender)))
 
 
 def build_printer() -> tuple[Path, bool]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 from protogen.capture.arrays import numpy
+from protogen.native.driver import Driver
 from protogen.native.errors import NativeError
-from protogen.native.source import Driver
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows

@@ -39,7 +39,7 @@ def emit(protocols: Sequence[Protocol], options: COptions = COptions()) -> tuple
     units = [unit_of(protocol, options) for protocol in protocols]
     files = [file for unit in units for file in _files(unit, options)]
     if options.style == "split" and units:
-        files += package_files([unit.protocol for unit in units], _environment())
+        files += package_files([unit.protocol for unit in units], c_environment())
         files += [_sketch(unit) for unit in units]
     return tuple(files)
 
@@ -56,7 +56,7 @@ def _files(unit: Unit, options: COptions) -> tuple[File, ...]:
     header, source = _print(unit.module, unit.framing, options)
     first = banner(C, [unit.protocol])
     if options.style == "single":
-        text = _environment().get_template("single.h.j2")
+        text = c_environment().get_template("single.h.j2")
         both = text.render(header=header, source=source, upper=name.upper())
         return (File(PurePosixPath(f"{name}.h"), both, first),)
     files = (
@@ -76,7 +76,7 @@ def texts(protocol: Protocol, options: COptions, *, payloads_only: bool = False)
 
 def _print(module: Module, framing: FramingView | None, options: COptions) -> tuple[str, str]:
     given = {"module": module, "options": options, "framing": framing}
-    environment = _environment()
+    environment = c_environment()
     return (
         environment.get_template("header.h.j2").render(given),
         environment.get_template("source.c.j2").render(given),
@@ -85,21 +85,22 @@ def _print(module: Module, framing: FramingView | None, options: COptions) -> tu
 
 def _stubs(unit: Unit) -> str:
     """A source with an empty body for each handler."""
-    template = _environment().get_template("stubs.c.j2")
+    template = c_environment().get_template("stubs.c.j2")
     return template.render(module=unit.module, framing=unit.framing)
 
 
 def _sketch(unit: Unit) -> File:
     """An Arduino sketch that receives what the first endpoint sends."""
     name = unit.protocol.name
-    template = _environment().get_template("package/sketch.ino.j2")
+    template = c_environment().get_template("package/sketch.ino.j2")
     baud = unit.protocol.link.baud or _BAUD
     text = template.render(module=unit.module, framing=unit.framing, baud=baud)
     return File(PurePosixPath("examples", name, f"{name}.ino"), text, banner(C, [unit.protocol]))
 
 
 @cache
-def _environment() -> Environment:
+def c_environment() -> Environment:
+    """The templates of C, with the functions that they call."""
     found = environment("protogen.targets.c")
     found.globals["prototype"] = prototype
     found.globals["members"] = members_of
