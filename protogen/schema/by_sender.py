@@ -10,7 +10,7 @@ from functools import partial
 from protogen.schema.directives import read_directives
 from protogen.schema.edit import edit_at, items_of, keys_of
 from protogen.schema.nodes import MappingNode, Node
-from protogen.schema.part_references import is_by_sender
+from protogen.schema.references import is_by_sender
 from protogen.schema.scalars import Scalar
 
 _SHARED = ("frame", "transparency")
@@ -22,7 +22,7 @@ def spread_shared(base: Node, dialect: Node) -> Node:
     known = keys_of(endpoints) | _renamed(dialect.child("endpoints"))
     for key in _SHARED:
         if _keyed_by_endpoint(dialect.child(key), known) and not is_by_sender(base, key):
-            base = edit_at(base, (key,), partial(_for_each, endpoints))
+            base = edit_at(base, key, partial(_for_each, endpoints))
     return base
 
 

@@ -10,14 +10,7 @@ from dataclasses import dataclass, replace
 
 from protogen.schema.edit import items_of
 from protogen.schema.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
-
-_NAMES_BELOW = frozenset(
-    {
-        "endpoints", "frame", "transparency", "types", "messages", "fields", "cases", "values",
-        "flags", "bits", "special", "examples", "parts", "overloads", "exchanges", "decisions",
-    }
-)  # fmt: skip
-"""Keys whose mappings have names for keys, so that `source` there is somebody's name."""
+from protogen.schema.syntax.protocol import keyed_by_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +45,7 @@ def _below(key: ScalarNode, value: Node, origin: _Origin) -> Node:
 
 def _levels_of_names(key: ScalarNode, value: Node) -> int:
     """How many levels of mappings under a key are keyed by names; a frame per sender has two."""
-    if key.value not in _NAMES_BELOW:
+    if key.value not in keyed_by_names():
         return 0
     inner = [item for _, item in items_of(value)]
     nested = key.value == "frame" and all(_holds_mappings(item) for item in inner)

@@ -1,155 +1,158 @@
-"""Where a schema refers to what it names: changes the references after a rename.
+"""References of a schema: every name that stands for something that is declared elsewhere.
 
-What refers to a name is known per kind of item: to a field the fields beside it and the examples,
-to a part what `part_references` lists, to an endpoint or a decision what `side_references` lists,
-to a value or a flag what `value_references` lists, to a message overloads and exchanges, to a type
-every `type`. An item of another kind is renamed alone.
+The syntax classes mark which keys hold names, and of what kind. One walk over them and the tree
+finds all references, each with the mappings that may declare it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
-from protogen.schema.edit import (
-    ANY,
-    Names,
-    Path,
-    edit_at,
-    keys_of,
-    rename_keys,
-    rename_scalar,
-)
-from protogen.schema.nodes import Node, SequenceNode
-from protogen.schema.part_references import follow_parts, is_by_sender
+from protogen.schema.edit import items_of, keys_of
+from protogen.schema.nodes import MappingNode, Node, ScalarNode, SequenceNode
 from protogen.schema.scalars import Scalar
-from protogen.schema.side_references import follow_decisions, follow_endpoints, follow_examples
-from protogen.schema.uses import example_steps
-from protogen.schema.value_references import NAMING, follow_values
+from protogen.schema.scopes import Place, Scopes
+from protogen.schema.syntax.forms import Form
+from protogen.schema.syntax.names import BySender, FieldPath, FieldValues, Kind, Mark, Ref
+from protogen.schema.syntax.protocol import SCHEMA
 
-_PART_TYPES: tuple[Path, ...] = (("frame", ANY, "type"), ("frame", ANY, ANY, "type"))
-_FIELDS: tuple[Path, ...] = (("types",), ("messages", ANY, "fields"))
-_RESERVED_VALUES: Path = ("reserved", "values")
-_MESSAGE_NAMES: tuple[Path, ...] = (
-    ("overloads", ANY, "messages", ANY),
-    ("overloads", ANY, "yields"),
-    ("exchanges", ANY, "steps", ANY),
-    ("exchanges", ANY, "steps", ANY, "message"),
-)
+_NAMINGS = ("values", "flags", "bits")
+"""Keys under which a field names its values or bits."""
 
 
-def follow_renames(root: Node, path: Sequence[Scalar], names: Names) -> Node:
-    """Return ``root`` with the references to items of the mapping at ``path`` renamed."""
-    match tuple(path):
-        case ("types",):
-            return _follow_types(root, names)
-        case ("messages",):
-            return _follow_messages(root, names)
-        case ("frame",) if not is_by_sender(root, "frame"):
-            return follow_parts(root, None, names)
-        case ("frame", str(sender)) if is_by_sender(root, "frame"):
-            return follow_parts(root, sender, names)
-        case ("endpoints",):
-            return follow_endpoints(root, names)
-        case ("decisions",):
-            return follow_decisions(root, names)
-        case ("messages" | "types", _, *_):
-            return _follow_inside(root, tuple(path), names)
-    return root
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Scalar of a tree: a value, or the key of an item."""
+
+    place: Place
+    at_key: bool = False
 
 
-def _follow_inside(root: Node, path: tuple[Scalar, ...], names: Names) -> Node:
-    """Rename what stands inside of a message or a declared type."""
-    match path:
-        case ("messages", message, "examples"):
-            return follow_examples(root, message, names)
-        case (_, _, "fields", *_) if _holds_fields(path):
-            return _follow_fields(root, path, names)
-        case (_, _, *_, kind) if kind in NAMING:
-            return follow_values(root, path, names)
-    return root
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A name in the text of a scalar, and the mappings that may declare it, nearest first."""
+
+    kind: Kind
+    spot: Spot
+    node: ScalarNode
+    start: int
+    """Offset of the name in the text of the scalar."""
+    name: Scalar
+    scopes: tuple[Place, ...]
+
+    def declarations(self, root: Node) -> list[Place]:
+        """Places of what it names: one, or a part for each sender that has one."""
+        found = [scope for scope in self.scopes if self.name in keys_of(root.at(scope))]
+        nearest = found if self.kind is Kind.PART else found[:1]
+        return [(*scope, self.name) for scope in nearest]
 
 
-def _holds_fields(path: Sequence[Scalar]) -> bool:
-    """Whether a mapping of fields is here; a field may be called `fields` as well."""
-    return len(path) % 2 == 1 and path[-1] == "fields"
+def references(root: Node) -> Iterator[Reference]:
+    """Yield all references of a schema, which need not be valid, in the order of its text."""
+    return _Walk(root).inside(root, SCHEMA, ())
 
 
-def _follow_types(root: Node, names: Names) -> Node:
-    for path in _PART_TYPES:
-        root = edit_at(root, path, lambda node: rename_scalar(node, names))
-    for path in _FIELDS:
-        root = edit_at(root, path, lambda fields: _retype(fields, names))
-    return edit_at(root, _RESERVED_VALUES, lambda node: rename_keys(node, names))
+def form_under(root: Node, form: Form, key: Scalar) -> Form:
+    """Form of what stands under a key: stated for each sender, or once for all of them."""
+    inner = form.inside(key)
+    if not any(isinstance(mark, BySender) for mark in inner.marks) or inner.items is None:
+        return inner
+    return inner if is_by_sender(root, key) else inner.items
 
 
-def _retype(fields: Node, names: Names) -> Node:
-    """Rename the types of fields; a bare text in the place of a field is its type."""
-    fields = edit_at(fields, (ANY,), lambda field: rename_scalar(field, names))
-    fields = edit_at(fields, (ANY, "type"), lambda node: rename_scalar(node, names))
-    for inside in ("fields", "cases"):
-        fields = edit_at(fields, (ANY, inside), lambda inner: _retype(inner, names))
-    return fields
+def is_by_sender(root: Node, key: Scalar) -> bool:
+    """True if what stands under ``key`` is keyed by endpoint."""
+    senders = keys_of(root.child(key))
+    return bool(senders) and senders <= keys_of(root.child("endpoints"))
 
 
-def _follow_messages(root: Node, names: Names) -> Node:
-    for path in _MESSAGE_NAMES:
-        root = edit_at(root, path, lambda node: rename_scalar(node, names))
-    root = edit_at(root, ("reserved", "fields"), lambda node: rename_keys(node, names))
-    return edit_at(root, _RESERVED_VALUES, lambda node: _rename_dotted(node, (), names))
+class _Walk:
+    """One walk over a tree, along the syntax classes."""
+
+    def __init__(self, root: Node) -> None:
+        self._root = root
+        self._scopes = Scopes(root, is_by_sender(root, "frame"))
+
+    def inside(self, node: Node, form: Form, place: Place) -> Iterator[Reference]:
+        """Yield the references in a node of this form."""
+        if not form:
+            return
+        for mark in form.marks:
+            yield from self._marked(mark, node, place)
+        match node:
+            case MappingNode():
+                yield from self._mapping(node, form, place)
+            case SequenceNode():
+                for index, item in enumerate(node.items):
+                    yield from self.inside(item, form.items or Form(), (*place, index))
+            case ScalarNode():
+                if form.short is not None:
+                    yield from self.inside(node, form.inside(form.short), place)
+                elif form.items is not None and form.names is None:
+                    yield from self.inside(node, form.items, place)
+
+    def _mapping(self, node: MappingNode, form: Form, place: Place) -> Iterator[Reference]:
+        for key, value in node.items:
+            at = (*place, key.value)
+            for mark in form.names.marks if form.names else ():
+                yield from self._named(mark, key, Spot(at, at_key=True))
+            yield from self.inside(value, form_under(self._root, form, key.value), at)
+
+    def _marked(self, mark: Mark, node: Node, place: Place) -> Iterator[Reference]:
+        if isinstance(mark, FieldValues):
+            fields = (*place[:2], "fields")
+            yield from self._values_of_fields(node, (fields,), place)
+        elif isinstance(node, ScalarNode):
+            yield from self._named(mark, node, Spot(place))
+
+    def _named(self, mark: Mark, node: ScalarNode, spot: Spot) -> Iterator[Reference]:
+        """Yield what a scalar names, by its mark."""
+        match mark:
+            case Ref(Kind.PART):
+                scopes = self._scopes.of_parts(spot.place)
+                start = 0
+                for name in node.text.split("..") if isinstance(node.value, str) else ():
+                    yield Reference(Kind.PART, spot, node, start, name, scopes)
+                    start += len(name) + len("..")
+            case Ref(kind, of):
+                scopes = self._scopes.of(kind, of, spot.place)
+                yield Reference(kind, spot, node, 0, node.value, scopes)
+            case FieldPath():
+                yield from _field_path(node, spot)
+
+    def _values_of_fields(
+        self, node: Node, scopes: tuple[Place, ...], place: Place
+    ) -> Iterator[Reference]:
+        """Yield what the values of a struct name: fields, and the names of their values."""
+        for key, value in items_of(node):
+            at = (*place, key.value)
+            named = Reference(Kind.FIELD, Spot(at, at_key=True), key, 0, key.value, scopes)
+            yield named
+            for field in named.declarations(self._root):
+                yield from self._values_of_field(value, field, at)
+
+    def _values_of_field(self, node: Node, field: Place, place: Place) -> Iterator[Reference]:
+        if isinstance(node, SequenceNode):
+            for index, item in enumerate(node.items):
+                yield from self._values_of_field(item, field, (*place, index))
+            return
+        namings = self._scopes.inside_field(field, *_NAMINGS)
+        if isinstance(node, ScalarNode):
+            yield Reference(Kind.VALUE, Spot(place), node, 0, node.value, namings)
+        elif structs := self._scopes.inside_field(field, "fields"):
+            yield from self._values_of_fields(node, structs, place)
+        else:
+            yield from self._values_of_fields(node, namings, place)
 
 
-def _rename_dotted(node: Node, owner: Sequence[Scalar], names: Names) -> Node:
-    """Rename keys such as `message.field`, in what stands behind `owner`."""
-    place = len(owner)
-    dotted = {}
-    for key in keys_of(node):
-        steps = str(key).split(".")
-        if len(steps) > max(place, 1) and steps[:place] == list(owner) and steps[place] in names:
-            new = names[steps[place]]
-            text = ".".join((*steps[:place], new.text, *steps[place + 1 :]))
-            dotted[key] = replace(new, value=text, text=text)
-    return rename_keys(node, dotted)
-
-
-def _follow_fields(root: Node, path: tuple[Scalar, ...], names: Names) -> Node:
-    root = edit_at(root, path, lambda fields: _rename_beside(fields, names))
-    if path[0] == "messages" and len(path) == 3:
-        owner = path[1:2]
-        root = edit_at(root, _RESERVED_VALUES, lambda node: _rename_dotted(node, owner, names))
-    for message, steps in example_steps(root, path[:-1]):
-        root = _rename_values(root, message, steps, names)
-    return root
-
-
-def _rename_beside(fields: Node, names: Names) -> Node:
-    """Rename what the fields of one mapping, and those inside of them, refer to."""
-    return edit_at(fields, (ANY,), lambda field: _rename_in_field(field, names))
-
-
-def _rename_in_field(field: Node, names: Names) -> Node:
-    for key in ("count", "size", "switch"):
-        field = edit_at(field, (key,), lambda node: rename_scalar(node, names))
-    field = edit_at(field, ("cases", ANY), lambda case: _rename_in_field(case, names))
-    return edit_at(field, ("fields",), lambda inner: _rename_inside(inner, names))
-
-
-def _rename_inside(inner: Node, names: Names) -> Node:
-    """Rename in fields further inside, which hide outer fields of the same name."""
-    return _rename_beside(inner, {old: names[old] for old in names.keys() - keys_of(inner)})
-
-
-def _rename_values(root: Node, message: Scalar, steps: Sequence[Scalar], names: Names) -> Node:
-    for values in (("values",), ("contradicts", "reads")):
-        path = ("messages", message, "examples", ANY, *values)
-        root = edit_at(root, path, lambda node: _rename_value(node, steps, names))
-    return root
-
-
-def _rename_value(node: Node, steps: Sequence[Scalar], names: Names) -> Node:
-    """Rename keys in a struct's values, or in those of each element of an array."""
-    if isinstance(node, SequenceNode):
-        return edit_at(node, (ANY,), lambda item: _rename_value(item, steps, names))
-    if not steps:
-        return rename_keys(node, names)
-    return edit_at(node, steps[:1], lambda inner: _rename_value(inner, steps[1:], names))
+def _field_path(node: ScalarNode, spot: Spot) -> Iterator[Reference]:
+    """Yield the message and the field that a dotted path names; without a dot, the type."""
+    message, dot, rest = str(node.value).partition(".")
+    if not dot:
+        yield Reference(Kind.TYPE, spot, node, 0, node.value, (("types",),))
+        return
+    yield Reference(Kind.MESSAGE, spot, node, 0, message, (("messages",),))
+    fields = ("messages", message, "fields")
+    name = rest.partition(".")[0]
+    yield Reference(Kind.FIELD, spot, node, len(message) + 1, name, (fields,))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-import types
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -15,9 +14,10 @@ from protogen.problems import Problems, Span, hint_for
 from protogen.schema.salvage import Loc, Salvage
 from protogen.schema.syntax.base import Source
 from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, NamedValue
+from protogen.schema.syntax.forms import Form, keys_of
 from protogen.schema.syntax.messages import Step
 from protogen.schema.syntax.parts import Part, TransparencySyntax
-from protogen.schema.syntax.protocol import Endpoint, ProtocolSyntax
+from protogen.schema.syntax.protocol import SCHEMA, Endpoint, ProtocolSyntax
 
 Find = Callable[..., Span]
 Steps = Sequence[str | int]
@@ -104,7 +104,7 @@ def _form(detail: ErrorDetails) -> str | None:
     """All forms that what stands here may have, where it has none of them."""
     loc = detail["loc"]
     if detail["type"] in ("model_type", "model_attributes_type"):
-        models = _models_at(ProtocolSyntax, loc)
+        models = _models_at(SCHEMA, loc)
         return next((_FORMS[model] for model in models if model in _FORMS), None)
     if detail["type"] == "dict_type" and "fields" in loc[-2:]:
         more = ", or `unspecified`" if loc[-1] == "mapping" else ""
@@ -164,39 +164,14 @@ def _plain_words(words: str) -> str:
 
 def keys_at(loc: Steps) -> tuple[str, ...]:
     """The keys that may be written at a place of the schema."""
-    found: list[str] = []
-    for model in _models_at(ProtocolSyntax, loc):
-        found.extend(field.alias or name for name, field in model.model_fields.items())
-    return tuple(dict.fromkeys(found))
+    found = (key for model in _models_at(SCHEMA, loc) for key in keys_of(model))
+    return tuple(dict.fromkeys(map(str, found)))
 
 
-def _models_at(annotation: Any, loc: Steps) -> list[type[BaseModel]]:
-    """The classes that describe what stands at `loc`, seen from a type annotation."""
-    found: list[type[BaseModel]] = []
-    for plain in _alternatives(annotation):
-        if isinstance(plain, type) and issubclass(plain, BaseModel):
-            found.extend(_inside_model(plain, loc) if loc else [plain])
-        elif get_origin(plain) in (dict, tuple, list) and loc:
-            item = get_args(plain)[-1 if get_origin(plain) is dict else 0]
-            # The label of a tagged union stands in the location, but not in the annotation.
-            found.extend(_models_at(item, loc[1:]) or _models_at(item, loc[2:]))
-    return found
-
-
-def _inside_model(model: type[BaseModel], loc: Steps) -> list[type[BaseModel]]:
-    for name, field in model.model_fields.items():
-        if (field.alias or name) == loc[0]:
-            return _models_at(field.annotation, loc[1:]) or _models_at(field.annotation, loc[2:])
-    return []
-
-
-def _alternatives(annotation: Any) -> Iterator[Any]:
-    """The members of a union, without the metadata around them."""
-    origin = get_origin(annotation)
-    if origin is Annotated:
-        yield from _alternatives(get_args(annotation)[0])
-    elif origin in (Union, types.UnionType):
-        for member in get_args(annotation):
-            yield from _alternatives(member)
-    else:
-        yield annotation
+def _models_at(form: Form, loc: Steps) -> list[type[BaseModel]]:
+    """The classes that describe what stands at `loc`, seen from what holds it."""
+    if not loc:
+        return form.models
+    inner = form.inside(loc[0])
+    # The label of a tagged union stands in the location, but not in the annotation.
+    return _models_at(inner, loc[1:]) or (_models_at(inner, loc[2:]) if loc[1:] else [])

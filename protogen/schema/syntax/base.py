@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -139,13 +140,15 @@ def pair_of(what: str) -> Callable[[Any], Any]:
     return read
 
 
-def short_form(key: str) -> Callable[[Any], Any]:
-    """Let a bare scalar stand for a mapping that has only `key`."""
+@dataclass(frozen=True, slots=True)
+class ShortForm:
+    """Lets a bare scalar stand for a mapping that has only `key`."""
 
-    def expand(value: Any) -> Any:
-        return {key: value} if isinstance(value, str | int | float) else value
+    key: str
 
-    return expand
+    def __call__(self, value: Any) -> Any:
+        """Return the mapping, or anything else as it is."""
+        return {self.key: value} if isinstance(value, str | int | float) else value
 
 
 class Source(Syntax):
@@ -160,11 +163,7 @@ class Source(Syntax):
     note: Text | None = Field(None, description="Anything else that a reader should know.")
 
 
-def _lines_only(value: Any) -> Any:
-    return {"lines": value} if isinstance(value, str | int | float) else value
-
-
 SourceRef = Annotated[
-    Source, BeforeValidator(_lines_only, json_schema_input_type=str | int | Source)
+    Source, BeforeValidator(ShortForm("lines"), json_schema_input_type=str | int | Source)
 ]
 """A source; a bare text or number stands for the lines of the schema's document."""

@@ -12,12 +12,13 @@ from protogen.schema.syntax.base import (
     Name,
     Rational,
     RawNumber,
+    ShortForm,
     SourceRef,
     Syntax,
     Text,
     pair_of,
-    short_form,
 )
+from protogen.schema.syntax.names import CaseKey, FieldName, Kind, Ref, TypeName
 from protogen.schema.syntax.octets import OctetsForm, to_octets
 from protogen.schema.syntax.parts import ByteOrder
 
@@ -40,11 +41,11 @@ class NamedBit(Syntax):
 
 NamedValueRef = Annotated[
     NamedValue,
-    BeforeValidator(short_form("value"), json_schema_input_type=int | str | NamedValue),
+    BeforeValidator(ShortForm("value"), json_schema_input_type=int | str | NamedValue),
 ]
 NamedBitRef = Annotated[
     NamedBit,
-    BeforeValidator(short_form("bit"), json_schema_input_type=int | NamedBit),
+    BeforeValidator(ShortForm("bit"), json_schema_input_type=int | NamedBit),
 ]
 
 
@@ -63,7 +64,7 @@ class NamedBits(Syntax):
 
 NamedBitsRef = Annotated[
     NamedBits,
-    BeforeValidator(short_form("bits"), json_schema_input_type=int | str | NamedBits),
+    BeforeValidator(ShortForm("bits"), json_schema_input_type=int | str | NamedBits),
 ]
 
 
@@ -86,7 +87,7 @@ def _extent_form(value: Any) -> str:
 
 Extent = Annotated[
     Annotated[Count, Tag("number")]
-    | Annotated[Name, Tag("name")]
+    | Annotated[FieldName, Tag("name")]
     | Annotated[Fill, BeforeValidator(_to_fill, json_schema_input_type=str | Fill), Tag("fill")],
     Discriminator(_extent_form),
 ]
@@ -117,6 +118,7 @@ Constant = Annotated[
     BeforeValidator(
         _to_constant, json_schema_input_type=bool | int | float | str | OctetsForm | list[int]
     ),
+    Ref(Kind.VALUE),
 ]
 """A value of a field: a number, a text (also an enum's name), or bytes."""
 
@@ -133,7 +135,7 @@ NumberRange = Annotated[
 class FieldSyntax(Syntax):
     """One field of a payload, or a declared type."""
 
-    type: Text | None = Field(
+    type: TypeName | None = Field(
         None,
         description="uint1..uint64, sint1..sint64, byte, char, bool, float32, float64, ascii, "
         "bytes, or a name declared under types.",
@@ -141,10 +143,10 @@ class FieldSyntax(Syntax):
     fields: dict[Name, FieldRef] | None = Field(
         None, description="The field is a struct of these fields."
     )
-    switch: Name | None = Field(
+    switch: FieldName | None = Field(
         None, description="The field is one of several, chosen by this earlier field."
     )
-    cases: dict[Any, FieldRef] | None = Field(
+    cases: dict[CaseKey, FieldRef] | None = Field(
         None,
         description="What the field is for each value (name or number) of the switch field.",
     )
@@ -192,7 +194,7 @@ class FieldSyntax(Syntax):
 
 FieldRef = Annotated[
     FieldSyntax,
-    BeforeValidator(short_form("type"), json_schema_input_type=str | FieldSyntax),
+    BeforeValidator(ShortForm("type"), json_schema_input_type=str | FieldSyntax),
 ]
 """A field; a bare type name stands for a field with nothing to add."""
 

@@ -10,12 +10,22 @@ from protogen.schema.syntax.base import (
     Count,
     Name,
     RawNumber,
+    ShortForm,
     SourceRef,
     Syntax,
     Text,
-    short_form,
 )
 from protogen.schema.syntax.fields import FieldRef
+from protogen.schema.syntax.names import (
+    DecisionName,
+    EndpointName,
+    ExampleName,
+    Kind,
+    MessageName,
+    PartName,
+    Ref,
+    ValuesByField,
+)
 from protogen.schema.syntax.octets import Octets
 from protogen.schema.syntax.parts import ByteOrder, PartRun
 
@@ -35,7 +45,7 @@ class Contradiction(Syntax):
     why: Text = Field(
         description="What the document says elsewhere, and why the schema follows it."
     )
-    reads: dict[Name, Any] | None = Field(
+    reads: ValuesByField | None = Field(
         None, description="With fails: values, what the schema reads in these bytes."
     )
 
@@ -48,14 +58,14 @@ class Example(Syntax):
         None, description="What a document prints without delimiters and checksum."
     )
     covers: PartRun | None = Field(None, description="The parts that `content` holds.")
-    sender: Name | None = Field(
+    sender: EndpointName | None = Field(
         None, description="Who sends it, where the message has several senders."
     )
-    values: dict[Name, Any] | None = Field(
+    values: ValuesByField | None = Field(
         None,
         description="Field values: raw numbers, enum names, lists, mappings for structs.",
     )
-    parts: dict[Name, RawNumber] | None = Field(
+    parts: dict[Annotated[Name, Ref(Kind.PART)], RawNumber] | None = Field(
         None,
         description="Values of frame parts that matter, such as a number or a counter.",
     )
@@ -77,7 +87,7 @@ def _listed(value: Any) -> Any:
 
 
 Senders = Annotated[
-    tuple[Name, ...], BeforeValidator(_listed, json_schema_input_type=str | list[str])
+    tuple[EndpointName, ...], BeforeValidator(_listed, json_schema_input_type=str | list[str])
 ]
 """One endpoint or several."""
 
@@ -88,7 +98,7 @@ def _to_identity(value: Any) -> Any:
 
 
 Identity = Annotated[
-    dict[str, RawNumber],
+    dict[PartName, RawNumber],
     BeforeValidator(_to_identity, json_schema_input_type=int | str | dict[str, int | str]),
 ]
 """Identity: a number or character, or a mapping of part to value."""
@@ -129,14 +139,16 @@ class MessageSyntax(Syntax):
 class Overload(Syntax):
     """Messages of one sender that share an identity."""
 
-    messages: tuple[Name, ...] = Field(strict=False, description="The messages that share it.")
+    messages: tuple[MessageName, ...] = Field(
+        strict=False, description="The messages that share it."
+    )
     by: Literal["size", "undecidable"] = Field(
         description="How a receiver tells them apart: by payload size, or not at all."
     )
-    yields: Name | None = Field(
+    yields: MessageName | None = Field(
         None, description="If undecidable, the message that a decoder yields."
     )
-    decision: Name | None = Field(None, description="The decision that accepts it.")
+    decision: DecisionName | None = Field(None, description="The decision that accepts it.")
     doc: Text | None = Field(None, description="What a reader should know.")
     source: SourceRef | None = Field(None, description="Where it is written down.")
 
@@ -144,13 +156,13 @@ class Overload(Syntax):
 class Step(Syntax):
     """One message of an exchange."""
 
-    message: Name = Field(description="The message.")
-    example: Name | None = Field(None, description="Which of its examples is sent.")
+    message: MessageName = Field(description="The message.")
+    example: ExampleName | None = Field(None, description="Which of its examples is sent.")
     doc: Text | None = Field(None, description="What happens here.")
     source: SourceRef | None = Field(None, description="Where it is printed.")
 
 
-StepRef = Annotated[Step, BeforeValidator(short_form("message"), json_schema_input_type=str | Step)]
+StepRef = Annotated[Step, BeforeValidator(ShortForm("message"), json_schema_input_type=str | Step)]
 """A step; a bare text names the message."""
 
 

@@ -11,14 +11,14 @@ from protogen.schema.syntax.base import (
     ByteNumber,
     Count,
     Int,
-    Name,
     RawNumber,
+    ShortForm,
     SourceRef,
     Syntax,
     Text,
     pair_of,
-    short_form,
 )
+from protogen.schema.syntax.names import DecisionName, Kind, PartName, Ref, TypeName
 from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 
 ByteOrder = Literal["little", "big"]
@@ -35,7 +35,7 @@ def _to_run(value: Any) -> Any:
 
 
 PartRun = Annotated[
-    tuple[str, ...], BeforeValidator(_to_run, json_schema_input_type=str | list[str])
+    tuple[PartName, ...], BeforeValidator(_to_run, json_schema_input_type=str | list[str])
 ]
 """Some parts of the frame: one name, a run `first..last`, or a list of names."""
 
@@ -77,11 +77,13 @@ class Part(Syntax):
     literal: Annotated[Octets, at_most(64)] | None = Field(
         None, description="Fixed bytes that open, close or mark."
     )
-    unprotected: Name | None = Field(
+    unprotected: DecisionName | None = Field(
         None,
         description="The decision that accepts that this literal can also occur inside a frame.",
     )
-    type: Text | None = Field(None, description="Type of the part: uint8, uint16, char, byte ...")
+    type: TypeName | None = Field(
+        None, description="Type of the part: uint8, uint16, char, byte ..."
+    )
     id: Literal[True] | None = Field(None, description="The part tells which message this is.")
     counts: PartRun | None = Field(
         None, description="The part is the length in bytes of these parts, unstuffed."
@@ -99,7 +101,7 @@ class Part(Syntax):
         None,
         description="Checksum over unstuffed bytes (content, the default) or as on the wire.",
     )
-    when: Literal["payload"] | None = Field(
+    when: Annotated[Literal["payload"], Ref(Kind.PART)] | None = Field(
         None,
         description="The part is present only in frames whose payload is not empty.",
     )
@@ -183,5 +185,5 @@ class TransparencySyntax(Syntax):
 
 TransparencyRef = Annotated[
     TransparencySyntax,
-    BeforeValidator(short_form("preset"), json_schema_input_type=str | TransparencySyntax),
+    BeforeValidator(ShortForm("preset"), json_schema_input_type=str | TransparencySyntax),
 ]

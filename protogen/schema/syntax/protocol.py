@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Set
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -12,14 +13,22 @@ from protogen.schema.syntax.base import (
     Int,
     Name,
     RawNumber,
+    ShortForm,
     Source,
     SourceRef,
     Syntax,
     Text,
-    short_form,
 )
 from protogen.schema.syntax.fields import FieldRef
+from protogen.schema.syntax.forms import Form, keys_of, models_inside
 from protogen.schema.syntax.messages import Exchange, Identity, MessageSyntax, Overload
+from protogen.schema.syntax.names import (
+    BySender,
+    EndpointName,
+    FieldPathKey,
+    MessageName,
+    SenderKey,
+)
 from protogen.schema.syntax.parts import (
     ByteOrder,
     Part,
@@ -55,7 +64,7 @@ class Endpoint(Syntax):
 
 EndpointRef = Annotated[
     Endpoint,
-    BeforeValidator(short_form("title"), json_schema_input_type=str | Endpoint),
+    BeforeValidator(ShortForm("title"), json_schema_input_type=str | Endpoint),
 ]
 
 
@@ -72,7 +81,7 @@ class Decision(Syntax):
 class ReservedIdentity(Syntax):
     """An identity that may not come back."""
 
-    from_: Name = Field(alias="from", description="The endpoint that sent it.")
+    from_: EndpointName = Field(alias="from", description="The endpoint that sent it.")
     id: Identity = Field(description="The identity.")
     doc: Text | None = Field(None, description="What it was.")
 
@@ -83,11 +92,11 @@ class Reserved(Syntax):
     identities: tuple[ReservedIdentity, ...] = Field(
         (), strict=False, description="Identities of deleted messages."
     )
-    fields: dict[Name, Annotated[tuple[Name, ...], Field(strict=False)]] = Field(
+    fields: dict[MessageName, Annotated[tuple[Name, ...], Field(strict=False)]] = Field(
         default_factory=dict,
         description="Message to the field names it may not use again.",
     )
-    values: dict[Text, Annotated[tuple[RawNumber, ...], Field(strict=False)]] = Field(
+    values: dict[FieldPathKey, Annotated[tuple[RawNumber, ...], Field(strict=False)]] = Field(
         default_factory=dict,
         description="MESSAGE.FIELD or type to raw values not to use again.",
     )
@@ -146,8 +155,9 @@ class ProtocolSyntax(Syntax):
     link: Link = Field(default_factory=Link, description="The line: baud rate and so on.")
     endpoints: dict[Name, EndpointRef] = Field(description="The named sides of the link.")
     byte_order: Annotated[
-        dict[str, ByteOrder],
+        dict[SenderKey, ByteOrder],
         BeforeValidator(_for_all, json_schema_input_type=ByteOrder | dict[str, ByteOrder]),
+        BySender(),
     ] = Field(
         default_factory=dict,
         description="Order of the bytes of a number: little or big, for all or for each sender.",
@@ -156,16 +166,18 @@ class ProtocolSyntax(Syntax):
         8, description="Bits that a payload byte carries; with 7 its highest bit is 0."
     )
     frame: Annotated[
-        dict[str, Frame],
+        dict[SenderKey, Frame],
         BeforeValidator(_as_is, json_schema_input_type=Frame | dict[str, Frame]),
+        BySender(),
     ] = Field(
         description="The parts of a frame in wire order; one frame for all, or one per sender."
     )
     transparency: Annotated[
-        dict[str, TransparencyRef],
+        dict[SenderKey, TransparencyRef],
         BeforeValidator(
             _as_is, json_schema_input_type=TransparencyRef | dict[str, TransparencyRef]
         ),
+        BySender(),
     ] = Field(
         default_factory=dict,
         description="What keeps delimiters out of the frame; for all or per sender.",
@@ -204,3 +216,18 @@ class ProtocolSyntax(Syntax):
             key: _by_sender(key, value, data.get("endpoints")) for key, value in written.items()
         }
         return {**data, **split}
+
+
+SCHEMA = Form(models=[ProtocolSyntax])
+"""Form of a whole schema."""
+
+
+@cache
+def keyed_by_names() -> frozenset[object]:
+    """Keys anywhere in a schema whose mappings have names for keys."""
+    return frozenset(
+        key
+        for model in models_inside(SCHEMA)
+        for key, form in keys_of(model).items()
+        if form.names is not None
+    )

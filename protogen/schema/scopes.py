@@ -1,0 +1,100 @@
+"""Scopes: the mappings of a schema that may declare what a name at some place refers to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from protogen.schema.edit import keys_of
+from protogen.schema.nodes import Node, ScalarNode, SequenceNode
+from protogen.schema.scalars import Scalar
+from protogen.schema.syntax.names import Kind
+
+Place = tuple[Scalar, ...]
+"""Keys and indexes that lead from the root to a node."""
+
+_EVERYWHERE = {
+    Kind.ENDPOINT: "endpoints",
+    Kind.TYPE: "types",
+    Kind.MESSAGE: "messages",
+    Kind.DECISION: "decisions",
+}
+"""Keys of the root that declare for the whole schema."""
+
+
+class Scopes:
+    """Scopes of one tree; those of a name come nearest first."""
+
+    def __init__(self, root: Node, frame_by_sender: bool) -> None:
+        self._root = root
+        self._frame_by_sender = frame_by_sender
+
+    def of(self, kind: Kind, owner: str | None, place: Place) -> tuple[Place, ...]:
+        """Scopes of a name at a place, whose owner the key ``owner`` beside it may name."""
+        match kind:
+            case Kind.PART:
+                return self.of_parts(place)
+            case Kind.FIELD:
+                return _of_fields(place)
+            case Kind.EXAMPLE:
+                message = self._text((*place[:-1], owner or ""))
+                return (("messages", message, "examples"),)
+            case Kind.VALUE if owner is None:
+                return self.inside_field(place[:-1], "values")
+            case Kind.VALUE:
+                return self._of_cases(place[:-2], owner or "")
+        return ((_EVERYWHERE[kind],),)
+
+    def of_parts(self, place: Place) -> tuple[Place, ...]:
+        """The frame of all, or those of the senders that a place is about."""
+        if not self._frame_by_sender:
+            return (("frame",),)
+        return tuple(("frame", sender) for sender in self._senders(place))
+
+    def inside_field(self, field: Place, *keys: str) -> tuple[Place, ...]:
+        """Mappings under these keys in a field, and in the declared types that it comes to."""
+        return tuple(
+            (*place, key)
+            for place in self._meanings(field)
+            for key in keys
+            if keys_of(self._root.at((*place, key)))
+        )
+
+    def _of_cases(self, field: Place, switch: str) -> tuple[Place, ...]:
+        """Values of the field that chooses between the cases of another one."""
+        chosen = self._text((*field, switch))
+        for fields in _of_fields((*field, switch)):
+            if chosen in keys_of(self._root.at(fields)):
+                return self.inside_field((*fields, chosen), "values")
+        return ()
+
+    def _senders(self, place: Place) -> list[Scalar]:
+        """Senders of the nearest mapping that says so; else all of them."""
+        frames = keys_of(self._root.child("frame"))
+        if place[0] in ("frame", "transparency") and place[1] in frames:
+            return [place[1]]
+        for steps in range(len(place) - 1, 1, -1):
+            match self._root.at((*place[:steps], "from")):
+                case ScalarNode() as sender:
+                    return [sender.value]
+                case SequenceNode(items=senders):
+                    return [item.value for item in senders if isinstance(item, ScalarNode)]
+        return list(frames)
+
+    def _meanings(self, field: Place) -> Iterator[Place]:
+        """Yield a field's place and those of its declared type, of that one's type, and so on."""
+        seen: set[Place] = set()
+        while field not in seen and (written := self._root.at(field)) is not None:
+            yield field
+            seen.add(field)
+            named = written if isinstance(written, ScalarNode) else written.child("type")
+            field = ("types", named.value) if isinstance(named, ScalarNode) else field
+
+    def _text(self, place: Place) -> Scalar:
+        written = self._root.at(place)
+        return written.value if isinstance(written, ScalarNode) else None
+
+
+def _of_fields(place: Place) -> tuple[Place, ...]:
+    """Mappings of fields around a place. Keys and names alternate: a field may be called so."""
+    around = range(len(place) - len(place) % 2 - 2, 1, -2)
+    return tuple(place[: step + 1] for step in around if place[step] == "fields")

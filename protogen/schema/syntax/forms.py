@@ -1,0 +1,90 @@
+"""Forms: what may stand at a place of a schema, read from the annotations of the syntax classes."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, BeforeValidator
+
+from protogen.schema.syntax.base import ShortForm
+from protogen.schema.syntax.names import Mark
+
+
+@dataclass(slots=True)
+class Form:
+    """The alternatives of one annotation, side by side."""
+
+    marks: list[Mark] = field(default_factory=list)
+    models: list[type[BaseModel]] = field(default_factory=list)
+    """Classes of mappings with fixed keys."""
+    short: str | None = None
+    """Key that a bare scalar stands for."""
+    names: Form | None = None
+    """Keys of a mapping of names to `items`."""
+    items: Form | None = None
+    """Values of a mapping from names, or items of a list."""
+
+    def inside(self, step: object) -> Form:
+        """Form of what stands under a key or an index; empty if nothing is known of it."""
+        found = [keys[step] for model in self.models if step in (keys := keys_of(model))]
+        return next(iter(found), self.items or Form())
+
+    def __bool__(self) -> bool:
+        return bool(self.marks or self.models or self.names or self.items)
+
+
+@cache
+def keys_of(model: type[BaseModel]) -> Mapping[object, Form]:
+    """Forms of the keys of a syntax class."""
+    return {
+        info.alias or name: _form(info.annotation, info.metadata)
+        for name, info in model.model_fields.items()
+    }
+
+
+def models_inside(form: Form) -> set[type[BaseModel]]:
+    """All syntax classes that a form leads to."""
+    found: set[type[BaseModel]] = set()
+    waiting = [form]
+    while waiting:
+        inner = waiting.pop()
+        waiting += [inner.items] if inner.items else []
+        for model in set(inner.models) - found:
+            found.add(model)
+            waiting += keys_of(model).values()
+    return found
+
+
+def _form(annotation: Any, metadata: Iterable[Any] = ()) -> Form:
+    form = Form()
+    _add_metadata(form, metadata)
+    _add(form, annotation)
+    return form
+
+
+def _add(form: Form, annotation: Any) -> None:
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        _add_metadata(form, arguments[1:])
+        _add(form, arguments[0])
+    elif origin in (Union, types.UnionType):
+        for member in arguments:
+            _add(form, member)
+    elif origin is dict:
+        form.names, form.items = map(_form, arguments)
+    elif origin in (tuple, list):
+        form.items = _form(arguments[0])
+    elif isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        form.models.append(annotation)
+
+
+def _add_metadata(form: Form, metadata: Iterable[Any]) -> None:
+    for mark in metadata:
+        if isinstance(mark, Mark):
+            form.marks.append(mark)
+        elif isinstance(mark, BeforeValidator) and isinstance(mark.func, ShortForm):
+            form.short = mark.func.key

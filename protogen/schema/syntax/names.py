@@ -1,0 +1,86 @@
+"""Marks on the keys of the syntax classes: names that refer to what the schema declares.
+
+Pydantic and the JSON Schema ignore them. `references` walks a document by them, so a key whose type
+is one of these needs nothing else to be followed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, Any
+
+from protogen.schema.syntax.base import Name, Text
+
+
+class Kind(Enum):
+    """Kinds of things that a schema declares by name."""
+
+    ENDPOINT = "endpoint"
+    PART = "part"
+    TYPE = "type"
+    FIELD = "field"
+    VALUE = "value"
+    MESSAGE = "message"
+    EXAMPLE = "example"
+    DECISION = "decision"
+
+
+@dataclass(frozen=True, slots=True)
+class Ref:
+    """Mark of a value, or of the keys of a mapping: the name of something of this kind."""
+
+    kind: Kind
+    of: str | None = None
+    """Key beside it that names the owner: the message of an example, the switch of a case."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldPath:
+    """Mark of keys that are MESSAGE.FIELD, or a declared type."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldValues:
+    """Mark of a mapping that mirrors the fields of the message around it."""
+
+
+@dataclass(frozen=True, slots=True)
+class BySender:
+    """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
+
+
+Mark = Ref | FieldPath | FieldValues | BySender
+
+EndpointName = Annotated[Name, Ref(Kind.ENDPOINT)]
+"""An endpoint."""
+
+SenderKey = Annotated[str, Ref(Kind.ENDPOINT)]
+"""An endpoint, as the key of what is stated for each sender."""
+
+PartName = Annotated[str, Ref(Kind.PART)]
+"""A part of the frame, or a run `first..last` of them."""
+
+TypeName = Annotated[Text, Ref(Kind.TYPE)]
+"""A built-in type, or one declared under `types`."""
+
+FieldName = Annotated[Name, Ref(Kind.FIELD)]
+"""A field beside this one, or around it."""
+
+MessageName = Annotated[Name, Ref(Kind.MESSAGE)]
+"""A message."""
+
+ExampleName = Annotated[Name, Ref(Kind.EXAMPLE, of="message")]
+"""An example of the message that the key beside it names."""
+
+DecisionName = Annotated[Name, Ref(Kind.DECISION)]
+"""A decision."""
+
+CaseKey = Annotated[Any, Ref(Kind.VALUE, of="switch")]
+"""A value of the field that the key beside it names."""
+
+FieldPathKey = Annotated[Text, FieldPath()]
+"""MESSAGE.FIELD, or a declared type."""
+
+ValuesByField = Annotated[dict[Name, Any], FieldValues()]
+"""Values of a message's fields."""
