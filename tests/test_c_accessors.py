@@ -20,7 +20,7 @@ ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 PATHS = [
     path
     for path in (*SCHEMAS, *SAMPLERS)
-    if any(is_readable(field) for item in protocol_of(path).messages for field in item.fields)
+    if any(is_readable(step) for item in protocol_of(path).messages for step in item.plan.steps)
 ]
 SANITIZED = ["-O2", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
 WAYS = {

@@ -15,6 +15,7 @@ from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.live import kept_module
 from protogen.model.dissect import Cursor, Row, dissect
+from protogen.model.payload_plan import plan_of
 from protogen.model.protocol import Protocol
 from protogen.model.readings import physical, value_name
 from protogen.model.types import Field, Integer
@@ -32,7 +33,7 @@ class Contents:
     @cached_property
     def _rows(self) -> list[Row]:
         units = tuple(Unit(byte, bytes((byte,))) for byte in self.payload)
-        found = dissect(self.fields, Cursor(units, 0))
+        found = dissect(plan_of(self.fields), Cursor(units, 0))
         return [row for row in found if row.value_type is not None]
 
     @cached_property

@@ -190,7 +190,7 @@ class _Frame:
         if message is None:
             rows = [inside.take(size).row(part.name, "bytes", subject=part)] if size else []
         else:
-            rows = dissect(message.fields, inside)
+            rows = dissect(message.plan, inside)
         if inside.left:
             surplus = inside.take(inside.left)
             rows.append(surplus.row(part.name, "bytes", fault=_SURPLUS, subject=part))

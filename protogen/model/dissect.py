@@ -9,6 +9,20 @@ from dataclasses import dataclass, replace
 
 from protogen.model.frame import Part
 from protogen.model.numbers import codec
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    Check,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    PayloadPlan,
+    RecordStep,
+    RepeatStep,
+    RestStep,
+)
 from protogen.model.readings import (
     integer_reading,
     physical,
@@ -16,25 +30,14 @@ from protogen.model.readings import (
     type_name,
     value_name,
 )
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Field,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
-)
+from protogen.model.types import Field, Fixed, Float, Scalar, Text
 from protogen.model.wire import Unit
 from protogen.runtime.errors import ByteError
 
 Scope = ChainMap[str, int]
 """The integers read so far, which count and select what follows."""
+
+ScalarStep = IntegerStep | FloatStep | BytesStep
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,10 +61,10 @@ class Row:
     fault: str = ""
     """Why these bytes can't stand here; empty where they can."""
     cut: bool = False
-    """Whether more bytes belong here, but the frame has no more."""
+    """True if more bytes belong here, but the frame has no more."""
     subject: Part | Field | None = None
     """The part or the field that the bytes belong to; None where they belong to none."""
-    value_type: Integer | Float | Text | Octets | None = None
+    value_type: Scalar | None = None
     """The type of a part's or a field's value; None for a literal, or bytes that none fits."""
 
     def reads(self, value: int | float | str, meaning: str, fault: str = "") -> Row:
@@ -90,7 +93,7 @@ class Piece:
         meaning: str = "",
         fault: str = "",
         subject: Part | Field | None = None,
-        value_type: Integer | Float | Text | Octets | None = None,
+        value_type: Scalar | None = None,
     ) -> Row:
         """These bytes as a row without a value."""
         wire = b"".join(unit.wire for unit in self.units)
@@ -132,7 +135,7 @@ class Cursor:
         return piece
 
     def ends_with(self, data: bytes) -> bool:
-        """Whether the units that are left end with these bytes."""
+        """True if the units that are left end with these bytes."""
         left = self._units[self.position :]
         return bytes(unit.byte for unit in left[-len(data) :]) == data
 
@@ -147,10 +150,10 @@ class Cursor:
         return Cursor(self.take(count).units, offset)
 
 
-def dissect(fields: Sequence[Field], cursor: Cursor) -> list[Row]:
+def dissect(plan: PayloadPlan, cursor: Cursor) -> list[Row]:
     """Return a row for each field, member and element, up to the first that has no bytes."""
     reader = _Reader(cursor)
-    reader.fields(fields, "", ChainMap())
+    reader.record(plan.steps, "", ChainMap())
     return reader.rows
 
 
@@ -160,54 +163,53 @@ class _Reader:
         self._short = False
         self.rows: list[Row] = []
 
-    def fields(self, fields: Sequence[Field], prefix: str, scope: Scope) -> None:
-        for field in fields:
-            self._value(field, field.type, prefix + field.name, scope)
+    def record(self, steps: Sequence[AnyStep], prefix: str, scope: Scope) -> None:
+        for step in steps:
+            self._step(step, prefix + step.name, scope)
 
-    def _value(self, field: Field, type: Type, path: str, scope: Scope) -> None:
+    def _step(self, step: AnyStep, path: str, scope: Scope) -> None:
         if self._short:
             return
-        match type:
-            case Struct(fields=members):
-                self.fields(members, f"{path}.", scope.new_child())
-            case Array(element=element, extent=extent):
-                self._elements(field, element, extent, path, scope)
-            case Switch():
-                self._case(field, type, path, scope)
+        match step:
+            case RecordStep():
+                self.record(step.steps, f"{path}.", scope.new_child())
+            case RepeatStep():
+                self._elements(step, path, scope)
+            case ChooseStep():
+                self._case(step, path, scope)
+            case ConstantStep():
+                self._step(step.value, path, scope)
             case _:
-                self._scalar(field, type, path, scope)
+                self._scalar(step, path, scope)
 
-    def _elements(
-        self, field: Field, element: Type, extent: Extent, path: str, scope: Scope
-    ) -> None:
-        count = _count(extent, scope)
+    def _elements(self, step: RepeatStep, path: str, scope: Scope) -> None:
+        count = _count(step.count, scope)
         index = 0
         while not self._short and (self._cursor.left if count is None else index < count):
-            self._value(_element(field, index), element, f"{path}[{index}]", scope)
+            element = replace(step.element, field=_element(step.field, index))
+            self._step(element, f"{path}[{index}]", scope)
             index += 1
 
-    def _case(self, field: Field, type: Switch, path: str, scope: Scope) -> None:
-        chosen = scope.get(type.selector)
-        for case in type.cases:
-            if case.value == chosen:
-                self._value(field, case.type, path, scope)
-                return
-        fault = f"`{type.selector}` has no case {chosen}" if type.rest is None else ""
+    def _case(self, step: ChooseStep, path: str, scope: Scope) -> None:
+        chosen = scope.get(step.selector_name)
+        found = step.rest if chosen is None else step.case(chosen)
+        if found is not None and not isinstance(found, RestStep):
+            self._step(found, path, scope)
+            return
+        fault = f"`{step.selector_name}` has no case {chosen}" if found is None else ""
         if self._cursor.left:
             piece = self._cursor.take(self._cursor.left)
-            self.rows.append(piece.row(path, "bytes", fault=fault, subject=field))
+            self.rows.append(piece.row(path, "bytes", fault=fault, subject=step.field))
 
-    def _scalar(
-        self, field: Field, type: Integer | Float | Text | Octets, path: str, scope: Scope
-    ) -> None:
-        size = _size(type, scope)
+    def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
+        size = _count(step.count, scope) if isinstance(step, BytesStep) else step.type.size
         piece = self._cursor.take(self._cursor.left if size is None else size)
-        row = piece.row(path, type_name(type), subject=field, value_type=type)
+        row = piece.row(path, type_name(step.type), subject=step.field, value_type=step.type)
         self._short = bool(piece.missing)
         if not piece.missing:
-            row = _read(field, type, row)
+            row = _read(step, row)
         if isinstance(row.value, int):
-            scope[field.name] = row.value
+            scope[step.field.name] = row.value
         self.rows.append(row)
 
 
@@ -218,41 +220,27 @@ def _element(field: Field, index: int) -> Field:
     return replace(field, const=field.const[index] if index < len(field.const) else None)
 
 
-def _count(extent: Extent, scope: Scope) -> int | None:
-    """How many; None: as many as there are."""
-    if isinstance(extent, Fixed):
-        return extent.count
-    return scope.get(extent.field, 0) if isinstance(extent, Counted) else None
-
-
-def _size(type: Integer | Float | Text | Octets, scope: Scope) -> int | None:
-    return type.size if isinstance(type, Integer | Float) else _count(type.extent, scope)
+def _count(count: Count, scope: Scope) -> int | None:
+    """How many, as the bytes in front say; None: as many as there are."""
+    return scope.get(count.field, 0) if count.field else count.known
 
 
 # --- values -------------------------------------------------------------------------------------
 
 
-def _read(field: Field, type: Integer | Float | Text | Octets, row: Row) -> Row:
-    if type.byte_bits == 7 and not row.bytes.isascii():
+def _read(step: ScalarStep, row: Row) -> Row:
+    if Check.SEVEN_BIT in step.checks and not row.bytes.isascii():
         return replace(row, fault="has a byte of more than 7 bits")
-    match type:
-        case Integer() | Float():
-            return _number(field, type, row)
-        case Text():
-            return _text(field, type, row)
-        case Octets():
-            return _octets(field, row)
-
-
-def _number(field: Field, type: Integer | Float, row: Row) -> Row:
+    if isinstance(step, BytesStep):
+        return _text(step, row) if isinstance(step.type, Text) else _octets(step.field, row)
     try:
-        value = codec(type).decode(row.bytes)
+        value = codec(step.type).decode(row.bytes)
     except ByteError as error:
         return replace(row, fault=str(error))
-    if isinstance(type, Float):
-        real = _float(type, value)
-        return row.reads(real, physical(field, real, gap=" "))
-    return row.reads(value, _meaning(field, type, value), _fault(field, type, value))
+    if isinstance(step, FloatStep):
+        real = _float(step.type, value)
+        return row.reads(real, physical(step.field, real, gap=" "))
+    return row.reads(value, _meaning(step, value), _fault(step, value))
 
 
 def _float(type: Float, pattern: int) -> float:
@@ -267,24 +255,26 @@ def _octets(field: Field, row: Row) -> Row:
     return row
 
 
-def _text(field: Field, type: Text, row: Row) -> Row:
+def _text(step: BytesStep, row: Row) -> Row:
     text = row.bytes.decode("latin-1")
-    if isinstance(type.extent, Fixed):
+    if isinstance(step.type.extent, Fixed):
         text = text.rstrip("\0")
-    wrong = isinstance(field.const, str) and text != field.const
-    return row.reads(text, "", f"must be {quoted(str(field.const))}" if wrong else "")
+    due = step.field.const
+    wrong = isinstance(due, str) and text != due
+    return row.reads(text, "", f"must be {quoted(str(due))}" if wrong else "")
 
 
-def _meaning(field: Field, type: Integer, value: int) -> str:
-    text = integer_reading(field, type, value, gap=" ")
+def _meaning(step: IntegerStep, value: int) -> str:
+    text = integer_reading(step.field, step.type, value, gap=" ")
     if text != str(value):
         return text
-    return "a value without a name" if type.enum is not None else ""
+    return "a value without a name" if step.type.enum is not None else ""
 
 
-def _fault(field: Field, type: Integer, value: int) -> str:
-    if field.const is not None and isinstance(field.const, int) and value != field.const:
-        return f"must be {field.const}"
-    if type.enum is not None and type.enum.closed and value_name(field, type, value) is None:
+def _fault(step: IntegerStep, value: int) -> str:
+    due = step.field.const
+    if isinstance(due, int) and value != due:
+        return f"must be {due}"
+    if step.type.is_closed and value_name(step.field, step.type, value) is None:
         return "is none of the values that there are"
     return ""

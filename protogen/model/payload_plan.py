@@ -8,7 +8,7 @@ of the records around it holds it. Targets print steps and decide nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import cached_property
@@ -106,6 +106,11 @@ class Step:
     """True if nothing follows it in the payload."""
 
     @property
+    def fills(self) -> bool:
+        """True if it takes all elements or bytes that are left of the payload."""
+        return False
+
+    @property
     def can_be_wrong(self) -> bool:
         """True if the right number of bytes may still be no value."""
         return bool(self.checks)
@@ -151,6 +156,11 @@ class BytesStep(Step):
     type: Text | Octets
     count: Count
 
+    @property
+    def fills(self) -> bool:
+        """True if it takes all bytes that are left of the payload."""
+        return self.count.fills
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConstantStep(Step):
@@ -175,6 +185,11 @@ class RepeatStep(Step):
 
     element: AnyStep
     count: Count
+
+    @property
+    def fills(self) -> bool:
+        """True if it takes all elements that are left of the payload."""
+        return self.count.fills
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -240,13 +255,28 @@ class PayloadPlan:
     @cached_property
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
-        return any(step.holds_values for step in self.steps)
+        return any(step.holds_values or step.fills for step in self.steps)
 
 
 def plan_of(fields: Sequence[Field]) -> PayloadPlan:
     """The plan of a message's or struct's fields."""
     steps = _Builder(0, {}, {}).record(fields, is_last=True)
     return PayloadPlan(steps=steps, sizes=total(tuple(fields)))
+
+
+def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
+    """All steps and those inside of them, in wire order."""
+    for step in steps:
+        yield step
+        match step:
+            case RecordStep():
+                yield from every_step(step.steps)
+            case RepeatStep():
+                yield from every_step((step.element,))
+            case ConstantStep():
+                yield from every_step((step.value,))
+            case ChooseStep():
+                yield from every_step(case.step for case in step.cases)
 
 
 # --- building -------------------------------------------------------------------------------------
@@ -335,7 +365,7 @@ class _Builder:
                     sizes=type_.sizes,
                     checks=_checks(steps),
                     is_refusable=any(step.is_refusable for step in steps),
-                    holds_values=any(step.holds_values for step in steps),
+                    holds_values=any(step.holds_values or step.fills for step in steps),
                     is_last=is_last,
                     type=type_,
                     steps=steps,
@@ -364,7 +394,7 @@ class _Builder:
             sizes=type_.sizes,
             checks=element.checks | _count_checks(type_.extent),
             is_refusable=element.is_refusable or not isinstance(type_.extent, Fixed),
-            holds_values=element.holds_values or bool(member),
+            holds_values=element.holds_values,
             is_last=is_last,
             element=element,
             count=self._count(type_.extent, member),

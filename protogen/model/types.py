@@ -375,7 +375,9 @@ class Switch:
         return sizes if self.rest is None else sizes | SizeSet.between(0, self.rest)
 
 
-Type = Integer | Float | Text | Octets | Struct | Array | Switch
+Scalar = Integer | Float | Text | Octets
+"""A type of single values."""
+Type = Scalar | Struct | Array | Switch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

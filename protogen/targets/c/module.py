@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from protogen.model.messages import Message
+from protogen.model.payload_plan import IntegerStep, RecordStep, every_step, plan_of
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Enum, Field, Flags, Integer, Struct, Switch, Type
+from protogen.model.types import Enum, Flags, Struct
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.named import (
@@ -76,11 +77,11 @@ def view(protocol: Protocol, options: COptions) -> Module:
     names = Names(protocol.name, writer_parameter(protocol), writer_argument(protocol))
     claim_own_names(protocol, names)
     chosen = options.chosen(protocol)
-    used = _Used(chosen)
+    used = _used(chosen)
     helpers, sinks = Helpers(names), Helpers(names)
-    enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used.names)
-    flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used.names)
-    structs = [item for item in protocol.structs if item.name in used.names and item.holds_values]
+    enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used)
+    flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used)
+    structs = [item for item in protocol.structs if item.name in used and item.holds_values]
     tags = {item.name: names.claim(item.name) for item in structs}
     records = Records(tags, helpers)
     printer = MessagePrinter(protocol, names, helpers, sinks, records)
@@ -107,32 +108,20 @@ def view(protocol: Protocol, options: COptions) -> Module:
 def _struct(item: Struct, tag: str, records: Records, names: Names) -> StructView:
     return StructView(
         item.name,
-        records.definition(tag, descriptions.of_named(item.name, item.about), item.fields),
+        records.definition(
+            tag, descriptions.of_named(item.name, item.about), plan_of(item.fields).steps
+        ),
         meaning(item.name, item.fields, names),
         tuple(bits for field in item.fields for bits in bits_views(item.name, field, names)),
     )
 
 
-class _Used:
+def _used(messages: Sequence[Message]) -> set[str]:
     """The names of the types that some messages use."""
-
-    def __init__(self, messages: Sequence[Message]) -> None:
-        self.names = {item.name for message in messages for item in self._of_fields(message.fields)}
-
-    def _of_fields(self, fields: Sequence[Field]) -> Iterator[Enum | Flags | Struct]:
-        for field in fields:
-            yield from self._of_type(field.type)
-
-    def _of_type(self, type_: Type) -> Iterator[Enum | Flags | Struct]:
-        match type_:
-            case Integer(enum=enum, flags=flags, bit_fields=runs):
-                found = (enum, flags, *(run.enum for run in runs))
-                yield from (item for item in found if item is not None)
-            case Struct(fields=fields):
-                yield type_
-                yield from self._of_fields(fields)
-            case Array(element=element):
-                yield from self._of_type(element)
-            case Switch(cases=cases):
-                for case in cases:
-                    yield from self._of_type(case.type)
+    named: list[Enum | Flags | Struct | None] = []
+    for step in every_step(step for message in messages for step in message.plan.steps):
+        if isinstance(step, IntegerStep):
+            named += [step.type.enum, step.type.flags, *(run.enum for run in step.type.bit_fields)]
+        elif isinstance(step, RecordStep):
+            named.append(step.type)
+    return {item.name for item in named if item is not None}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from protogen.model.framing import MessageFraming
+from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Field, Integer
+from protogen.model.types import Integer
 from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.walk import type_users
 
@@ -41,10 +42,10 @@ class Context:
         """Return the sizes and the rate of a message of this sender."""
         return self.framings[sender, message]
 
-    def struct_sizes(self, fields: Sequence[Field]) -> tuple[int, int]:
+    def struct_sizes(self, message: Message) -> tuple[int, int]:
         """Return the bytes of a message's struct in C: on 32-bit machines, and on an AVR."""
         natural, small = self.structs
-        return natural.of(fields), small.of(fields)
+        return natural.of(message.plan.steps), small.of(message.plan.steps)
 
 
 def by_frame(senders: Iterable[Sender]) -> list[list[Sender]]:

@@ -100,7 +100,7 @@ def _facts(context: Context, message: Message) -> Iterator[str]:
         if framing.per_second is not None:
             yield f"{rate(framing.per_second)} a second"
     yield f"payload {plural(message.sizes, 'byte')}"
-    yield _struct_size(*context.struct_sizes(message.fields))
+    yield _struct_size(*context.struct_sizes(message))
     source = place(message.about.source)
     if source:
         yield source

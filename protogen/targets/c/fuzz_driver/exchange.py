@@ -32,7 +32,7 @@ def exchange_function(name: str, struct: str, plan: PayloadPlan) -> str:
 class _Exchange(Walk):
     def step(self, step: AnyStep, place: str) -> None:
         """A step of any kind; in front of what fills the payload goes the number of it."""
-        if isinstance(step, BytesStep | RepeatStep) and step.count.fills:
+        if isinstance(step, BytesStep | RepeatStep) and step.fills:
             self._scalar(self.filled(step.count))
         if step.holds_values:
             super().step(step, place)

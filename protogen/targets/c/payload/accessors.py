@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-from protogen.model.payload_plan import plan_of
-from protogen.model.types import Array, Field, Float, Integer, Struct
+from protogen.model.payload_plan import (
+    AnyStep,
+    FloatStep,
+    IntegerStep,
+    NumberStep,
+    RecordStep,
+    RepeatStep,
+    plan_of,
+)
+from protogen.model.types import Integer
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
@@ -12,15 +20,15 @@ from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
 
 
-def is_readable(field: Field) -> bool:
-    """Whether there is such a function: elements of one size lie at a place that is known."""
-    if field.position is None or field.const is not None or not isinstance(field.type, Array):
+def is_readable(step: AnyStep) -> bool:
+    """True if there is such a function: elements of one size lie at a place that is known."""
+    if not isinstance(step, RepeatStep) or step.field.position is None:
         return False
-    element = field.type.element
-    if isinstance(element, Struct):
+    element = step.element
+    if isinstance(element, RecordStep):
         # Nothing outside of it may say what is in it.
-        return bool(element.sizes.fixed and element.holds_values) and not element.needs
-    return isinstance(element, Integer | Float)
+        return bool(element.sizes.fixed and element.holds_values) and not element.type.needs
+    return isinstance(element, NumberStep)
 
 
 class Accessors:
@@ -31,30 +39,31 @@ class Accessors:
         self._helpers = helpers
         self._records = records
 
-    def of(self, record: str, field: Field) -> tuple[str, ...]:
-        """The function that reads an element of a field that `is_readable`, if there is any."""
-        assert isinstance(field.type, Array)
-        element = field.type.element
+    def of(self, record: str, step: AnyStep) -> tuple[str, ...]:
+        """The function that reads an element, where it `is_readable` and has anything to read."""
+        if not isinstance(step, RepeatStep) or not is_readable(step):
+            return ()
+        field, element = step.field, step.element
         body = Lines()
         start = f"payload + {field.position}" if field.position else "payload"
         size = element.sizes.greatest
-        step = f"{size} * index" if size > 1 else "index"
-        place = f"const uint8_t *at = {start} + {step};"
+        distance = f"{size} * index" if size > 1 else "index"
+        place = f"const uint8_t *at = {start} + {distance};"
         body.add(place)
         arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
         match element:
-            case Integer():
-                type_ = integer_type(element)
-                _read(element, body)
-            case Float():
-                type_ = self._helpers.float_type(element)
+            case IntegerStep():
+                type_ = integer_type(element.type)
+                _read(element.type, body)
+            case FloatStep():
+                type_ = self._helpers.float_type(element.type)
                 with self._helpers.public():
-                    body.add(f"return {self._helpers.load(element)}(at);")
-            case Struct():
+                    body.add(f"return {self._helpers.load(element.type)}(at);")
+            case RecordStep():
                 type_ = "void"
-                arguments = (*arguments, f"{self._records.spelled(element)} *out")
+                arguments = (*arguments, f"{self._records.spelled(element.type)} *out")
                 with self._helpers.public():
-                    Load(self._helpers, body).pointed(plan_of(element.fields), "out->")
+                    Load(self._helpers, body).pointed(plan_of(element.type.fields), "out->")
             case _:
                 raise AssertionError(element)
         body.drop_unused_places()

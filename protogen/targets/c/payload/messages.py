@@ -18,7 +18,7 @@ from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
 from protogen.targets.c.lines import Lines, function, prototype
 from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
-from protogen.targets.c.payload.accessors import Accessors, is_readable
+from protogen.targets.c.payload.accessors import Accessors
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import Load
@@ -128,7 +128,9 @@ class MessagePrinter:
             needs=codec.needs,
             validates=codec.validates,
             heading=item.name,
-            definition=self._records.definition(tag, descriptions.of_message(item), item.fields),
+            definition=self._records.definition(
+                tag, descriptions.of_message(item), item.plan.steps
+            ),
             constants=(
                 *self._identity(item),
                 *_sizes(item, names),
@@ -138,10 +140,7 @@ class MessagePrinter:
             bits=tuple(b for f in item.fields for b in bits_views(item.name, f, names)),
             prototypes=codec.prototypes(),
             accessors=tuple(
-                text
-                for field in item.fields
-                if is_readable(field)
-                for text in self._accessors.of(item.name, field)
+                text for step in item.plan.steps for text in self._accessors.of(item.name, step)
             ),
             functions=codec.functions(),
             put_function=codec.put(),

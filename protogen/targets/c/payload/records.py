@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from protogen.model.types import Array, Field, Float, Struct
+from protogen.model.payload_plan import AnyStep, RecordStep, RepeatStep
+from protogen.model.types import Float, Struct
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT, Lines
 from protogen.targets.c.payload.helpers import Helpers
@@ -22,27 +23,27 @@ class Records:
         """A struct of the schema, as `struct rn1_point`."""
         return f"struct {self._tags[type_.name]}"
 
-    def definition(self, tag: str, doc: list[str], fields: Sequence[Field]) -> str:
-        """The definition of a struct with these fields."""
+    def definition(self, tag: str, doc: list[str], steps: Sequence[AnyStep]) -> str:
+        """The definition of a struct for the values of these steps."""
         lines = Lines(0)
         lines.add(*comments.comment(doc))
         lines.add(f"struct {tag} {{")
         members = Lines(1)
-        for field in fields:
-            self._field(members, fields, field)
+        for step in steps:
+            self._field(members, step)
         if not members:
             members.add("/** There are no fields, and C has no empty structs. */")
             self._declare(members, UNUSED)
         return "\n".join([*lines.lines, *members.lines, "};"])
 
-    def _field(self, lines: Lines, fields: Sequence[Field], field: Field) -> None:
-        counter, value = counter_of(fields, field), value_of(field)
+    def _field(self, lines: Lines, step: AnyStep) -> None:
+        counter, value = counter_of(step), value_of(step)
         if counter is not None:
-            what = "elements" if isinstance(field.type, Array) else "bytes"
-            lines.add(*comments.comment([f"Number of {what} of {field.name}."], INDENT))
+            what = "elements" if isinstance(step, RepeatStep) else "bytes"
+            lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))
             self._declare(lines, counter)
         if value is not None:
-            lines.add(*comments.comment(comments.of_field(field), INDENT))
+            lines.add(*comments.comment(comments.of_field(step.field), INDENT))
             self._declare(lines, value)
 
     def _declare(self, lines: Lines, member: Member) -> None:
@@ -50,8 +51,8 @@ class Records:
         match member.type:
             case Float():
                 lines.add(f"{self._helpers.float_type(member.type)} {name};")
-            case Struct():
-                lines.add(f"{self.spelled(member.type)} {name};")
+            case RecordStep():
+                lines.add(f"{self.spelled(member.type.type)} {name};")
             case Union():
                 self._union(lines, member.type, name)
             case tuple():

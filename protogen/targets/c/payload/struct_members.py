@@ -1,23 +1,28 @@
-"""The members of C structs and their types, for what prints them and what adds up their sizes."""
+"""The members of C structs and their types, for what prints them and what adds up their sizes.
+
+Constants need no room: an encoder writes them, and a decoder takes nothing else. What fills the
+payload has a second member, which says how much it is. C has no empty structs, so what holds
+nothing has no member at all.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from protogen.model.types import (
-    Array,
-    Extent,
-    Field,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
-    count_name,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    RestStep,
 )
+from protogen.model.types import Float, Text
 from protogen.targets.c.spelling import counting_type, integer_type
 
 
@@ -26,7 +31,7 @@ class Member:
     """A member of a struct or a union."""
 
     name: str
-    type: str | Float | Struct | Union | tuple[Member, ...]
+    type: str | Float | RecordStep | Union | tuple[Member, ...]
     """An integer or character as C spells it, a struct of the schema, or one without a name."""
     counts: tuple[int, ...] = ()
     """Elements of an array, and of the arrays in it."""
@@ -34,7 +39,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Union:
-    """The cases of a switch that hold anything, and what holds the bytes of other values."""
+    """The cases of a choice that hold anything, and what holds the bytes of other values."""
 
     selector: str
     cases: tuple[Member, ...]
@@ -42,62 +47,57 @@ class Union:
 
 
 UNUSED = Member("unused", "uint8_t")
-"""What a struct has where there is nothing to hold: C has no empty structs."""
+"""The member of a struct that holds nothing: C has no empty structs."""
 
 
-def members_of(fields: Sequence[Field]) -> tuple[Member, ...]:
-    """All members of a struct with these fields."""
-    found = tuple(member for field in fields for member in _of_field(fields, field))
-    return found or (UNUSED,)
+def members_of(steps: Sequence[AnyStep]) -> tuple[Member, ...]:
+    """All members of a struct for the values of these steps."""
+    found = (member for step in steps for member in (counter_of(step), value_of(step)))
+    return tuple(member for member in found if member is not None) or (UNUSED,)
 
 
-def _of_field(fields: Sequence[Field], field: Field) -> Iterator[Member]:
-    for member in (counter_of(fields, field), value_of(field)):
-        if member is not None:
-            yield member
-
-
-def counter_of(fields: Sequence[Field], field: Field) -> Member | None:
-    """What says how many elements or bytes of `field` there are, where it fills the payload."""
-    extent = field.type.extent
-    if extent is None or not field.fills:
+def counter_of(step: AnyStep) -> Member | None:
+    """The member for the number of elements or bytes, where they fill the payload."""
+    if not isinstance(step, BytesStep | RepeatStep) or not step.fills:
         return None
-    return Member(count_name(fields, field), counting_type(extent.room))
+    return Member(step.count.member, counting_type(step.count.greatest))
 
 
-def value_of(field: Field) -> Member | None:
-    """What holds the field's value."""
-    return _member(field.type, field.name) if field.is_stored else None
+def value_of(step: AnyStep) -> Member | None:
+    """The member that holds the value."""
+    return _member(step, step.name) if step.holds_values else None
 
 
-def _member(type_: Type, name: str, counts: tuple[int, ...] = ()) -> Member:
-    match type_:
-        case Integer():
-            return Member(name, integer_type(type_), counts)
-        case Float() | Struct():
-            return Member(name, type_, counts)
-        case Text(extent=extent):
-            return Member(name, "char", (*counts, _places(extent)))
-        case Octets(extent=extent):
-            return Member(name, "uint8_t", (*counts, _places(extent)))
-        case Array(element=element, extent=extent):
-            return _member(element, name, (*counts, _places(extent)))
-        case Switch():
-            return Member(name, _union(type_), counts)
+def _member(step: AnyStep, name: str, counts: tuple[int, ...] = ()) -> Member:
+    match step:
+        case IntegerStep():
+            return Member(name, integer_type(step.type), counts)
+        case FloatStep():
+            return Member(name, step.type, counts)
+        case RecordStep():
+            return Member(name, step, counts)
+        case BytesStep():
+            character = "char" if isinstance(step.type, Text) else "uint8_t"
+            return Member(name, character, (*counts, _places(step.count)))
+        case RepeatStep():
+            return _member(step.element, name, (*counts, _places(step.count)))
+        case ChooseStep():
+            return Member(name, _union(step), counts)
+        case ConstantStep():
+            raise AssertionError("constants have no member")
 
 
-def _places(extent: Extent) -> int:
+def _places(count: Count) -> int:
     """C has no empty arrays."""
-    return max(1, extent.room)
+    return max(1, count.greatest)
 
 
-def _union(type_: Switch) -> Union:
-    cases = tuple(_member(case.type, case.name) for case in type_.cases if case.type.holds_values)
-    return Union(type_.selector, cases, _rest(type_))
+def _union(step: ChooseStep) -> Union:
+    held = (case.step for case in step.cases if case.step.holds_values)
+    cases = tuple(_member(item, item.name) for item in held)
+    return Union(step.selector_name, cases, None if step.rest is None else _rest(step.rest))
 
 
-def _rest(type_: Switch) -> Member | None:
-    if type_.rest is None:
-        return None
-    size = Member("size", counting_type(type_.rest))
-    return Member(type_.rest_name, (size, Member("bytes", "uint8_t", (max(1, type_.rest),))))
+def _rest(step: RestStep) -> Member:
+    size = Member("size", counting_type(step.greatest))
+    return Member(step.name, (size, Member("bytes", "uint8_t", (max(1, step.greatest),))))

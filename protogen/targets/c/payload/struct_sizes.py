@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import prod
 
-from protogen.model.types import Field, Float, Struct
+from protogen.model.payload_plan import AnyStep, RecordStep
+from protogen.model.types import Float
 from protogen.targets.c.payload.struct_members import Member, Union, members_of
 
 NATURAL, BYTES = 8, 1
@@ -24,9 +25,9 @@ class StructSizes:
         self._alignment = alignment
         self._known: dict[str, tuple[int, int]] = {}
 
-    def of(self, fields: Sequence[Field]) -> int:
-        """The size of the struct of a message or struct with these fields."""
-        return self._struct(members_of(fields))[0]
+    def of(self, steps: Sequence[AnyStep]) -> int:
+        """The size of the struct that holds the values of these steps."""
+        return self._struct(members_of(steps))[0]
 
     def _struct(self, members: Iterable[Member]) -> tuple[int, int]:
         """Its size and alignment."""
@@ -45,7 +46,7 @@ class StructSizes:
         match member.type:
             case Float(bits=bits):
                 return self._number(bits // 8)
-            case Struct():
+            case RecordStep():
                 return self._named(member.type)
             case Union():
                 return self._union(member.type)
@@ -57,11 +58,12 @@ class StructSizes:
     def _number(self, size: int) -> tuple[int, int]:
         return size, min(size, self._alignment)
 
-    def _named(self, type_: Struct) -> tuple[int, int]:
+    def _named(self, step: RecordStep) -> tuple[int, int]:
         """Worked out once: structs that hold each other are asked at every level."""
-        if type_.name not in self._known:
-            self._known[type_.name] = self._struct(members_of(type_.fields))
-        return self._known[type_.name]
+        name = step.type.name
+        if name not in self._known:
+            self._known[name] = self._struct(members_of(step.steps))
+        return self._known[name]
 
     def _union(self, union: Union) -> tuple[int, int]:
         found = [self._member(case) for case in union.cases]
