@@ -126,7 +126,7 @@ def test_defaults(project: Path) -> None:
 def test_second_run_changes_nothing(project: Path) -> None:
     run("generate")
     result = run("generate", "--target", "python")
-    assert result.stdout == "unchanged in generated/python: 3\n"
+    assert result.stdout == "unchanged in generated/python: 5\n"
     assert run("generate", "--check").exit_code == 0
     assert run("generate", "--diff").stdout == ""
 

@@ -18,6 +18,7 @@ from itertools import product
 from pathlib import Path
 from random import Random
 from threading import Thread
+from types import ModuleType
 from typing import Any
 from unittest.mock import MagicMock, Mock
 
@@ -438,6 +439,12 @@ def test_runs_of_one_message(path: Path, sender: str) -> None:
             assert shown(events_of(path, sender, "fast", [data])) == due
 
 
+def codec_at(path: Path) -> ModuleType:
+    """The machine text of a schema's module."""
+    module = module_at(path)
+    return sys.modules[f"{module.__package__}._{path.stem}_codec"]
+
+
 class TestRuns:
     def frames(self, count: int) -> list[bytes]:
         esp = module_at(MATTY)
@@ -462,7 +469,7 @@ class TestRuns:
         ]
 
     def taken(self, data: bytes) -> tuple[int, list[Any]]:
-        esp = module_at(MATTY)
+        esp = codec_at(MATTY)
         events: list[Any] = []
         end = esp._RUNS_0.take(data, 0, 0, events, esp._cut_esp, esp._ESP_HEADS)
         return end, events
@@ -489,8 +496,8 @@ class TestRuns:
 
     def test_longer_frames_than_there_are_are_left(self) -> None:
         data = b"".join(self.frames(200))
-        short = runs.StuffedRuns(**{**module_at(MATTY)._RUNS_0.given, "greatest": 20})
-        esp = module_at(MATTY)
+        esp = codec_at(MATTY)
+        short = runs.StuffedRuns(**{**esp._RUNS_0.given, "greatest": 20})
         assert short.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) == 0
 
     @pytest.mark.parametrize("seed", range(6))
@@ -503,7 +510,7 @@ class TestRuns:
             assert shown(events_of(MATTY, "esp", "fast", halves)) == due
 
     def test_few_heads_are_remembered(self) -> None:
-        esp = module_at(MATTY)
+        esp = codec_at(MATTY)
         data = b"".join(self.frames(200))
         others: dict[bytes, Any] = {bytes((number,)): [] for number in range(40)}
         remembering = runs.StuffedRuns(**esp._RUNS_0.given, numbers=others)

@@ -205,9 +205,11 @@ class TestGenerate:
         (folder / "protogen.toml").write_text('schemas = ["sink.yaml"]\ntargets = ["python"]\n')
         result = start("generate", cwd=folder / "boards")
         assert result.stdout.decode() == (
-            "wrote ../generated/python/__init__.py\nwrote ../generated/python/sink.py\n"
+            "wrote ../generated/python/__init__.py\n"
+            "wrote ../generated/python/_sink_codec.py\n"
+            "wrote ../generated/python/sink.py\n"
         )
-        assert start("generate", "--check", cwd=folder).stdout == b"2 files are current\n"
+        assert start("generate", "--check", cwd=folder).stdout == b"3 files are current\n"
 
     def test_the_shared_file(self, folder: Path) -> None:
         (folder / "pyproject.toml").write_text(
@@ -288,7 +290,8 @@ class TestGenerate:
         (folder / "protogen.toml").write_text('schemas = ["**/*.yaml"]\ntargets = ["python"]\n')
         assert run("generate", "-q").exit_code == 0
         made = {path.name for path in (folder / "generated" / "python").iterdir()}
-        assert made == {"__init__.py", "sink.py", "other.py"}
+        codecs = {"_sink_codec.py", "_other_codec.py"}
+        assert made == {"__init__.py", "sink.py", "other.py"} | codecs
 
 
 # --- the catalogue --------------------------------------------------------------------------------

@@ -36,7 +36,12 @@ class TestGoldens:
     """Set PROTOGEN_UPDATE_GOLDENS=1 to write them anew; then review the difference."""
 
     @pytest.mark.parametrize(
-        ("emit", "name"), [(emit_python, "sampler.py"), (emit_markdown, "sampler.md")]
+        ("emit", "name"),
+        [
+            (emit_python, "sampler.py"),
+            (emit_python, "_sampler_codec.py"),
+            (emit_markdown, "sampler.md"),
+        ],
     )
     def test_what_is_printed_is_what_was_reviewed(self, sampler, emit, name):
         printed = {str(file.path): file.content for file in emit([sampler])}[name]

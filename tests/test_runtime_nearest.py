@@ -148,7 +148,7 @@ def test_raw_values_and_names_still_say_that_there_is_no_reading(
     ],
 )
 def test_a_range_in_a_docstring_ends_at_readings(protocol: Protocol, name: str, says: str) -> None:
-    lines = [line.strip() for line in source(protocol).splitlines()]
+    lines = [line.strip() for line in source(protocol).module.splitlines()]
     place = next(index for index, line in enumerate(lines) if line.startswith(f"{name} = "))
     assert lines[place + 1] == f'"""{says}"""'
 

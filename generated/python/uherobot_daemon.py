@@ -11,7 +11,6 @@ fields alone. The board also skips carriage returns inside a message, which no s
 
 from __future__ import annotations
 
-import struct as _struct
 import typing as _typing
 
 from protogen.runtime import api as _rt
@@ -223,313 +222,6 @@ def _board_frame_spec() -> _rt.FrameSpec:
     )
 
 
-# --- the fast engine ----------------------------------------------------------------------------
-#
-# What is plainly in order goes through these functions; they raise, or stop, where the reference
-# (construct, and the machine that cuts frames byte by byte) has to decide.
-# fmt: off
-
-_new = _fast.new
-_BYTES = _fast.BYTES
-_MessageEvent = _rt.MessageEvent
-_TABLES = _fast.Tables()
-_UNPACK_0 = _struct.Struct(">hh").unpack_from
-_UNPACK_1 = _struct.Struct(">8H").unpack_from
-_MEMBERS_0 = _TABLES.members(MotorsServosLedsLeds, 8)
-_UNPACK_2 = _struct.Struct(">2xhhHHHH").unpack
-_STUFFING_0 = _transparency.Base16Upper()
-_PACK_0 = _struct.Struct("<BB").pack
-_PACK_1 = _struct.Struct(">8H").pack
-_PACK_2 = _struct.Struct(">BBhh").pack
-_PACK_3 = _struct.Struct("<B").pack
-_PACK_4 = _struct.Struct(">BBhhHHHH").pack
-
-
-def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
-    data = data[2:]
-    if len(data) != 21:
-        raise _fast.Unclear
-    item = _new(MotorsServosLeds)
-    item.right_motor, item.left_motor = _UNPACK_0(data, 0)
-    item.servos = list(_UNPACK_1(data, 4))
-    v1 = data[20]
-    item.leds = _MEMBERS_0[v1]
-    return item
-
-
-def _read_status(data: bytes) -> Status:
-    item = _new(Status)
-    (
-        item.reserved,
-        item.pcb_temperature,
-        item.cpu_current,
-        item.cpu_voltage,
-        item.motor_current,
-        item.motor_voltage,
-    ) = _UNPACK_2(data)
-    return item
-
-
-def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    if not _TABLES.are_filled:
-        _TABLES.fill()
-    add = events.append
-    try:
-        while at < size:
-            if data[at] != 0x62:
-                return at
-            end = data.find(b"\x0a", at + 1, at + 512)
-            if end < 0:
-                return at
-            end += 1
-            raw = data[at:end]
-            content = raw[1:-1]
-            content = _STUFFING_0.decode(content)
-            length = content[0]
-            if not 2 <= len(content) == length <= 255:
-                return at
-            numbers, read = _DAEMON_HEADS[content[1:2]]
-            if read is None:
-                add(_fast.unknown(DAEMON_SENDER, base + at, raw, numbers, content[2:]))
-                at = end
-                continue
-            event: _typing.Any = _MessageEvent()
-            event.message = read(content)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.codec = DAEMON_SENDER
-            add(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        pass
-    return at
-
-
-
-_DAEMON_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x00: _read_motors_servos_leds,
-}
-
-def _head_daemon(head: bytes) -> tuple[_typing.Any, ...]:
-    return (head[0],), _DAEMON_KINDS.get(head[0])
-
-
-
-_DAEMON_HEADS = _fast.Heads(_head_daemon)
-
-def _decode_daemon(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.Unclear
-    if data[0] != 0x62:
-        raise _fast.Unclear
-    end = data.find(b"\x0a", 1)
-    if end < 0:
-        raise _fast.Unclear
-    end += 1
-    if end != len(data):
-        raise _fast.Unclear
-    if len(data) > 512:
-        raise _fast.Unclear
-    content = data[1:-1]
-    content = _STUFFING_0.decode(content)
-    length = content[0]
-    if not 2 <= len(content) == length <= 255:
-        raise _fast.Unclear
-    _, read = _DAEMON_HEADS[content[1:2]]
-    if read is None:
-        raise _fast.Unclear
-    return read(content)
-
-
-def _waits_daemon(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 512:
-        return False
-    if not data.startswith(b"\x62", at):
-        return False
-    if data.find(b"\x62", at + 1) > 0:
-        return False
-    if data.find(b"\x0a", at + 1) >= 0:
-        return False
-    try:
-        content = data[at + 1:]
-        part = len(content) % 2
-        content = _STUFFING_0.decode(content + b"0" * part)
-        if part:
-            content = content[:-1]
-        if len(content) < 1:
-            return True
-        payload_size = content[0] - 2
-        if not 0 <= payload_size <= 253:
-            return False
-        return len(content) + part <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
-def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
-    content = _PACK_0(len(payload) + 2, type_) + payload
-    return b"\x62" + _STUFFING_0.encode(content) + b"\x0a"
-
-
-def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
-    size = len(data)
-    if not _TABLES.are_filled:
-        _TABLES.fill()
-    add = events.append
-    try:
-        while at < size:
-            if data[at] != 0x62:
-                return at
-            end = data.find(b"\x0d\x0a", at + 1, at + 517)
-            if end < 0:
-                return at
-            end += 2
-            raw = data[at:end]
-            content = raw[1:-2]
-            content = _STUFFING_0.decode(content)
-            length = content[1]
-            if len(content) != length + 2:
-                return at
-            numbers, read = _BOARD_HEADS[content[0:1]]
-            if read is None:
-                add(_fast.unknown(BOARD_SENDER, base + at, raw, numbers, content[2:]))
-                at = end
-                continue
-            event: _typing.Any = _MessageEvent()
-            event.message = read(content)
-            event.offset = base + at
-            event.raw = raw
-            event.numbers = numbers
-            event.codec = BOARD_SENDER
-            add(event)
-            at = end
-    except _fast.ANYTHING:  # The reference looks at what is here.
-        pass
-    return at
-
-
-
-_BOARD_KINDS: dict[_typing.Any, _typing.Any] = {
-    0x01: _read_status,
-}
-
-def _head_board(head: bytes) -> tuple[_typing.Any, ...]:
-    return (head[0],), _BOARD_KINDS.get(head[0])
-
-
-
-_BOARD_HEADS = _fast.Heads(_head_board)
-
-def _decode_board(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.Unclear
-    if data[0] != 0x62:
-        raise _fast.Unclear
-    end = data.find(b"\x0d\x0a", 1)
-    if end < 0:
-        raise _fast.Unclear
-    end += 2
-    if end != len(data):
-        raise _fast.Unclear
-    if len(data) > 517:
-        raise _fast.Unclear
-    content = data[1:-2]
-    content = _STUFFING_0.decode(content)
-    length = content[1]
-    if len(content) != length + 2:
-        raise _fast.Unclear
-    _, read = _BOARD_HEADS[content[0:1]]
-    if read is None:
-        raise _fast.Unclear
-    return read(content)
-
-
-def _waits_board(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 517:
-        return False
-    if not data.startswith(b"\x62", at):
-        return False
-    if data.find(b"\x62", at + 1) > 0:
-        return False
-    if data.find(b"\x0d\x0a", at + 1) >= 0:
-        return False
-    try:
-        held = data.endswith(b"\x0d", at + 1)
-        content = data[at + 1 : len(data) - held]
-        part = len(content) % 2
-        content = _STUFFING_0.decode(content + b"0" * part)
-        if part:
-            content = content[:-1]
-        if len(content) < 2:
-            return True
-        payload_size = content[1]
-        return len(content) + part <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
-def _frame_board(payload: bytes, type_: int | None) -> bytes:
-    content = _PACK_0(type_, len(payload)) + payload
-    return b"\x62" + _STUFFING_0.encode(content) + b"\x0d\x0a"
-
-
-def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: str | None) -> bytes:
-    if module is not _ENCODERS or (sender is not None and sender != "daemon"):
-        raise _fast.Unclear
-    v1 = item.right_motor
-    if not -3200 <= v1 <= 3200:
-        raise _fast.Unclear
-    v2 = item.left_motor
-    if not -3200 <= v2 <= 3200:
-        raise _fast.Unclear
-    v3 = item.servos
-    if type(v3) is not list:
-        raise _fast.Unclear
-    if len(v3) != 8:
-        raise _fast.Unclear
-    if not all(0 <= each <= 250 for each in v3):
-        raise _fast.Unclear
-    v4 = item.leds
-    content = b"".join((_PACK_2(23, 0, v1, v2), _PACK_1(*v3), _PACK_3(v4)))
-    return b"\x62" + _STUFFING_0.encode(content) + b"\x0a"
-
-
-def _encode_status(item: Status, module: object, sender: str | None) -> bytes:
-    if module is not _ENCODERS or (sender is not None and sender != "board"):
-        raise _fast.Unclear
-    v1 = item.reserved
-    v2 = item.pcb_temperature
-    v3 = item.cpu_current
-    v4 = item.cpu_voltage
-    v5 = item.motor_current
-    v6 = item.motor_voltage
-    content = _PACK_4(1, 12, v1, v2, v3, v4, v5, v6)
-    return b"\x62" + _STUFFING_0.encode(content) + b"\x0d\x0a"
-
-
-_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {
-    MotorsServosLeds: _encode_motors_servos_leds,
-    Status: _encode_status,
-}
-_fast.add_encoders(_ENCODERS)
-_fast.add_readers(
-    {MotorsServosLeds: _read_motors_servos_leds, Status: _read_status},
-    _TABLES,
-    around=(2, 0),
-)
-_DECODERS: dict[
-    str,
-    _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage],
-] = {
-    "daemon": _decode_daemon,
-    "board": _decode_board,
-}
-# fmt: on
-
 # --- the codec ----------------------------------------------------------------------------------
 
 DaemonMessage = MotorsServosLeds
@@ -547,16 +239,12 @@ DAEMON_SENDER: _rt.SenderSpec[DaemonMessage, Parts] = _rt.SenderSpec(
     _daemon_frame_spec,
     Parts,
     messages=(MotorsServosLeds,),
-    cut=_cut_daemon,
-    waits=_waits_daemon,
 )
 BOARD_SENDER: _rt.SenderSpec[BoardMessage, Parts] = _rt.SenderSpec(
     "board",
     _board_frame_spec,
     Parts,
     messages=(Status,),
-    cut=_cut_board,
-    waits=_waits_board,
 )
 DAEMON_FORMAT: _rt.FrameFormat
 """The frame of daemon as a construct declaration."""
@@ -568,8 +256,10 @@ PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     BOARD_SENDER,
     spec_hash=SPEC_HASH,
 )
-_fast.add_writers((DAEMON_SENDER, BOARD_SENDER), _ENCODERS, ())
 
+_ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {}
+_DECODERS: dict[str, _typing.Callable[[_typing.Any], DaemonMessage | BoardMessage]] = {}
+_TABLES = _fast.Tables()
 if not _typing.TYPE_CHECKING:
     # Declarations are made when they are first asked for: construct takes long to import.
     __getattr__ = _fast.frame_formats(
@@ -665,3 +355,10 @@ class Encoder(_rt.Encoder):
     ) -> bytes:
         """The next frame."""
         return self.encode_next(message, strict)
+
+
+# The machine text fills the tables above.
+if __package__:
+    from . import _uherobot_daemon_codec as _codec
+else:
+    import _uherobot_daemon_codec as _codec  # type: ignore[import-not-found, no-redef] # noqa: F401

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from protogen.model.protocol import Protocol
@@ -19,7 +20,6 @@ RUNTIME = "protogen.runtime"
 
 def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
     """The modules of these protocols, and the package that holds them."""
-    modules = [_file(protocol) for protocol in protocols]
     if not protocols:
         return ()
     package = File(
@@ -28,32 +28,54 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
         banner(PYTHON, protocols),
         shared=True,
     )
-    return (package, *modules)
+    return (package, *(file for protocol in protocols for file in _files(protocol)))
 
 
-def _file(protocol: Protocol) -> File:
-    path = PurePosixPath(f"{protocol.name}.py")
-    return File(path, kept_source(protocol), banner(PYTHON, [protocol]))
+def _files(protocol: Protocol) -> Iterator[File]:
+    text, first_line = kept_source(protocol), banner(PYTHON, [protocol])
+    yield File(PurePosixPath(f"{protocol.name}.py"), text.module, first_line)
+    yield File(PurePosixPath(f"{codec_name(protocol)}.py"), text.codec, first_line)
 
 
-def source(protocol: Protocol, runtime: str = RUNTIME) -> str:
-    """The text of a protocol's module; `runtime` is where it imports the runtime from."""
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text of a protocol's two modules."""
+
+    module: str
+    """What people read: messages, and the functions and classes that they call."""
+    codec: str
+    """The machine text, which it imports."""
+
+
+def codec_name(protocol: Protocol) -> str:
+    """Name of the module of machine text."""
+    return f"_{protocol.name}_codec"
+
+
+def source(protocol: Protocol, runtime: str = RUNTIME, *, is_package: bool = False) -> Source:
+    """The text of a protocol's modules; `runtime` is where they import the runtime from.
+
+    With `is_package`, the module that people read is a package, which holds the other.
+    """
     module = view(protocol)
-    return (
-        environment("protogen.targets.python")
-        .get_template("module.py.j2")
-        .render(
-            module=module,
-            fast=fast_view(protocol, module.arguments),
-            runtime=runtime,
-            encode_doc=docstring(_encode_doc(module), 4),
-            encoder_doc=docstring(_encoder_doc(module), 8),
-        )
+    given = {
+        "module": module,
+        "fast": fast_view(protocol, module.arguments),
+        "runtime": runtime,
+        "codec": codec_name(protocol),
+        "is_package": is_package,
+        "encode_doc": docstring(_encode_doc(module), 4),
+        "encoder_doc": docstring(_encoder_doc(module), 8),
+    }
+    templates = environment("protogen.targets.python")
+    return Source(
+        module=templates.get_template("module.py.j2").render(given),
+        codec=templates.get_template("codec.py.j2").render(given),
     )
 
 
 kept_source = Kept(source, most=64)
-"""The text of a protocol's module, printed once: examples are verified by what is then written."""
+"""The text of a protocol's modules, printed once: examples are verified by what is then written."""
 
 
 def _encode_doc(module: Module) -> list[str]:

@@ -11,7 +11,6 @@ from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
-from protogen.targets.python.fast.frames import FastFrame
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
 from protogen.targets.python.spelling import class_name
@@ -293,8 +292,6 @@ def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
         parts,
         messages=tuple_of(shown),
         encode_only=tuple_of(encode_only) if encode_only else None,
-        cut=f"_cut_{sender.name}" if FastFrame(sender).can_cut else None,
-        waits=f"_waits_{sender.name}" if FastFrame(sender).can_wait else None,
     )
     return name + wrapped(expression, len(name), 0, after=0)
 

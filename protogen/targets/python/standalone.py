@@ -30,12 +30,16 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 def _package(protocol: Protocol) -> tuple[File, ...]:
     first_line = banner(PYTHON, [protocol])
     folder = PurePosixPath(protocol.name)
-    text = source(protocol, runtime=f".{_COPY}")
+    text = source(protocol, runtime=f".{_COPY}", is_package=True)
     copies = [
         File(folder / _COPY / name, "# SPDX-License-Identifier: 0BSD\n" + copied, first_line)
         for name, copied in _runtime()
     ]
-    return (File(folder / "__init__.py", text, first_line), *copies)
+    return (
+        File(folder / "__init__.py", text.module, first_line),
+        File(folder / "_codec.py", text.codec, first_line),
+        *copies,
+    )
 
 
 def _runtime() -> list[tuple[str, str]]:

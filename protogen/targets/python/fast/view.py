@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from protogen.model.messages import Message
@@ -59,7 +60,9 @@ class Fast:
     writers: str
     """Arguments that say how payloads come out of frames."""
     modules: tuple[str, ...]
-    """Modules of the standard library that the text names."""
+    """Modules that the text names: the standard library's, and the runtime's optional ones."""
+    names: tuple[str, ...]
+    """What the text takes from the module that people read: its classes, senders and tables."""
     tables: bool
     """Whether readers look values up in tables that have to be filled first."""
     codes: bool
@@ -87,6 +90,7 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
             if item
             for line in item.body
         ]
+    lines += [function.head for function in functions]
     joined = "\n".join(lines)
     tables, codes = constants.use("_TABLES."), constants.use("_CODES.")
     return Fast(
@@ -97,13 +101,37 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
         table=tuple(f"{class_name(name)}: _encode_{name}," for name in encoders),
         readers=_readers(protocol, around or (0, 0), tables),
         writers=_writers(protocol, of_caller, codes),
-        modules=tuple(name for name in ("re", "struct", "zlib") if _USES[name] in joined),
+        modules=tuple(name for name, used in _USES.items() if used in joined),
+        names=_names(protocol, joined, tables=tables, codes=codes),
         tables=tables,
         codes=codes,
     )
 
 
-_USES = {"re": "_re.", "struct": "_struct.", "zlib": "_adler32("}
+_USES = {
+    "re": "_re.",
+    "struct": "_struct.",
+    "zlib": "_adler32(",
+    "checksum": "_checksum.",
+    "transparency": "_transparency.",
+}
+
+
+def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple[str, ...]:
+    """What the text uses of the other module, sorted as imports are."""
+    words = set(_WORD.findall(used))
+    types = {item.name for item in protocol.enums}
+    types |= {item.name for item in protocol.flags}
+    types |= {item.name for item in protocol.structs}
+    kept = {"_DECODERS", "_ENCODERS"} | ({"_TABLES"} if tables else set())
+    kept |= {"_CODES"} if codes else set()
+    kept |= {f"{sender.name.upper()}_SENDER" for sender in protocol.senders}
+    kept |= {class_name(message.name) for message in protocol.messages}
+    kept |= words & set(map(class_name, types))
+    return tuple(sorted(kept))
+
+
+_WORD = re.compile(r"\w+")
 
 
 def _around(frames: list[FastFrame]) -> tuple[int, int] | None:
