@@ -14,7 +14,7 @@ from hypothesis import settings
 
 from protogen.fuzzing.c_calls import Step
 from protogen.model.protocol import Protocol
-from protogen.targets.c.framing import framing_view
+from protogen.targets.c.frame.framing import framing_view
 from protogen.targets.c.module import view
 from protogen.targets.c.options import COptions
 

@@ -9,12 +9,15 @@ from pathlib import PurePosixPath
 
 from jinja2 import Environment
 
+from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
 from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
-from protogen.targets.c.framing import FramingView, framing_view
+from protogen.targets.c.frame import expressions
+from protogen.targets.c.frame.framing import FramingView, framing_view
+from protogen.targets.c.frame.members import members_of, memory_of
+from protogen.targets.c.frame.stuffing import StuffingKind
 from protogen.targets.c.lines import prototype
-from protogen.targets.c.members import members_of, memory_of
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
@@ -85,7 +88,7 @@ def _print(module: Module, framing: FramingView | None, options: COptions) -> tu
 
 def _stubs(unit: Unit) -> str:
     """A source with an empty body for each handler."""
-    template = c_environment().get_template("stubs.c.j2")
+    template = c_environment().get_template("frame/stubs.c.j2")
     return template.render(module=unit.module, framing=unit.framing)
 
 
@@ -105,4 +108,10 @@ def c_environment() -> Environment:
     found.globals["prototype"] = prototype
     found.globals["members"] = members_of
     found.globals["memory"] = memory_of
+    found.globals["Start"] = StartRule
+    found.globals["Kind"] = StuffingKind
+    found.filters["hex"] = expressions.byte
+    found.filters["octets"] = expressions.octets
+    found.filters["byte_at"] = expressions.byte_at
+    found.filters["differs"] = expressions.differs
     return found

@@ -13,11 +13,11 @@ from protogen.fuzzing.c_driver import (
     Driver,
 )
 from protogen.model.protocol import Protocol
-from protogen.targets.c.decoder import DecoderView
 from protogen.targets.c.emit import Unit, emit, unit_of
-from protogen.targets.c.frames import MessageFrame
+from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.frame.handlers import Dispatch
+from protogen.targets.c.frame.message_frames import MessageFrame
 from protogen.targets.c.fuzz_driver.exchange import exchange_function
-from protogen.targets.c.handlers import Dispatch
 from protogen.targets.c.options import COptions
 from protogen.targets.printing import environment
 
@@ -111,7 +111,7 @@ def _frame_parts(item: MessageFrame) -> tuple[DrivenPart, ...]:
     frame = item.frame
     return tuple(
         DrivenPart(part.name, argument.type)
-        for part, argument in zip(frame.geometry.frame.caller_parts, frame.arguments, strict=True)
+        for part, argument in zip(frame.plan.frame.caller_parts, frame.arguments, strict=True)
     )
 
 
@@ -121,7 +121,7 @@ def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, st
         for frame, item in zip(frames, unit.framing.messages, strict=True)
         for sender in unit.protocol.senders
         if any(message.name == item.name for message in sender.messages)
-        and sender.frame == item.frame.decoder.geometry.frame
+        and sender.frame == item.frame.plan.frame
     }
 
 
@@ -133,7 +133,7 @@ def _decoder(
         decoder.name,
         decoder.prefix,
         decoder.all_events,
-        decoder.flat,
+        decoder.flat is not None,
         tuple(DrivenPart(part.name, part.type) for part in decoder.parts),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])

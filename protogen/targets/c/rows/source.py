@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from protogen.capture.schema import CaptureSchema, TableSchema
+from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol, Sender
-from protogen.targets.c.decoder import DecoderView, GroupView
 from protogen.targets.c.emit import Unit, c_environment, texts, unit_of
+from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.frame.groups import GroupView
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 
@@ -116,7 +118,7 @@ def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:
         and decoder.stuffing is None
         and decoder.seven_bit
         and decoder.known_by_identity
-        and decoder.start == "set"
+        and decoder.start is StartRule.SET
         and (decoder.head_size, decoder.tail_size, decoder.end_size) == (1, 0, 0)
         and not any(item.seven_bit or item.padding for item in decoder.head_numbers)
     )

@@ -1,11 +1,12 @@
-"""What a decoder remembers between bytes: the members of its struct."""
+"""Members of a decoder's struct: what it remembers between bytes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from protogen.targets.c.decoder import DecoderView
+from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.frame.stuffing import StuffingKind
 
 _POINTERS = 2
 """The handler and what it is given."""
@@ -46,7 +47,7 @@ def memory_of(view: DecoderView) -> int:
 
 
 def _counters(view: DecoderView) -> Iterator[Member]:
-    type_ = view.counter
+    type_, push = view.counter, view.push
     if view.flat:
         yield Member(type_, "content")
         if view.only_size is None:
@@ -56,45 +57,47 @@ def _counters(view: DecoderView) -> Iterator[Member]:
         yield Member("uint32_t", "offset")
     named = {
         "noise": view.all_events,
-        "wire": view.counts_wire,
+        "wire": push.counts_wire,
         "content": True,
         "payload": True,
         "limit": not view.simple,
         "count": view.keeps_wire,
         "next": view.keeps_wire,
-        "failed": view.keeps_wire or view.decides_later,
-        "extra": view.decides_later,
+        "failed": view.keeps_wire or push.decides_later,
+        "extra": push.decides_later,
         "due": view.can_measure,
         "open_from": view.ends_at_start,
-        "passed": view.wire_ends,
+        "passed": push.wire_ends,
     }
     yield from (Member(type_, name) for name, is_there in named.items() if is_there)
 
 
 def _states(view: DecoderView) -> Iterator[Member]:
-    stuffing = view.stuffing
+    stuffing, push = view.stuffing, view.push
+    kind = None if stuffing is None else stuffing.kind
+    is_push = view.flat is None
     named = {
-        "state": not view.flat,
-        "reason": view.all_events and (view.keeps_wire or view.decides_later),
-        "flags": not view.flat and view.has_flags,
+        "state": is_push,
+        "reason": view.all_events and (view.keeps_wire or push.decides_later),
+        "flags": is_push and push.has_flags,
         "group": view.can_measure,
-        "behind": not view.flat and view.keeps_behind,
-        "match": not view.flat and view.keeps_match,
+        "behind": is_push and push.keeps_behind,
+        "match": is_push and push.keeps_match,
         "shared": view.shares,
-        "held": not view.flat and view.searches and len(view.delimiter) > 1,
-        "end_left": view.awaits_end,
-        "region": stuffing is not None and not view.region_to_end,
+        "held": is_push and push.searches and push.holds_delimiter,
+        "end_left": push.awaits_end,
+        "region": push.crosses_region,
         "node": stuffing is not None,
-        "code": stuffing is not None and stuffing.kind in ("base16", "cobs"),
+        "code": kind in (StuffingKind.BASE16, StuffingKind.COBS),
     }
     yield from (Member("uint8_t", name) for name, is_there in named.items() if is_there)
-    if stuffing is not None and stuffing.kind == "lenient_codes":
+    if stuffing is not None and kind is StuffingKind.LENIENT_CODES:
         yield Member("uint8_t", "sequence", stuffing.longest)
 
 
 def _buffers(view: DecoderView) -> Iterator[Member]:
     yield Member("uint8_t", "buffer", view.buffer_size)
-    if view.store == "both":
+    if view.keeps_both:
         yield Member("uint8_t", "unstuffed", view.greatest)
-    if view.wire_ends:
+    if view.push.wire_ends:
         yield Member(view.counter, "ends", view.greatest)

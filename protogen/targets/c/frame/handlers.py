@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from protogen.targets.c.decoder import DecoderView
+from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.payload.messages import MessageView
 
 

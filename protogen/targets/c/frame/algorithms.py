@@ -1,4 +1,4 @@
-"""Checksums as C functions: a register, what a byte does to it, and what is sent in the end."""
+"""Checksum algorithms as C: a register, what a byte does to it, and what is sent in the end."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from protogen.targets.c.spelling import unsigned_type
 
 
 @dataclass(frozen=True, slots=True)
-class Checksum:
+class Algorithm:
     """One algorithm.
 
     CRCs whose bytes enter most significant bit first are kept in the upper bits of the register, so
@@ -31,46 +31,46 @@ class Checksum:
     final: str
     """The result, made of `sum`."""
     loops: bool
-    """Whether the steps need a counter `bit`."""
+    """True if the steps need a counter `bit`."""
     reverses: bool
-    """Whether the result needs its bits reversed."""
+    """True if the result needs its bits reversed."""
 
 
-def checksum_of(spec: ChecksumSpec, function: str) -> Checksum:
+def algorithm_of(spec: ChecksumSpec, function: str) -> Algorithm:
     """The C of an algorithm, under that name."""
     makers = {"xor": _xor, "sum": _sum, "fletcher": _fletcher, "crc": _crc}
     return makers[spec.kind](spec, function)
 
 
-def _xor(spec: ChecksumSpec, function: str) -> Checksum:
+def _xor(spec: ChecksumSpec, function: str) -> Algorithm:
     return _simple(spec, function, "sum = (uint8_t)(sum ^ byte);", "sum")
 
 
-def _sum(spec: ChecksumSpec, function: str) -> Checksum:
+def _sum(spec: ChecksumSpec, function: str) -> Algorithm:
     final = "(uint8_t)(0U - sum)" if spec.negated else "sum"
     return _simple(spec, function, "sum = (uint8_t)(sum + byte);", final)
 
 
-def _simple(spec: ChecksumSpec, function: str, step: str, final: str) -> Checksum:
+def _simple(spec: ChecksumSpec, function: str, step: str, final: str) -> Algorithm:
     init = f"0x{spec.init:02X}"
-    return Checksum(
+    return Algorithm(
         function, spec.name, spec.kind, "uint8_t", "uint8_t", 8, init, (step,), final, False, False
     )
 
 
-def _fletcher(spec: ChecksumSpec, function: str) -> Checksum:
+def _fletcher(spec: ChecksumSpec, function: str) -> Algorithm:
     """The low byte is the sum of the bytes, the high byte the sum of those sums."""
     steps = (
         f"const uint8_t low = (uint8_t)(((sum & 0xFFU) + byte) % {spec.modulus}U);",
         f"const uint8_t high = (uint8_t)(((sum >> 8) + low) % {spec.modulus}U);",
         "sum = (uint16_t)((uint16_t)(high << 8) | low);",
     )
-    return Checksum(
+    return Algorithm(
         function, spec.name, spec.kind, "uint16_t", "uint16_t", 16, "0", steps, "sum", False, False
     )
 
 
-def _crc(spec: ChecksumSpec, function: str) -> Checksum:
+def _crc(spec: ChecksumSpec, function: str) -> Algorithm:
     bits = storage_bits(spec.width)
     type_ = unsigned_type(spec.width)
     spare = bits - spec.width
@@ -97,7 +97,7 @@ def _crc(spec: ChecksumSpec, function: str) -> Checksum:
     result = f"{function}_reversed({register})" if reverses else register
     if spec.xorout:
         result = f"({type_})({result} ^ {_hex(spec.xorout, bits, digits)})"
-    return Checksum(
+    return Algorithm(
         function,
         spec.name,
         spec.kind,

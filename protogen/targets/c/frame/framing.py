@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from protogen.model.protocol import Protocol, Sender
-from protogen.targets.c.checksums import Checksum
-from protogen.targets.c.decoder import DecoderView, decoder_view
-from protogen.targets.c.frames import FrameView, MessageFrame, frame_view, message_frame
-from protogen.targets.c.handlers import Dispatch, dispatches
+from protogen.targets.c.frame.algorithms import Algorithm
+from protogen.targets.c.frame.decoder import DecoderView, decoder_view
+from protogen.targets.c.frame.frames import FrameView
+from protogen.targets.c.frame.handlers import Dispatch, dispatches
+from protogen.targets.c.frame.message_frames import MessageFrame, message_frame
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.writers import is_stateless
@@ -31,7 +32,7 @@ class FramingView:
     frames: tuple[FrameView, ...]
     """One of each kind: senders with the same frame share what builds it."""
     messages: tuple[MessageFrame, ...]
-    checksums: tuple[Checksum, ...]
+    checksums: tuple[Algorithm, ...]
     sums: tuple[Sum, ...]
     sinks: tuple[str, ...]
     """Functions that the payloads share where they are written byte by byte."""
@@ -41,27 +42,32 @@ class FramingView:
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
     stateless: bool
-    """Whether what is sent byte by byte goes out as it is."""
+    """True if what is sent byte by byte goes out as it is."""
     writes: bool
-    """Whether any of these hands over a byte."""
+    """True if any of these hands over a byte."""
     cut_checks: frozenset[str]
     """The frames, by their sender, some of which a decoder might end too early."""
     idle_checks: frozenset[str]
     """Those some of which a decoder might take for an idle line."""
 
     @property
+    def sends(self) -> bool:
+        """True if some message can be sent byte by byte."""
+        return any(message.sends for message in self.messages)
+
+    @property
     def takes_whole(self) -> bool:
-        """Whether some decoder takes whole frames out of what it is fed."""
+        """True if some decoder takes whole frames out of what it is fed."""
         return any(decoder.whole for decoder in self.decoders)
 
     @property
     def unstuffs_whole(self) -> bool:
-        """Whether some of these frames are stuffed."""
+        """True if some of these frames are stuffed."""
         return any(decoder.whole and decoder.stuffing for decoder in self.decoders)
 
     @property
     def finds_high(self) -> bool:
-        """Whether some of these frames have bytes that carry seven bits alone."""
+        """True if some of these frames have bytes that carry seven bits alone."""
         return any(d.whole and d.seven_bit and not d.stuffing for d in self.decoders)
 
 
@@ -74,16 +80,8 @@ def framing_view(
     """The frames and decoders of the senders that were chosen."""
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
-    titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
     decoders = tuple(
-        decoder_view(
-            protocol.name,
-            sender,
-            titles[sender.name],
-            views,
-            all_events=options.events == "all",
-        )
-        for sender in senders
+        decoder_view(protocol.name, sender, views, options.events) for sender in senders
     )
     frames = _frames(senders, decoders)
     distinct = _distinct(frames)
@@ -135,7 +133,7 @@ def _frames(senders: list[Sender], decoders: tuple[DecoderView, ...]) -> dict[st
     for sender, decoder in zip(senders, decoders, strict=True):
         known = next((view for other, view in views if other.frame == sender.frame), None)
         if known is None:
-            known = frame_view(decoder)
+            known = FrameView(decoder)
             views.append((sender, known))
         frames[sender.name] = known
     return frames
@@ -150,11 +148,10 @@ def _message_frames(
     by_name = {decoder.name: decoder for decoder in decoders}
     for message in protocol.messages:
         own = {frames[name].decoder.name: name for name in message.senders if name in frames}
-        for frame_name in own if message.name in views else ():
-            frame = frames[frame_name]
+        for frame_name, name in own.items() if message.name in views else ():
             suffix = f"_from_{frame_name}" if len(own) > 1 else ""
-            decoder = by_name[own[frame_name]]
-            yield message_frame(frame, decoder, message, views[message.name], suffix)
+            sender, view = protocol.sender(name), views[message.name]
+            yield message_frame(frames[name], by_name[name], sender, message, view, suffix)
 
 
 def _distinct(frames: dict[str, FrameView]) -> tuple[FrameView, ...]:
@@ -168,5 +165,5 @@ def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions)
     return any(message.name in views for message in sender.messages)
 
 
-def _checksums(decoder: DecoderView) -> list[Checksum]:
+def _checksums(decoder: DecoderView) -> list[Algorithm]:
     return [item.checksum for item in decoder.checksums]

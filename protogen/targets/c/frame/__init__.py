@@ -1,0 +1,1 @@
+"""The frame side: decoders, and what is put around payloads."""

@@ -1,0 +1,104 @@
+"""Checksum parts, as a receiver verifies them and a sender fills them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protogen.model.checksums import ChecksumSpec, find_algorithm
+from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
+from protogen.model.types import Integer
+from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
+from protogen.targets.c.frame.expressions import Index, differs, wire_bytes
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredRun:
+    """A run of content that a checksum covers."""
+
+    first: Index
+    last: Index
+    stuffed: bool
+    """True if it is stuffed on the wire, and the checksum covers what is there."""
+    literal: bytes = b""
+
+    def of(self, payload: str) -> str:
+        """Where it begins and how long it is, where `payload` is the C of the payload's size."""
+        first, last = self.first.of(payload), self.last.of(payload)
+        return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredLiteral:
+    """A literal of the end that a checksum covers."""
+
+    literal: bytes
+    stuffed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ChecksumView:
+    """A checksum part."""
+
+    name: str
+    checksum: Algorithm
+    type: Integer
+    covers: tuple[CoveredRun | CoveredLiteral, ...]
+    at: Index
+    """Where its first byte is in the content."""
+    optional: bool
+    over_wire: bool
+    sums_stuffed: bool
+    """True if some of what it covers is stuffed on the wire before it is summed."""
+
+    @property
+    def size(self) -> int:
+        """Bytes of content."""
+        return self.type.size
+
+    def wire_bytes(self, value: str) -> tuple[str, ...]:
+        """The bytes of a result in wire order."""
+        return wire_bytes(self.type, value)
+
+    def differs(self, payload: str) -> str:
+        """The condition that `content` has other bytes than those of `due`."""
+        place = self.at.place
+        at = place.offset if place.side is Side.HEAD else self.at.of(payload)
+        return differs(self.wire_bytes("due"), "content", at)
+
+
+def checksums_of(plan: FramePlan, protocol: str) -> tuple[ChecksumView, ...]:
+    """The views of a frame's checksums."""
+    return tuple(_checksum(plan, item, protocol) for item in plan.checksums)
+
+
+def _checksum(plan: FramePlan, item: ChecksumPlan, protocol: str) -> ChecksumView:
+    part = item.part
+    return ChecksumView(
+        name=part.name,
+        checksum=algorithm_of(part.algorithm, checksum_name(protocol, part.algorithm)),
+        type=part.type,
+        covers=tuple(
+            CoveredRun(
+                Index(cover.first, plan.head_size),
+                Index(cover.end, plan.head_size),
+                cover.over_stuffing,
+            )
+            if isinstance(cover, Run)
+            else CoveredLiteral(cover)
+            for cover in item.covers
+        ),
+        at=Index(item.placed.place, plan.head_size),
+        optional=part.when_payload,
+        over_wire=part.over_wire,
+        sums_stuffed=item.over_stuffing,
+    )
+
+
+def checksum_name(protocol: str, spec: ChecksumSpec) -> str:
+    """The name of the C function of an algorithm."""
+    name = spec.name
+    if find_algorithm(name) != spec:  # The schema gives the parameters.
+        order = f"{'r' if spec.refin else 'n'}{'r' if spec.refout else 'n'}"
+        name = f"crc_{spec.width}_{spec.poly:x}_{spec.init:x}_{order}_{spec.xorout:x}"
+    letters = "".join(c if c.isalnum() else "_" for c in name.lower())
+    return f"{protocol}_{letters}".replace("__", "_")

@@ -1,0 +1,55 @@
+"""A sender's decoder: its frames, and the style in which it is printed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from protogen.model.protocol import Sender
+from protogen.targets.c.frame.flat import FlatDecoder
+from protogen.targets.c.frame.groups import groups_of
+from protogen.targets.c.frame.push import PushDecoder
+from protogen.targets.c.frame.received import ReceivedFrame
+from protogen.targets.c.frame.style import DecoderStyle, decoder_style
+from protogen.targets.c.frame.whole import WholeFrames, whole_frames
+from protogen.targets.c.options import Events
+from protogen.targets.c.payload.messages import MessageView
+
+
+@dataclass(frozen=True)
+class DecoderView(ReceivedFrame):
+    """Everything that the templates print of a decoder."""
+
+    @cached_property
+    def flat(self) -> FlatDecoder | None:
+        """What a flat decoder is made of, if this is one."""
+        is_flat = decoder_style(self.plan, self.events) is DecoderStyle.FLAT
+        return FlatDecoder(self) if is_flat else None
+
+    @cached_property
+    def push(self) -> PushDecoder:
+        """What a decoder with states is made of."""
+        return PushDecoder(self)
+
+    @cached_property
+    def whole(self) -> WholeFrames | None:
+        """How `feed` takes a frame at once, if it can."""
+        return whole_frames(self)
+
+    @property
+    def takes_content(self) -> bool:
+        """True if a frame may be delivered from where it stands in the input."""
+        return self.whole is not None and self.stuffing is None
+
+    @property
+    def only_size(self) -> int | None:
+        """Size of the payload, where a flat decoder knows messages of one fixed size alone."""
+        return None if self.flat is None else self.flat.only_size
+
+
+def decoder_view(
+    protocol: str, sender: Sender, views: Mapping[str, MessageView], events: Events
+) -> DecoderView:
+    """The view of a sender's decoder; `views` has the messages that were chosen."""
+    return DecoderView(protocol, sender.name, sender.plan, groups_of(sender.plan, views), events)

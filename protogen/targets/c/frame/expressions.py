@@ -1,0 +1,118 @@
+"""Fragments of C about the bytes of a frame, as values that one place writes.
+
+Where the size of the payload is kept depends on who asks: a decoder has it as a member, an encoder
+as a parameter, and one that knows a single size as a constant. So nothing here holds it; whoever
+writes a fragment gives its C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from protogen.model.frame_plan import Place, Side
+from protogen.model.types import Integer
+from protogen.targets.c.spelling import unsigned_type
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """An index into the content of a frame."""
+
+    place: Place
+    head_size: int
+
+    def of(self, payload: str) -> str:
+        """The index, where `payload` is the C of the payload's size."""
+        place = self.place
+        if place.side is Side.HEAD:
+            return f"{place.offset}U"
+        if not place.absent:
+            return f"{self.head_size + place.offset}U + {payload}"
+        left = place.offset - place.absent
+        return f"{self.head_size}U + {payload} + ({payload} == 0U ? {left}U : {place.offset}U)"
+
+
+def less_absent(place: Place, payload: str, suffix: str = "U") -> str:
+    """What is taken off an offset of the tail where the payload is empty, with its sign."""
+    if place.side is Side.HEAD or not place.absent:
+        return ""
+    return f" - ({payload} == 0{suffix} ? {place.absent}{suffix} : 0{suffix})"
+
+
+# --- bytes ----------------------------------------------------------------------------------------
+
+
+def byte(value: int) -> str:
+    """A byte in hexadecimal digits."""
+    return f"0x{value:02X}"
+
+
+def octets(data: bytes) -> str:
+    """The bytes of an initialiser."""
+    return ", ".join(byte(value) for value in data)
+
+
+def byte_at(data: bytes, index: str) -> str:
+    """The byte of a literal at a place that varies."""
+    last = byte(data[-1])
+    if len(data) == 1:
+        return last
+    chosen = "".join(f"{index} == {i}U ? {byte(value)} : " for i, value in enumerate(data[:-1]))
+    return f"({chosen}{last})"
+
+
+def differs(data: Iterable[int | str], array: str, at: int | str = 0) -> str:
+    """The condition that something else than these bytes stands there."""
+    return " || ".join(f"{item} != {value}" for item, value in _pairs(data, array, at))
+
+
+def equals(data: Iterable[int | str], array: str, at: int | str = 0, suffix: str = "U") -> str:
+    """The condition that these bytes stand there."""
+    return " && ".join(f"{item} == {value}" for item, value in _pairs(data, array, at, suffix))
+
+
+def _pairs(
+    data: Iterable[int | str], array: str, at: int | str, suffix: str = "U"
+) -> Iterable[tuple[str, str]]:
+    for offset, value in enumerate(data):
+        if isinstance(at, int):
+            index = str(at + offset)
+        else:
+            index = f"{at} + {offset}{suffix}" if offset else at
+        yield f"{array}[{index}]", byte(value) if isinstance(value, int) else value
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def wire_bytes(type_: Integer, value: str) -> tuple[str, ...]:
+    """The bytes of an unsigned `value`, in wire order."""
+    places = range(0, type_.byte_bits * type_.size, type_.byte_bits)
+    mask = " & 0x7F" if type_.byte_bits == 7 else ""
+    items = [_byte_of(value, shift, mask) for shift in places]
+    return tuple(items if type_.byte_order == "little" else reversed(items))
+
+
+def _byte_of(value: str, shift: int, mask: str) -> str:
+    shifted = f"({value} >> {shift})" if shift and mask else f"{value} >> {shift}"
+    if not shift:
+        shifted = value
+    return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
+
+
+def number_of(type_: Integer, at: str, offset: int, less: str = "") -> str:
+    """The unsigned value of the bytes from `at[offset]` on, padding bits included.
+
+    `less` is C that is put behind each index.
+    """
+    if type_.size == 1:
+        return f"{at}[{offset}{less}]"
+    target = unsigned_type(type_.byte_bits * type_.size)
+    order = range(type_.size) if type_.byte_order == "little" else range(type_.size - 1, -1, -1)
+    terms = []
+    for place, index in enumerate(order):
+        shift = place * type_.byte_bits
+        term = f"({target}){at}[{offset + index}{less}]"
+        terms.append(f"({target})({term} << {shift})" if shift else term)
+    return f"({target})({' | '.join(terms)})"

@@ -1,0 +1,192 @@
+"""A flat decoder in C: its counters, and the conditions that are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from protogen.targets.c.frame import style
+from protogen.targets.c.frame.expressions import byte
+from protogen.targets.c.frame.groups import GroupView
+from protogen.targets.c.frame.numbers import NumberView
+from protogen.targets.c.frame.received import ReceivedFrame
+from protogen.targets.c.frame.stuffing import Branch, Node
+
+
+@dataclass(frozen=True)
+class FlatDecoder:
+    """What only a flat decoder is made of."""
+
+    decoder: ReceivedFrame
+
+    # --- counters ---------------------------------------------------------------------------------
+
+    @cached_property
+    def only_size(self) -> int | None:
+        """The payload's size where all messages have the same, and each identity one message.
+
+        Frames of other sizes are given up where they tell their size: nobody asks for them, and no
+        frame can start inside of them.
+        """
+        groups = self.decoder.groups
+        sizes = {group.fixed if len(group.messages) == 1 else None for group in groups}
+        return sizes.pop() if len(sizes) == 1 else None
+
+    @property
+    def payload(self) -> str:
+        """The payload's size in C."""
+        return "payload" if self.only_size is None else f"{self.only_size}U"
+
+    @property
+    def limit(self) -> str:
+        """Bytes of content of the frame, as far as is known."""
+        if self.only_size is None:
+            return "decoder->limit"
+        return f"{self.decoder.around + self.only_size}U"
+
+    @property
+    def idle_member(self) -> str:
+        """The counter that says that no candidate is open.
+
+        No byte gets into a candidate whose limit is nought, which is the shortest test; but only
+        where a limit is all that is in front of it can that not be mistaken for a payload's size.
+        """
+        is_size = self.decoder.around > self.decoder.first_head
+        return "content" if is_size or self.only_size is not None else "limit"
+
+    @property
+    def idle_value(self) -> int:
+        """What that counter is then: nothing, or more than there is room for.
+
+        A frame that is complete but for its end has no room either, which is the same test.
+        """
+        is_bounded = self.only_size is not None and not self.decoder.end
+        is_nothing = is_bounded or self.idle_member == "limit"
+        return 0 if is_nothing else self.decoder.buffer_size + 1
+
+    @property
+    def has_no_room(self) -> str:
+        """The condition that no byte of content is due."""
+        is_nothing = self.idle_member == "content" and self.idle_value == 0
+        return "at == 0U" if is_nothing else f"at >= {self.limit}"
+
+    # --- start and end ----------------------------------------------------------------------------
+
+    @property
+    def is_start(self) -> str:
+        """The condition that a byte is a start."""
+        return "byte > 0x7FU" if self.decoder.gives_up_high_bytes else self.decoder.is_start("byte")
+
+    @property
+    def identity_is_start(self) -> bool:
+        """True if a start is the whole identity, and tells the payload's size."""
+        return style.identity_is_start(self.decoder.plan)
+
+    @property
+    def keeps_start(self) -> bool:
+        """True if something reads the start's bytes again."""
+        first_head = self.decoder.first_head
+        runs = [run for c in self.decoder.plan.checksums for run in c.covers]
+        return not self.decoder.literal or any(
+            not isinstance(run, bytes) and run.first.at(self.decoder.head_size, 0) < first_head
+            for run in runs
+        )
+
+    @property
+    def completes_with_start(self) -> bool:
+        """True if some frame is a start and nothing else."""
+        d = self.decoder
+        fits = d.around == d.first_head and not d.end
+        return fits and any(group.fixed == 0 for group in d.groups)
+
+    @property
+    def is_complete(self) -> str:
+        """The condition that all content is there where an end comes."""
+        return f"at == {self.limit}" + (" && decoder->node == 0U" if self.decoder.stuffing else "")
+
+    # --- parts ------------------------------------------------------------------------------------
+
+    @property
+    def checks_head(self) -> bool:
+        """True if something behind the start, in front of the payload, is looked at."""
+        d = self.decoder
+        indices = [item.index for item in d.head_literals] + [n.last for n in d.head_numbers]
+        return any(index >= d.first_head for index in indices)
+
+    def declares(self, number: NumberView) -> bool:
+        """True if the case of a number has variables."""
+        return number.is_length or (number.identifies and self.only_size is None)
+
+    @property
+    def shows_tail(self) -> bool:
+        """True if events show a part from behind the payload."""
+        return any(not part.placed.in_head for part in self.decoder.parts)
+
+    # --- messages ---------------------------------------------------------------------------------
+
+    @property
+    def always_known(self) -> bool:
+        """True if every frame that gets to its end is a message."""
+        messages = [message for group in self.decoder.groups for message in group.messages]
+        return self.decoder.known_by_identity and not any(message.checks for message in messages)
+
+    @property
+    def tells_by_key(self) -> bool:
+        """True if the identity has to be looked at again."""
+        d = self.decoder
+        return d.identified and not (d.known_by_identity and len(d.groups) == 1)
+
+    def size_is_certain(self, group: GroupView) -> bool:
+        """True if a payload of that identity has a size that its message can have."""
+        if self.only_size is not None:
+            return True
+        if self.decoder.known_by_identity and group.fixed is not None:
+            return True
+        message = group.messages[0]
+        return len(group.messages) == 1 and bool(message.checks) and not message.fixed
+
+    # --- stuffing ---------------------------------------------------------------------------------
+
+    def branches(self, node: Node) -> tuple[Branch, ...]:
+        """The branches of a node that a byte can get to."""
+        d = self.decoder
+        return tuple(b for b in node.branches if d.escape_starts or b.byte not in d.never_passed)
+
+    @property
+    def refused(self) -> tuple[int, ...]:
+        """Bytes that never stand for themselves, and are no delimiters."""
+        d = self.decoder
+        assert d.stuffing is not None
+        refused = d.stuffing.nodes[0].refused
+        return tuple(b for b in refused if d.escape_starts or b not in d.never_passed)
+
+    @property
+    def further_branches(self) -> Iterator[tuple[str, Branch]]:
+        """The conditions of the branches behind the first byte of a sequence."""
+        assert self.decoder.stuffing is not None
+        for node in self.decoder.stuffing.nodes[1:]:
+            for branch in self.branches(node):
+                yield f"byte == {byte(branch.byte)}{self._and_at(node)}", branch
+
+    def _and_at(self, node: Node) -> str:
+        assert self.decoder.stuffing is not None
+        is_only = len(self.decoder.stuffing.nodes) <= 2
+        return "" if is_only else f" && decoder->node == {node.number}U"
+
+    @property
+    def is_second_of_start(self) -> str:
+        """The condition that a byte behind a delimiter's first is the start's second."""
+        d = self.decoder
+        assert d.stuffing is not None
+        condition = f"byte == {byte(d.literal[1])}"
+        if len(d.escape_nodes) == len(d.stuffing.nodes) - 1:
+            return condition
+        places = " || ".join(f"decoder->node == {node.number}U" for node in d.escape_nodes)
+        return f"{condition} && ({places})"
+
+    @property
+    def is_second_of_end(self) -> str:
+        """The same of the end."""
+        d = self.decoder
+        return f"byte == {byte(d.end[1])}{self._and_at(d.escape_nodes[0])}"

@@ -1,0 +1,347 @@
+"""Whole frames: what is put around a payload, and how the stuffed region is stuffed.
+
+A frame is built in the caller's buffer. The content stands right-aligned in the room that the
+frame can need at most; stuffing then writes it from the left and never overtakes itself, so that no
+second buffer is needed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from protogen.model.frame import (
+    ChecksumPart,
+    CounterPart,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+    PayloadPart,
+    ValuePart,
+)
+from protogen.model.frame_plan import FramePlan, PlacedPart, Side
+from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
+from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.frame.expressions import Index, equals, less_absent, wire_bytes
+from protogen.targets.c.frame.stuffing import Stuffing
+from protogen.targets.c.spelling import unsigned_type
+
+_STUFFED = 128
+_FEW = 4
+"""So many bytes are copied one by one, without a loop."""
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """A part of the frame that the caller gives."""
+
+    name: str
+    part: str
+    """What the schema calls it."""
+    type: str
+    doc: str
+    refused: str
+    """The condition of a value out of range; empty where all of the type's are in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByteStore:
+    """One byte of a part, at an offset from the head's or tail's first byte."""
+
+    index: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What fills one part of the content."""
+
+    in_head: bool
+    stores: tuple[ByteStore, ...]
+    checksum: ChecksumView | None = None
+    flags: int | None = None
+    """What a writer does with its bytes, where that is not what it did with those before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Half:
+    """What is sent byte by byte in front of the payload, or behind it."""
+
+    name: str
+    steps: tuple[Step, ...]
+    end: bytes = b""
+    flags: int | None = None
+    """What a writer does with the payload's bytes, where that changes."""
+
+    @property
+    def is_empty(self) -> bool:
+        """True if nothing is sent."""
+        return not self.steps and not self.end
+
+
+@dataclass(frozen=True)
+class FrameView:
+    """A sender's frame, as it is built."""
+
+    decoder: DecoderView
+
+    @property
+    def plan(self) -> FramePlan:
+        """The plan of the frame."""
+        return self.decoder.plan
+
+    @property
+    def _stuffing(self) -> Stuffing | None:
+        return self.decoder.stuffing
+
+    # --- arguments --------------------------------------------------------------------------------
+
+    @cached_property
+    def identity(self) -> tuple[Argument, ...]:
+        """The identity parts."""
+        return tuple(_argument(part) for part in self.plan.identity)
+
+    @cached_property
+    def arguments(self) -> tuple[Argument, ...]:
+        """The parts that the caller gives."""
+        return tuple(_argument(part) for part in self.plan.frame.caller_parts)
+
+    @property
+    def parameters(self) -> str:
+        """The same as parameters behind others."""
+        return "".join(f", {item.type} {item.name}" for item in self.identity + self.arguments)
+
+    # --- sizes ------------------------------------------------------------------------------------
+
+    @cached_property
+    def tail_size(self) -> str:
+        """Bytes behind the payload."""
+        d = self.decoder
+        if not d.optional_size:
+            return f"{d.tail_size}u"
+        return f"(payload == 0u ? {d.tail_size - d.optional_size}u : {d.tail_size}u)"
+
+    @property
+    def content_size(self) -> str:
+        """Bytes of content."""
+        return f"{self.decoder.head_size}u + payload + {self.tail_size}"
+
+    @property
+    def length(self) -> str:
+        """The length part's value; empty where there is none."""
+        view = self.decoder.length
+        if view is None:
+            return ""
+        if not view.optional:
+            return f"{view.base}u + payload" if view.base else "payload"
+        return f"(payload == 0u ? {view.base}u : {view.base + view.optional}u + payload)"
+
+    @property
+    def length_type(self) -> str:
+        """Type of the length part's value."""
+        length = self.plan.length
+        return "" if length is None else unsigned_type(max(16, length.part.type.bits))
+
+    # --- the stuffed region -----------------------------------------------------------------------
+
+    @property
+    def is_cobs(self) -> bool:
+        """True if the region is stuffed in groups."""
+        return self._stuffing is not None and self._stuffing.is_cobs
+
+    @property
+    def worst(self) -> int:
+        """Bytes on the wire for one stuffed byte, at most."""
+        return 1 if self._stuffing is None else self._stuffing.longest
+
+    @property
+    def region_begin(self) -> str:
+        """Bytes of content in front of the region."""
+        assert self.plan.region is not None
+        return Index(self.plan.region.first, self.plan.head_size).of("payload")
+
+    @property
+    def region_end(self) -> str:
+        """Bytes of content up to the region's end."""
+        assert self.plan.region is not None
+        return Index(self.plan.region.end, self.plan.head_size).of("payload")
+
+    @property
+    def begins_at(self) -> int | None:
+        """Bytes in front of the stuffed region, where these are few and always as many."""
+        region = self.plan.region
+        if region is None or region.first.side is Side.TAIL or region.first.offset > _FEW:
+            return None
+        return region.first.offset
+
+    @property
+    def escaped_byte(self) -> str:
+        """A byte as it stands behind the escape."""
+        assert self._stuffing is not None
+        xor = self._stuffing.xor
+        return f"(uint8_t)(byte ^ 0x{xor:02X}u)" if xor else "byte"
+
+    def stuffs_bytes(self, streaming: tuple[str, ...]) -> bool:
+        """True if bytes are stuffed one by one, because they are summed or sent so."""
+        if self._stuffing is None or self.is_cobs:
+            return False
+        return self.sums_stuffed or self.decoder.name in streaming
+
+    @property
+    def sums_stuffed(self) -> bool:
+        """True if a checksum covers stuffed bytes as they are on the wire."""
+        return any(item.sums_stuffed for item in self.decoder.checksums)
+
+    @cached_property
+    def summed(self) -> ChecksumView | None:
+        """The checksum that is worked out while the bytes that it covers are stuffed.
+
+        It covers all that is stuffed, and nothing but its own bytes stands behind that.
+        """
+        if self._stuffing is None or self.is_cobs or len(self.decoder.checksums) != 1:
+            return None
+        checksum = self.decoder.checksums[0]
+        is_alone = len(self.plan.tail) == 1 and checksum.at.place.side is not Side.HEAD
+        plain = is_alone and not checksum.optional and not checksum.over_wire
+        fits = plain and self.decoder.region_to_end and self._covers_region(checksum)
+        return checksum if fits else None
+
+    def _covers_region(self, checksum: ChecksumView) -> bool:
+        """True if a checksum covers all from the region's first byte to the payload's last."""
+        cover = checksum.covers[0] if len(checksum.covers) == 1 else None
+        if self.begins_at is None or not isinstance(cover, CoveredRun):
+            return False
+        first, last = cover.first.place, cover.last.place
+        begins = first.side is Side.HEAD and first.offset == self.begins_at
+        return begins and last.side is Side.TAIL and last.offset == 0
+
+    @property
+    def sum_is_due(self) -> str:
+        """The condition that all went by that the checksum covers."""
+        assert self.summed is not None
+        return f"from + {self.summed.size}u == stuffed"
+
+    @property
+    def summed_byte(self) -> str:
+        """The checksum of one byte."""
+        assert self.summed is not None
+        return self.summed.wire_bytes(f"{self.summed.checksum.function}_final(sum)")[0]
+
+    # --- the parts --------------------------------------------------------------------------------
+
+    @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The parts in the order in which they can be filled: checksums behind what they cover."""
+        plain = [item for item in self.plan.placed if not isinstance(item.part, ChecksumPart)]
+        left = [item for item in self.plan.placed if isinstance(item.part, ChecksumPart)]
+        done: list[PlacedPart] = []
+        while left:
+            names = {item.name for item in left}
+            ready = next(item for item in left if names.isdisjoint(_covered(item)))
+            left.remove(ready)
+            done.append(ready)
+        return tuple(self._step(item) for item in (*plain, *done))
+
+    @property
+    def steps_ahead(self) -> tuple[Step, ...]:
+        """Those of them that are filled before anything is stuffed."""
+        summed = self.summed
+        return tuple(s for s in self.steps if summed is None or s.checksum is not summed)
+
+    def _step(self, item: PlacedPart) -> Step:
+        part = item.part
+        less = less_absent(item.place, "payload", "u")
+        match part:
+            case LiteralPart():
+                values = tuple(f"0x{byte:02X}" for byte in part.bytes)
+            case LengthPart():
+                values = wire_bytes(part.type, "length")
+            case NumberPart():
+                values = wire_bytes(part.type, argument_name(part.name))
+            case ChecksumPart():
+                values = wire_bytes(part.type, "due")
+            case _:
+                values = ()
+        stores = tuple(
+            ByteStore(f"{item.offset + index}u{less}", value) for index, value in enumerate(values)
+        )
+        checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
+        return Step(item.in_head, stores, checksum)
+
+    # --- byte by byte -----------------------------------------------------------------------------
+
+    @property
+    def sends_tail(self) -> bool:
+        """True if something is sent behind the payload."""
+        return bool(self.plan.end_bytes or self.plan.tail)
+
+    @cached_property
+    def halves(self) -> tuple[Half, ...]:
+        """What is sent in front of the payload and behind it."""
+        steps: list[Step] = []
+        payload_flags: int | None = None
+        before = 0
+        placed = {item.name: item for item in self.plan.placed}
+        for part in self.plan.frame.parts:
+            flags = self._flags(part.name)
+            change = None if flags == before else flags
+            if isinstance(part, PayloadPart):
+                payload_flags = change
+            elif part.name in placed:
+                steps.append(replace(self._step(placed[part.name]), flags=change))
+            else:
+                continue
+            before = flags
+        head = Half("head", tuple(s for s in steps if s.in_head), flags=payload_flags)
+        tail = Half("tail", tuple(s for s in steps if not s.in_head), self.plan.end_bytes)
+        return (head, tail) if self.sends_tail else (head,)
+
+    def _flags(self, name: str) -> int:
+        """Which checksums cover a part, and whether it is stuffed."""
+        checksums = enumerate(self.plan.frame.checksums)
+        covering = sum(1 << index for index, part in checksums if name in part.covers)
+        region = self.plan.region
+        return covering | (_STUFFED if region is not None and name in region.parts else 0)
+
+    # --- what a decoder would make of it ----------------------------------------------------------
+
+    @property
+    def end_behind_start(self) -> str:
+        """The condition that an end stands right behind the start."""
+        return equals(self.plan.end_bytes, "frame", self.decoder.start_size)
+
+    @property
+    def end_at_index(self) -> str:
+        """The condition that an end stands at `index`."""
+        return equals(self.plan.end_bytes, "frame", "index", "u")
+
+
+def _covered(item: PlacedPart) -> set[str]:
+    part = item.part
+    return set(part.covers) - {part.name} if isinstance(part, ChecksumPart) else set()
+
+
+_WORDS = (
+    "byte capacity code content due frame from full high index length literal low message payload "
+    "put result size sum tail to user wire writer"
+)
+_LOCAL = frozenset(_WORDS.split())
+"""What the functions call their own variables."""
+
+
+def argument_name(part: str) -> str:
+    """What the functions call a part that the caller gives."""
+    return f"{part}_part" if part in _LOCAL else part
+
+
+def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
+    bits = part.type.width
+    name = argument_name(part.name)
+    conditions = []
+    if part.least > 0:
+        conditions.append(f"{name} < {part.least}u")
+    if part.greatest < (1 << bits) - 1:
+        conditions.append(f"{name} > {part.greatest}u")
+    type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
+    return Argument(name, part.name, type_, part.about.doc, refused)

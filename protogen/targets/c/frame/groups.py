@@ -1,0 +1,106 @@
+"""Messages by their identity, as a receiver tells them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from protogen.model.frame_plan import FramePlan, IdentityGroup
+from protogen.model.messages import Message
+from protogen.model.types import storage_bits
+from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.spelling import unsigned_type
+
+
+@dataclass(frozen=True, slots=True)
+class ReceivedMessage:
+    """How a receiver tells a message, and whether a payload is its."""
+
+    name: str
+    constant: str
+    least: int
+    greatest: int
+    step: int
+    checks: str
+    """The function that checks a payload; empty where its size says all."""
+
+    @property
+    def fixed(self) -> bool:
+        """True if the payload has always the same size."""
+        return self.least == self.greatest
+
+    def fits(self, size: str) -> str:
+        """The condition that a payload of that size can be its."""
+        if self.fixed:
+            return f"{size} == {self.least}U"
+        found = [f"{size} >= {self.least}U"] if self.least else []
+        found.append(f"{size} <= {self.greatest}U")
+        if self.step > 1:
+            above = f"({size} - {self.least}U)" if self.least else f"({size})"
+            found.append(f"{above} % {self.step}U == 0U")
+        return " && ".join(found)
+
+
+@dataclass(frozen=True, slots=True)
+class GroupView:
+    """The messages of one identity."""
+
+    key: str
+    messages: tuple[ReceivedMessage, ...]
+    fixed: int | None
+    greatest: int
+    index: int
+
+
+def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupView, ...]:
+    """The groups of the messages that have a view."""
+    return tuple(
+        GroupView(
+            key=_constant(plan, group),
+            messages=tuple(_message(plan, item, views[item.name]) for item in group.messages),
+            fixed=group.fixed,
+            greatest=group.greatest,
+            index=index,
+        )
+        for index, group in enumerate(plan.groups)
+    )
+
+
+def key_type(plan: FramePlan) -> str:
+    """The type of a number that holds all identity parts."""
+    return unsigned_type(max(plan.identity_bits, 8))
+
+
+def key_from(plan: FramePlan, values: Mapping[str, str]) -> str:
+    """All identity parts in one number, made of the C of each."""
+    type_ = key_type(plan)
+    shift = plan.identity_bits
+    terms = []
+    for part in plan.identity:
+        shift -= part.type.bits
+        value = values[part.name]
+        terms.append(f"({type_})(({type_}){value} << {shift})" if shift else value)
+    return f"({type_})({' | '.join(terms)})" if len(terms) > 1 else "".join(terms)
+
+
+def _constant(plan: FramePlan, group: IdentityGroup) -> str:
+    bits = max(plan.identity_bits, 8)
+    return f"UINT{storage_bits(bits)}_C(0x{group.key:0{max(2, -(-plan.identity_bits // 4))}X})"
+
+
+def _message(plan: FramePlan, message: Message, view: MessageView) -> ReceivedMessage:
+    sizes = message.sizes
+    checks = view.check if _needs_check(plan, view) else ""
+    return ReceivedMessage(
+        message.name, view.constant, sizes.least, sizes.greatest, sizes.step, checks
+    )
+
+
+def _needs_check(plan: FramePlan, view: MessageView) -> bool:
+    """True if a payload of a right size can still be none of the message's.
+
+    Where all bytes carry seven bits, they were looked at one by one when they came.
+    """
+    if view.fixed is None or not plan.seven_bit:
+        return view.checks
+    return view.checks and view.checks_values

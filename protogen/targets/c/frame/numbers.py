@@ -1,0 +1,107 @@
+"""Numbers and literals of a frame, as a receiver reads and checks them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from protogen.model.frame import IdentityPart, LengthPart, LiteralPart, NumberPart
+from protogen.model.frame_plan import FramePlan, PlacedPart
+from protogen.model.types import storage_bits
+from protogen.targets.c.frame.expressions import byte, less_absent, number_of
+from protogen.targets.c.spelling import unsigned_type
+
+
+@dataclass(frozen=True, slots=True)
+class NumberView:
+    """A number that is checked as soon as its last byte is there."""
+
+    last: int
+    """Index of its last byte, from the head's or the tail's first byte."""
+    value: str
+    """Its value, read from `content`."""
+    seven_bit: tuple[int, ...]
+    """Offsets of its bytes, where their most significant bit has to be clear."""
+    padding: str
+    """What has to be zero; empty where all bits belong to the number."""
+    is_length: bool
+    identifies: bool
+    """True if it is the identity's last part, and the identity tells the payload's size."""
+
+    @property
+    def high_bits(self) -> str:
+        """All of its bytes in one, for a look at their most significant bits."""
+        return f"({' | '.join(f'content[{offset}]' for offset in self.seven_bit)})"
+
+
+@dataclass(frozen=True, slots=True)
+class LiteralView:
+    """A byte that is fixed."""
+
+    index: int
+    byte: str
+
+
+@dataclass(frozen=True, slots=True)
+class PartView:
+    """A part that events show."""
+
+    placed: PlacedPart
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.placed.name
+
+    @property
+    def _part(self) -> NumberPart:
+        assert isinstance(self.placed.part, NumberPart)
+        return self.placed.part
+
+    @property
+    def type(self) -> str:
+        """Type of its value."""
+        return unsigned_type(self._part.type.bits)
+
+    def value(self, payload: str) -> str:
+        """Its value, read from `content` or `tail`; `payload` is the C of the payload's size."""
+        type_ = self._part.type
+        at = "content" if self.placed.in_head else "tail"
+        less = less_absent(self.placed.place, payload)
+        value = number_of(type_, at, self.placed.offset, less)
+        wide = storage_bits(type_.byte_bits * type_.size)
+        return value if wide <= type_.width else f"({self.type})({value})"
+
+
+def numbers_of(plan: FramePlan, items: Iterable[PlacedPart]) -> tuple[NumberView, ...]:
+    """Those of the parts that are numbers of which something is checked or known early."""
+    views = (_number(plan, item) for item in items if isinstance(item.part, NumberPart))
+    return tuple(v for v in views if v.seven_bit or v.padding or v.is_length or v.identifies)
+
+
+def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
+    part = item.part
+    assert isinstance(part, NumberPart)
+    type_ = part.type
+    less = less_absent(item.place, "decoder->payload")
+    value = number_of(type_, "content", item.offset, less)
+    spare = type_.byte_bits * type_.size - type_.bits
+    is_last = isinstance(part, IdentityPart) and part is plan.identity[-1]
+    return NumberView(
+        last=item.end - 1,
+        value=value,
+        seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
+        padding=f"{value} >> {type_.bits}" if spare else "",
+        is_length=isinstance(part, LengthPart),
+        identifies=is_last and plan.identity_is_early and plan.length is None,
+    )
+
+
+def literals_of(items: Iterable[PlacedPart]) -> tuple[LiteralView, ...]:
+    """The bytes of those of the parts that are literals."""
+    return tuple(
+        LiteralView(item.offset + index, byte(value))
+        for item in items
+        if isinstance(item.part, LiteralPart)
+        for index, value in enumerate(item.part.bytes)
+    )

@@ -1,0 +1,333 @@
+"""Frames as a decoder receives them: what the templates of every style need to know.
+
+The C code follows `protogen/runtime/machine.py` and `decoder.py`, with everything that a frame does
+not need left out. What is a fact of the frame is in its plan; here is what C makes of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
+from protogen.targets.c.frame import style
+from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
+from protogen.targets.c.frame.expressions import byte
+from protogen.targets.c.frame.groups import GroupView, key_from, key_type
+from protogen.targets.c.frame.length import LengthView, length_of
+from protogen.targets.c.frame.numbers import (
+    LiteralView,
+    NumberView,
+    PartView,
+    literals_of,
+    numbers_of,
+)
+from protogen.targets.c.frame.stuffing import Node, Stuffing, stuffing_of
+from protogen.targets.c.options import Events
+
+
+@dataclass(frozen=True)
+class ReceivedFrame:
+    """A sender's frame, as a decoder receives it."""
+
+    protocol: str
+    name: str
+    plan: FramePlan
+    groups: tuple[GroupView, ...]
+    events: Events
+
+    # --- names ------------------------------------------------------------------------------------
+
+    @property
+    def prefix(self) -> str:
+        """What its functions and types begin with."""
+        return f"{self.protocol}_{self.name}"
+
+    @property
+    def upper(self) -> str:
+        """What its macros begin with."""
+        return self.prefix.upper()
+
+    @property
+    def protocol_upper(self) -> str:
+        """What the protocol's macros begin with."""
+        return self.protocol.upper()
+
+    # --- styles -----------------------------------------------------------------------------------
+
+    @property
+    def all_events(self) -> bool:
+        """True if invalid bytes and unknown frames are delivered, too."""
+        return self.events == "all"
+
+    # --- sizes ------------------------------------------------------------------------------------
+
+    @property
+    def greatest(self) -> int:
+        """Wire bytes that no frame exceeds."""
+        return self.plan.greatest
+
+    @cached_property
+    def counter(self) -> str:
+        """The type of what counts bytes of a candidate, and a few bytes behind it."""
+        most = self.greatest + self.around + self.start_size + self.end_size
+        bits = next(bits for bits in (8, 16, 32) if most < (1 << bits) - 4)
+        return f"uint{bits}_t"
+
+    @cached_property
+    def head_size(self) -> int:
+        """Bytes in front of the payload."""
+        return self.plan.head_size
+
+    @cached_property
+    def tail_size(self) -> int:
+        """Bytes behind a payload."""
+        return self.plan.tail_size
+
+    @cached_property
+    def optional_size(self) -> int:
+        """Bytes of the tail that are absent where the payload is empty."""
+        return sum(item.size for item in self.optional_tail)
+
+    @property
+    def optional_tail(self) -> tuple[PlacedPart, ...]:
+        """The parts of the tail that are absent where the payload is empty."""
+        return tuple(item for item in self.plan.tail if item.is_optional)
+
+    @property
+    def around(self) -> int:
+        """Bytes around a payload that is not empty."""
+        return self.head_size + self.tail_size
+
+    @property
+    def least_around(self) -> int:
+        """Bytes around an empty payload."""
+        return self.around - self.optional_size
+
+    def tail_for(self, size: str) -> str:
+        """Bytes behind a payload of that size."""
+        if not self.optional_size:
+            return f"{self.tail_size}U"
+        return f"({size} == 0U ? {self.tail_size - self.optional_size}U : {self.tail_size}U)"
+
+    @property
+    def start_size(self) -> int:
+        """Bytes of the start literal."""
+        return len(self.literal)
+
+    @property
+    def end_size(self) -> int:
+        """Bytes of the end literal."""
+        return len(self.end)
+
+    @property
+    def buffer_size(self) -> int:
+        """Bytes of the buffer."""
+        if self.keeps_wire:
+            return self.greatest + max(self.start_size - 1, 0)
+        content = self.around + self.plan.payload.greatest
+        return self.greatest if self.length is None else min(self.greatest, content)
+
+    @property
+    def unlimited(self) -> str:
+        """What bounds a payload or all content while its size is unknown: the room for it."""
+        size = self.greatest if self.keeps_both else self.buffer_size
+        return f"{size - self.around if self.simple else size}U"
+
+    # --- start and end ----------------------------------------------------------------------------
+
+    @property
+    def start(self) -> StartRule:
+        """What marks the start of a frame."""
+        return self.plan.start
+
+    @property
+    def literal(self) -> bytes:
+        """The start literal; empty where something else marks the start."""
+        return self.plan.start_bytes
+
+    @property
+    def end(self) -> bytes:
+        """The end literal; empty where there is none."""
+        return self.plan.end_bytes
+
+    @property
+    def start_protected(self) -> bool:
+        """True if a start occurs nowhere else in a frame."""
+        return self.plan.start_is_unique
+
+    @property
+    def end_protected(self) -> bool:
+        """True if the end literal occurs nowhere else in a frame."""
+        return self.plan.end_is_unique
+
+    @property
+    def shares(self) -> bool:
+        """True if an end may be the next frame's start."""
+        return self.plan.shares_delimiter
+
+    @property
+    def first_head(self) -> int:
+        """Bytes of a start."""
+        return style.first_head(self.plan)
+
+    def is_start(self, at: str) -> str:
+        """The condition that a byte is a start of one byte."""
+        if self.literal:
+            return f"{at} == {byte(self.literal[0])}"
+        first, last = self.plan.start_set[0], self.plan.start_set[-1]
+        found = [f"{at} >= {byte(first)}U"] if first > 0 else []
+        found += [f"{at} <= {byte(last)}U"] if last < 255 else []
+        return " && ".join(found)
+
+    # --- what is kept -----------------------------------------------------------------------------
+
+    @property
+    def keeps_wire(self) -> bool:
+        """True if candidates can be scanned again."""
+        return self.plan.store is not Store.CONTENT
+
+    @property
+    def keeps_both(self) -> bool:
+        """True if the unstuffed bytes are kept beside those of the wire."""
+        return self.plan.store is Store.BOTH
+
+    @property
+    def wire_is_content(self) -> bool:
+        """True if the bytes as they came are the content, too."""
+        return self.plan.store is Store.WIRE
+
+    # --- the stuffed region -----------------------------------------------------------------------
+
+    @cached_property
+    def stuffing(self) -> Stuffing | None:
+        """How the region is stuffed."""
+        return stuffing_of(self.plan.region)
+
+    @cached_property
+    def region_to_end(self) -> bool:
+        """True if nothing but the end stands behind the stuffed region, and tells that it fits."""
+        return style.reaches_end(self.plan)
+
+    @cached_property
+    def escape_starts(self) -> bool:
+        """True if delimiters are told by the nodes of the stuffing."""
+        return style.escape_starts(self.plan, self.stuffing)
+
+    @cached_property
+    def escape_nodes(self) -> tuple[Node, ...]:
+        """The nodes behind a delimiter's first byte, the one behind nothing else first."""
+        return style.escape_nodes(self.plan, self.stuffing)
+
+    @cached_property
+    def never_passed(self) -> tuple[int, ...]:
+        """Bytes that are a start or an end by themselves, so that nothing else sees them."""
+        return style.never_passed(self.plan)
+
+    # --- parts ------------------------------------------------------------------------------------
+
+    @cached_property
+    def head_literals(self) -> tuple[LiteralView, ...]:
+        """Fixed bytes in front of the payload."""
+        return literals_of(self.plan.head)
+
+    @cached_property
+    def head_numbers(self) -> tuple[NumberView, ...]:
+        """Numbers in front of the payload that are checked."""
+        return numbers_of(self.plan, self.plan.head)
+
+    @cached_property
+    def tail_literals(self) -> tuple[LiteralView, ...]:
+        """Fixed bytes behind the payload."""
+        return literals_of(self.plan.tail)
+
+    @cached_property
+    def tail_numbers(self) -> tuple[NumberView, ...]:
+        """Numbers behind the payload that are checked."""
+        return numbers_of(self.plan, self.plan.tail)
+
+    @property
+    def checks_tail(self) -> bool:
+        """True if something behind the payload is checked byte by byte."""
+        return bool(self.tail_literals or self.tail_numbers)
+
+    @cached_property
+    def length(self) -> LengthView | None:
+        """The length part."""
+        return length_of(self.plan)
+
+    @cached_property
+    def parts(self) -> tuple[PartView, ...]:
+        """The parts that events show."""
+        return tuple(PartView(item) for item in self.plan.shown)
+
+    @cached_property
+    def checksums(self) -> tuple[ChecksumView, ...]:
+        """The checksums."""
+        return checksums_of(self.plan, self.protocol)
+
+    @property
+    def seven_bit(self) -> bool:
+        """True if every payload byte has its most significant bit clear."""
+        return self.plan.seven_bit
+
+    @property
+    def announced(self) -> str:
+        """The reason where a frame has not the size that was announced."""
+        return "SIZE" if self.length is None else "LENGTH"
+
+    # --- identities and sizes of payloads ---------------------------------------------------------
+
+    @property
+    def identified(self) -> bool:
+        """True if frames have an identity."""
+        return bool(self.plan.identity)
+
+    @property
+    def key_type(self) -> str:
+        """The type of a number that holds the identity."""
+        return key_type(self.plan)
+
+    def key(self, parts: str) -> str:
+        """The identity of an event's parts, as one number."""
+        return key_from(self.plan, {part.name: parts + part.name for part in self.plan.identity})
+
+    @property
+    def early_key(self) -> str:
+        """The identity, made of bytes of the content, in front of the payload."""
+        return key_from(self.plan, {part.name: part.value("") for part in self.parts})
+
+    @cached_property
+    def can_open(self) -> bool:
+        """True if the payload of some frame has no size until its end is seen."""
+        return style.can_open(self.plan, self.events)
+
+    @property
+    def can_measure(self) -> bool:
+        """True if the size of some payload follows from its first bytes alone."""
+        return self.plan.measures
+
+    @property
+    def simple(self) -> bool:
+        """True if the payload's size is known before the payload begins."""
+        return not self.can_open and not self.can_measure
+
+    @property
+    def ends_at_start(self) -> bool:
+        """True if some frame ends where the next starts, and nothing else tells."""
+        return self.can_open and not self.end and self.start is not StartRule.ANYWHERE
+
+    @property
+    def known_from(self) -> int:
+        """Bytes of content that tell the payload's size, where that is simple."""
+        return style.known_from(self.plan)
+
+    @property
+    def known_by_identity(self) -> bool:
+        """True if the identity tells the payload's size."""
+        return self.length is None and self.plan.identity_is_early
+
+    @property
+    def gives_up_high_bytes(self) -> bool:
+        """True if a high byte is either the identity of a frame, or ends what goes before it."""
+        return style.ends_with_high_byte(self.plan)

@@ -1,0 +1,150 @@
+"""Transparency as C: how a region's bytes are taken off the wire and put on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from protogen.model.frame import Base16, Cobs, Escape, Substitution
+from protogen.model.frame_plan import StuffedRegion
+from protogen.targets.c.frame.expressions import byte
+
+
+class StuffingKind(Enum):
+    """How a region is taken off the wire. A template is named after each."""
+
+    CODES = auto()
+    """A sequence for each byte that does not stand for itself, and no other sequences."""
+    LENIENT_CODES = auto()
+    """A sequence that no byte has stands for itself."""
+    LENIENT_ESCAPE = auto()
+    """Any byte may stand behind the escape."""
+    BASE16 = auto()
+    COBS = auto()
+
+    @property
+    def word(self) -> str:
+        """Its name, as templates have it."""
+        return self.name.lower()
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """The sequence for one byte."""
+
+    byte: int
+    sequence: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """What a byte does behind the sequence's beginning that was taken so far."""
+
+    byte: int
+    node: int | None
+    """The node it leads to; None where the sequence is complete."""
+    value: int
+    """What a complete sequence stands for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A beginning of sequences. Node 0 is the empty one."""
+
+    number: int
+    beginning: bytes
+    branches: tuple[Branch, ...]
+    plain: bool
+    """True if any other byte stands for itself."""
+    refused: tuple[int, ...]
+    """Bytes that never stand for themselves, though no branch takes them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stuffing:
+    """A region's encoding, as the templates print it."""
+
+    kind: StuffingKind
+    lenient: bool
+    codes: tuple[Code, ...]
+    nodes: tuple[Node, ...]
+    longest: int
+    """Bytes of the longest sequence."""
+    escape: int = 0
+    escaped: tuple[int, ...] = ()
+    xor: int = 0
+
+    @property
+    def is_cobs(self) -> bool:
+        """True if the bytes that follow decide what a byte is on the wire."""
+        return self.kind is StuffingKind.COBS
+
+    @property
+    def reason(self) -> str:
+        """Why a region is refused."""
+        is_encoding = self.kind in (StuffingKind.BASE16, StuffingKind.COBS)
+        return "ENCODING" if is_encoding else "STUFFING"
+
+    @property
+    def is_escaped(self) -> str:
+        """The condition that an escape stands in front of `byte`."""
+        return " || ".join(f"byte == {byte(value)}" for value in self.escaped)
+
+
+def stuffing_of(region: StuffedRegion | None) -> Stuffing | None:
+    """The encoding of a region, where there is one."""
+    if region is None:
+        return None
+    codes = tuple(Code(value, sequence) for value, sequence in region.codes)
+    escape = region.escape
+    return Stuffing(
+        kind=_kind(region),
+        lenient=region.lenient,
+        codes=codes,
+        nodes=_nodes(codes),
+        longest=region.longest,
+        escape=escape.byte if escape else 0,
+        escaped=tuple(sorted(escape.of)) if escape else (),
+        xor=escape.xor if escape else 0,
+    )
+
+
+def _kind(region: StuffedRegion) -> StuffingKind:
+    match region.encoding:
+        case Base16():
+            return StuffingKind.BASE16
+        case Cobs():
+            return StuffingKind.COBS
+        case Escape() if region.lenient:
+            return StuffingKind.LENIENT_ESCAPE
+        case Substitution() if region.lenient:
+            return StuffingKind.LENIENT_CODES
+    return StuffingKind.CODES
+
+
+def _nodes(codes: tuple[Code, ...]) -> tuple[Node, ...]:
+    """The tree of all sequences, breadth first."""
+    if not codes:
+        return ()
+    beginnings = [b""]
+    for code in codes:
+        for size in range(1, len(code.sequence)):
+            if code.sequence[:size] not in beginnings:
+                beginnings.append(code.sequence[:size])
+    beginnings.sort(key=lambda item: (len(item), item))
+    numbers = {item: number for number, item in enumerate(beginnings)}
+    return tuple(_node(item, numbers, codes) for item in beginnings)
+
+
+def _node(beginning: bytes, numbers: dict[bytes, int], codes: tuple[Code, ...]) -> Node:
+    branches = {}
+    for code in codes:
+        sequence = code.sequence
+        if sequence.startswith(beginning) and len(sequence) > len(beginning):
+            follower = sequence[len(beginning)]
+            longer = numbers.get(sequence[: len(beginning) + 1])
+            branches[follower] = Branch(follower, longer, code.byte)
+    listed = {code.byte for code in codes}
+    refused = tuple(sorted(listed - set(branches))) if not beginning else ()
+    ordered = tuple(branches[follower] for follower in sorted(branches))
+    return Node(numbers[beginning], beginning, ordered, not beginning, refused)

@@ -1,0 +1,69 @@
+"""Whole frames that stand in the input of `feed`, taken without a candidate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protogen.model.frame_plan import StartRule
+from protogen.targets.c.frame import style
+from protogen.targets.c.frame.received import ReceivedFrame
+from protogen.targets.c.frame.stuffing import Code, StuffingKind
+
+_MOST_SPECIALS = 5
+"""More special bytes take longer to look for than they save."""
+
+
+@dataclass(frozen=True)
+class WholeFrames:
+    """What is printed where a frame is taken at once."""
+
+    decoder: ReceivedFrame
+
+    @property
+    def specials(self) -> tuple[int, ...]:
+        """Bytes of a stuffed region that do not stand for themselves, or begin a delimiter."""
+        d = self.decoder
+        assert d.stuffing is not None
+        root = d.stuffing.nodes[0]
+        starts = set(d.literal[:1] or d.never_passed)
+        taken = {branch.byte for branch in root.branches} | set(root.refused)
+        return tuple(sorted(taken | starts | set(d.end[:1])))
+
+    def codes_from(self, byte: int) -> tuple[Code, ...]:
+        """The sequences of the stuffing that begin with a byte, the longest first."""
+        codes = () if self.decoder.stuffing is None else self.decoder.stuffing.codes
+        found = [code for code in codes if code.sequence[0] == byte]
+        return tuple(sorted(found, key=lambda code: -len(code.sequence)))
+
+
+def whole_frames(decoder: ReceivedFrame) -> WholeFrames | None:
+    """The view for a decoder whose `feed` can take a frame at once; None where it can't."""
+    d = decoder
+    starts_show = d.gives_up_high_bytes and d.head_size == 1 and not d.tail_size
+    sizes_are_known = d.length is not None or any(g.fixed is not None for g in d.groups)
+    fits = (
+        _unstuffs(d)
+        and not d.keeps_both
+        and d.start in (StartRule.LITERAL, StartRule.SET)
+        and d.known_from > 0
+        and sizes_are_known
+        and not d.shares
+        and not d.optional_size
+        and not d.checks_tail
+        # A frame with a start inside is none: without stuffing, each byte would have to be seen.
+        and not (d.start_protected and d.stuffing is None and not starts_show)
+    )
+    return WholeFrames(d) if fits else None
+
+
+def _unstuffs(decoder: ReceivedFrame) -> bool:
+    """True if nothing is stuffed, or sequences stand for few bytes of all behind the start."""
+    stuffing = decoder.stuffing
+    if stuffing is None:
+        return True
+    return (
+        stuffing.kind is StuffingKind.CODES
+        and style.is_stuffed_behind_start(decoder.plan)
+        and len(WholeFrames(decoder).specials) <= _MOST_SPECIALS
+        and all(len(code.sequence) > 1 for code in stuffing.codes)
+    )

@@ -1,0 +1,52 @@
+"""The style in which a decoder is printed, row by row."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from protogen.api import load
+from protogen.targets.c.frame.style import DecoderStyle, decoder_style
+from protogen.targets.c.options import Events
+
+ROOT = Path(__file__).parent.parent
+FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
+
+
+@pytest.mark.parametrize(
+    ("schema", "sender", "events", "style"),
+    [
+        # A flat decoder says nothing of invalid bytes.
+        ("schemas/rn1", "brain", "all", PUSH),
+        # A byte of a set that stands nowhere else, and a size that it tells.
+        ("schemas/rn1", "brain", "messages", FLAT),
+        # An end tells the size of some payload: only then is it known.
+        ("schemas/rn1", "host", "messages", PUSH),
+        # Start and end are told by what stands behind their common first byte.
+        ("schemas/rflex", "linux", "messages", FLAT),
+        # A start that nothing of a frame can be, and a length in the head.
+        ("schemas/matty", "pc", "messages", FLAT),
+        # Digits between a start and an end of one byte each.
+        ("schemas/uherobot", "board", "messages", FLAT),
+        # A set of starts whose bytes stand in frames, too: bytes have to be read again.
+        ("tests/framings/bounded_length", "station", "messages", PUSH),
+        # The same of a literal.
+        ("tests/framings/sync_length_crc", "station", "messages", PUSH),
+        # A frame starts where the one before ended.
+        ("schemas/dagny", "host", "messages", PUSH),
+        ("tests/framings/slip_end_only", "station", "messages", PUSH),
+        # The end is the next frame's start.
+        ("tests/framings/hdlc", "station", "messages", PUSH),
+        ("tests/framings/slip", "station", "messages", PUSH),
+        # The bytes that follow decide what a byte is.
+        ("tests/framings/cobs", "station", "messages", PUSH),
+        # Nothing but a checksum tells a frame from other bytes.
+        ("tests/framings/checksum_only", "station", "messages", PUSH),
+    ],
+)
+def test_the_style_of_a_decoder(
+    schema: str, sender: str, events: Events, style: DecoderStyle
+) -> None:
+    plan = load(ROOT / f"{schema}.yaml").sender(sender).plan
+    assert decoder_style(plan, events) is style
