@@ -85,6 +85,11 @@ class Count:
     stated: bool
     """True if the schema states the bounds."""
 
+    @property
+    def is_fixed(self) -> bool:
+        """True if neither a field nor the payload's end says the number."""
+        return not self.field and not self.fills
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
@@ -208,6 +213,11 @@ class CaseStep:
     name: str
     step: AnyStep
 
+    @property
+    def is_empty(self) -> bool:
+        """True if the case has no fields, so that there is no value."""
+        return isinstance(self.step, RecordStep) and not self.step.steps
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChooseStep(Step):
@@ -256,6 +266,11 @@ class PayloadPlan:
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
         return any(step.holds_values or step.fills for step in self.steps)
+
+
+def without_constant(step: AnyStep) -> AnyStep:
+    """The step that reads or writes the same bytes as a value."""
+    return step.value if isinstance(step, ConstantStep) else step
 
 
 def plan_of(fields: Sequence[Field]) -> PayloadPlan:

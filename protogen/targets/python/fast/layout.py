@@ -2,39 +2,36 @@
 
 from __future__ import annotations
 
-from protogen.model.sizes import SizeSet
-from protogen.model.types import (
-    Array,
-    Counted,
-    Field,
-    Fill,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
+from collections.abc import Sequence
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    FloatStep,
+    IntegerStep,
+    NumberStep,
+    RepeatStep,
+    without_constant,
 )
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Integer, Struct
 
 _UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
-def code_of(type_: Type) -> str | None:
+def code_of(step: AnyStep) -> str | None:
     """The code of a value that one item of `struct` holds; None where it takes more.
 
     A number that `struct` does not know is so many bytes, to be converted.
     """
-    match type_:
-        case Integer():
+    match without_constant(step):
+        case IntegerStep(type=type_):
             return _integer(type_)
-        case Float(byte_bits=8):
-            return "f" if type_.bits == 32 else "d"
-        case Float():
-            return f"{type_.size}s"
-        case Text(extent=Fixed(count=count)) | Octets(extent=Fixed(count=count)):
-            return f"{count}s"
+        case FloatStep(type=type_):
+            known = "f" if type_.bits == 32 else "d"
+            return known if type_.byte_bits == 8 else f"{type_.size}s"
+        case BytesStep(count=count) if count.is_fixed:
+            return f"{count.known}s"
     return None
 
 
@@ -48,42 +45,45 @@ def _integer(type_: Integer) -> str:
 
 
 def is_native(type_: Integer) -> bool:
-    """Whether `struct` itself reads and writes the value."""
+    """True if `struct` itself reads and writes the value."""
     return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.role != "bool"
 
 
-def order_of(type_: Type) -> str:
+def order_of(step: AnyStep) -> str:
     """`<` or `>`; empty where the order of bytes does not matter to `struct`."""
-    code = code_of(type_)
+    code, number = code_of(step), without_constant(step)
     if code is None or code.endswith("s") or code in "Bb":
         return ""
-    assert isinstance(type_, Integer | Float)
-    return "<" if type_.byte_order == "little" else ">"
+    assert isinstance(number, NumberStep)
+    return "<" if number.type.byte_order == "little" else ">"
+
+
+def common_order(steps: Sequence[AnyStep]) -> str | None:
+    """The order of bytes that one `struct` has for all steps; None where it can't read them."""
+    orders = {order_of(step) for step in steps} - {""}
+    if not steps or len(orders) > 1 or any(code_of(step) is None for step in steps):
+        return None
+    return orders.pop() if orders else ""
 
 
 def is_named(type_: Integer) -> bool:
-    """Whether the attribute is a member of an enum or a set of flags."""
+    """True if the attribute is a member of an enum or a set of flags."""
     return type_.enum is not None or type_.flags is not None
 
 
-def array_code(type_: Array) -> str | None:
+def array_code(step: RepeatStep) -> str | None:
     """The code of one element, where `struct` reads all of them as they are."""
-    element = type_.element
-    if isinstance(element, Integer) and is_native(element) and not is_named(element):
-        return code_of(element)
-    if isinstance(element, Float) and element.byte_bits == 8:
-        return code_of(element)
-    return None
+    element = step.element
+    if isinstance(element, IntegerStep):
+        plain = is_native(element.type) and not is_named(element.type)
+        return code_of(element) if plain else None
+    is_known = isinstance(element, FloatStep) and element.type.byte_bits == 8
+    return code_of(element) if is_known else None
 
 
-def is_pair(type_: Type) -> bool:
-    """Whether the value is one of 8 to 14 bits in two bytes of 7 bits."""
-    return isinstance(type_, Integer) and type_.byte_bits == 7 and type_.size == 2
-
-
-def fixed_size(type_: Type) -> int | None:
-    """Wire bytes, where they do not vary."""
-    return type_.sizes.fixed
+def is_pair(type_: Integer) -> bool:
+    """True if the value is one of 8 to 14 bits in two bytes of 7 bits."""
+    return type_.byte_bits == 7 and type_.size == 2
 
 
 def outside(sizes: SizeSet, data: str) -> str:
@@ -94,42 +94,22 @@ def outside(sizes: SizeSet, data: str) -> str:
     return f"{bounds} or (len({data}) - {sizes.least}) % {sizes.step}" if sizes.step > 1 else bounds
 
 
-def holds_records(fields: tuple[Field, ...], sizes: SizeSet) -> bool:
-    """Whether these are the sizes of fields, the last of which are as many records as there are.
+def holds_records(steps: Sequence[AnyStep], sizes: SizeSet) -> bool:
+    """True if these are the sizes of steps, the last of which are as many records as there are.
 
     Then nothing can be wrong with a size but the number of records.
     """
-    last = fields[-1].type if fields else None
-    others = [fixed_size(item.type) for item in fields[:-1]]
-    if not isinstance(last, Array) or not isinstance(last.extent, Fill) or None in others:
+    if not steps or not isinstance(last := without_constant(steps[-1]), RepeatStep):
         return False
-    size, first = fixed_size(last.element), sum(filter(None, others))
+    others = [step.sizes.fixed for step in steps[:-1]]
+    if not last.fills or None in others:
+        return False
+    size, first = last.element.sizes.fixed, sum(filter(None, others))
     return bool(size) and sizes == SizeSet(
-        first, first + (size or 0) * last.extent.greatest, size or 1
+        first, first + (size or 0) * last.count.greatest, size or 1
     )
 
 
 def outer_names(struct: Struct) -> tuple[str, ...]:
     """The fields of outer records that count or select something in the struct."""
-    return tuple(dict.fromkeys(_outer(struct)))
-
-
-def _outer(struct: Struct) -> list[str]:
-    own: set[str] = set()
-    found: list[str] = []
-    for field in struct.fields:
-        pending: list[Type] = [field.type]
-        while pending:
-            type_ = pending.pop()
-            if isinstance(type_, Array):
-                pending.append(type_.element)
-            if isinstance(type_, Switch):
-                pending += [case.type for case in type_.cases]
-                if type_.selector not in own:
-                    found.append(type_.selector)
-            if isinstance(type_, Array | Text | Octets) and isinstance(type_.extent, Counted):
-                found += [name for name in (type_.extent.field,) if name not in own]
-            if isinstance(type_, Struct):
-                found += [name for name in _outer(type_) if name not in own]
-        own.add(field.name)
-    return found
+    return tuple(sorted(struct.needs))

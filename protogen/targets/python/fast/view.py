@@ -9,7 +9,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.targets.python.fast import cutting, framing, waiting
 from protogen.targets.python.fast.frames import FastFrame, Kin
-from protogen.targets.python.fast.layout import fixed_size, outer_names
+from protogen.targets.python.fast.layout import outer_names
 from protogen.targets.python.fast.lines import Constants
 from protogen.targets.python.fast.reading import message_reader, struct_reader
 from protogen.targets.python.fast.writing import struct_writer
@@ -148,7 +148,7 @@ def _records(
     for struct in classes_of(protocol):
         name = class_name(struct.name)
         outer = "".join(f", {name}_: int" for name in outer_names(struct))
-        given = name if fixed_size(struct) is not None else f"tuple[{name}, int]"
+        given = name if struct.sizes.fixed is not None else f"tuple[{name}, int]"
         body = struct_reader(struct, constants)
         functions.append(
             _function(f"_read_{struct.name}", f"data: bytes, at: int{outer}", given, body)

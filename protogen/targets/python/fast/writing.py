@@ -6,25 +6,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from protogen.model.messages import Message
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Field,
-    Fill,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
-    total,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    RestStep,
+    plan_of,
+    without_constant,
 )
+from protogen.model.types import Field, Integer, Struct, Text
 from protogen.targets.python.fast.layout import (
     array_code,
     code_of,
+    common_order,
     holds_records,
     is_named,
     is_native,
@@ -34,7 +34,7 @@ from protogen.targets.python.fast.layout import (
     outside,
 )
 from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.formats import constant, is_empty
+from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import number, tuple_of
 from protogen.targets.python.spelling import class_name
 
@@ -46,14 +46,14 @@ def payload_writer(message: Message, lines: Lines) -> None:
 
     What an integer may be, and how great, is left to `struct` wherever it writes the value itself.
     """
-    lines.add(f"payload = {_Writer(lines).record('item', message.fields)}")
-    if not is_of_one_size(message) and not holds_records(message.fields, message.sizes):
+    lines.add(f"payload = {_Writer(lines).record('item', message.plan.steps)}")
+    if not is_of_one_size(message) and not holds_records(message.plan.steps, message.sizes):
         lines.refuse_if(outside(message.sizes, "payload"))
 
 
 def is_of_one_size(message: Message) -> bool:
-    """Whether its fields can't take more bytes or fewer than a payload may have."""
-    return total(message.fields).fixed is not None
+    """True if its fields can't take more bytes or fewer than a payload may have."""
+    return message.plan.sizes.fixed is not None
 
 
 def content_writer(
@@ -65,7 +65,7 @@ def content_writer(
     """
     writer = _Writer(lines)
     writer.begin(head, integers)
-    return writer.record("item", message.fields)
+    return writer.record("item", message.plan.steps)
 
 
 _CODES = "BYTE_CODES"
@@ -85,37 +85,34 @@ def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
     writer = _Writer(Lines(constants))
     writer.raw = {name: f"{name}_" for name in outer_names(struct)}
     writer.lines.refuse_if(f"type(item) is not {class_name(struct.name)}")
-    writer.lines.add(f"return {writer.record('item', struct.fields)}")
+    writer.lines.add(f"return {writer.record('item', plan_of(struct.fields).steps)}")
     return writer.lines.text
 
 
-def _are_plain(fields: tuple[Field, ...]) -> bool:
-    """Whether all fields are integers that `struct` writes as they are."""
-    orders = {order_of(item.type) for item in fields} - {""}
-    return bool(fields) and len(orders) < 2 and all(map(_is_plain, fields))
+def _are_plain(steps: Sequence[AnyStep]) -> bool:
+    """True if all steps are integers that `struct` writes as they are."""
+    return common_order(steps) is not None and all(map(_is_plain, steps))
 
 
-def _is_plain(item: Field) -> bool:
-    type_ = item.type
-    if not isinstance(type_, Integer) or not is_native(type_):
+def _is_plain(step: AnyStep) -> bool:
+    if not isinstance(step, IntegerStep) or not is_native(step.type):
         return False
-    is_closed = type_.enum is not None and type_.enum.closed
-    return not item.ranged and item.const is None and not is_closed
+    return not step.field.ranged and not step.type.is_closed
 
 
 def _is_narrow(type_: Integer) -> bool:
-    """Whether `struct` writes the value, but as one that may be greater."""
+    """True if `struct` writes the value, but as one that may be greater."""
     return type_.size == 1 and not type_.signed and not is_native(type_) and type_.role != "bool"
 
 
 def _is_looked_up(type_: Integer) -> bool:
-    """Whether a list has the bytes of each value."""
+    """True if a list has the bytes of each value."""
     is_byte = type_.size == 1 and not is_native(type_) and not _is_narrow(type_)
     return type_.role != "bool" and (is_pair(type_) or is_byte)
 
 
 def _is_bounded(item: Field) -> bool:
-    """Whether being in the declared range is being in the type's."""
+    """True if being in the declared range is being in the type's."""
     return item.ranged and None not in (item.least, item.greatest) and not item.special
 
 
@@ -155,21 +152,22 @@ class _Writer:
         for item in head:
             self._pack(item)
 
-    def record(self, source: str, fields: tuple[Field, ...]) -> str:
+    def record(self, source: str, steps: Sequence[AnyStep]) -> str:
         """Check the fields of `source`; the expression of their bytes."""
-        self._fields(source, fields)
+        self._fields(source, steps)
         return self._joined()
 
-    def _fields(self, source: str, fields: tuple[Field, ...]) -> None:
+    def _fields(self, source: str, steps: Sequence[AnyStep]) -> None:
         outside = dict(self.raw)
-        for item in fields:
+        for step in steps:
             value = self.lines.local()
-            self.lines.add(f"{value} = {source}.{item.name}")
-            if isinstance(item.type, Integer):
-                self.raw[item.name] = value
-            self._value(value, item.type, item)
-            if item.const is not None:
-                self.lines.refuse_if(f"{value} != {constant(item)}")
+            self.lines.add(f"{value} = {source}.{step.name}")
+            bare = without_constant(step)
+            if isinstance(bare, IntegerStep):
+                self.raw[step.name] = value
+            self._value(value, bare, step.field)
+            if isinstance(step, ConstantStep):
+                self.lines.refuse_if(f"{value} != {constant(step.field)}")
         self.raw = outside
 
     def _joined(self) -> str:
@@ -180,10 +178,10 @@ class _Writer:
             return pieces[0]
         return f'b"".join({tuple_of(pieces)})' if pieces else 'b""'
 
-    def _apart(self, value: str, type_: Type, item: Field | None) -> str:
+    def _apart(self, value: str, step: AnyStep, item: Field | None) -> str:
         """The bytes of a value that are put together by themselves."""
         outside, self._bytes = self._bytes, _Bytes()
-        self._value(value, type_, item)
+        self._value(value, step, item)
         joined = self._joined()
         self._bytes = outside
         return joined
@@ -192,13 +190,13 @@ class _Writer:
         self._flush()
         self._bytes.pieces.append(expression)
 
-    def _put(self, type_: Type, expression: str) -> None:
+    def _put(self, step: AnyStep, expression: str) -> None:
         """Let `struct` write a value together with its neighbours."""
-        code = code_of(type_)
+        code = code_of(step)
         assert code is not None
-        if isinstance(type_, Integer) and _is_narrow(type_) and type_.bits == _SEVEN:
+        if isinstance(step, IntegerStep) and _is_narrow(step.type) and step.type.bits == _SEVEN:
             code = "b"  # Which has no number above 127.
-        self._pack(Packed(order_of(type_), code, expression))
+        self._pack(Packed(order_of(step), code, expression))
 
     def _pack(self, item: Packed) -> None:
         if item.order and self._bytes.order and item.order != self._bytes.order:
@@ -223,38 +221,40 @@ class _Writer:
 
     # --- values -----------------------------------------------------------------------------------
 
-    def _value(self, value: str, type_: Type, item: Field | None) -> None:
+    def _value(self, value: str, step: AnyStep, item: Field | None) -> None:
         """Check a value and write it; `item` says what it may be."""
-        match type_:
-            case Integer():
-                self._integer(value, type_, item)
-            case Float():
-                self._float(value, type_, item)
-            case Text():
-                self._text(value, type_)
-            case Octets():
-                self._octets(value, type_)
-            case Struct():
-                self.lines.refuse_if(f"type({value}) is not {class_name(type_.name)}")
-                self._fields(value, type_.fields)
-            case Array():
-                self._array(value, type_, item)
-            case Switch():
-                self._switch(value, type_)
+        match step:
+            case IntegerStep():
+                self._integer(value, step, item)
+            case FloatStep():
+                self._float(value, step, item)
+            case BytesStep():
+                if isinstance(step.type, Text):
+                    self._text(value, step)
+                else:
+                    self._octets(value, step)
+            case RecordStep():
+                self.lines.refuse_if(f"type({value}) is not {class_name(step.type.name)}")
+                self._fields(value, step.steps)
+            case RepeatStep():
+                self._array(value, step, item)
+            case ChooseStep():
+                self._choose(value, step)
 
-    def _integer(self, value: str, type_: Integer, item: Field | None) -> None:
+    def _integer(self, value: str, step: IntegerStep, item: Field | None) -> None:
+        type_ = step.type
         if type_.role == "bool":
             self.lines.refuse_if(f"type({value}) is not bool")
         elif not is_native(type_) and not _is_narrow(type_) and not _is_looked_up(type_):
             self._unseen(value, type_)
-        if type_.enum is not None and type_.enum.closed:
+        if type_.enum is not None and type_.is_closed:
             members = f"frozenset(map(int, {class_name(type_.enum.name)}))"
             self.lines.refuse_if(f"{value} not in {self.lines.constants.named('VALUES', members)}")
         self._in_range(value, item)
         if _is_looked_up(type_) and (item is None or not _is_bounded(item)):
             # Nothing but an integer is an index of a list, but -1 is that of the last element.
             self.lines.refuse_if(f"{value} < {type_.least} or {value} > {type_.greatest}")
-        self._put(type_, self._coded(value, type_))
+        self._put(step, self._coded(value, step))
 
     def _unseen(self, value: str, type_: Integer) -> None:
         """See to it that a value is an integer where neither `struct` nor a list does."""
@@ -274,15 +274,16 @@ class _Writer:
             allowed += f" and {value} not in {special}"
         self.lines.refuse_if(allowed)
 
-    def _coded(self, value: str, type_: Integer) -> str:
-        """What `struct` is given for an integer."""
+    def _coded(self, value: str, step: IntegerStep) -> str:
+        """The value that `struct` is given for an integer."""
+        type_ = step.type
         if is_native(type_) or type_.role == "bool":
             return value
         if _is_looked_up(type_):
             kind = "codes" if is_pair(type_) else "narrow"
             codes = f"_CODES.{kind}({type_.bits})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
-        code = code_of(type_)
+        code = code_of(step)
         assert code is not None
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.encode({value})"
@@ -299,7 +300,8 @@ class _Writer:
         else:
             self.lines.refuse_if(f"not 0 <= {value} <= {type_.greatest}")
 
-    def _float(self, value: str, type_: Float, item: Field | None) -> None:
+    def _float(self, value: str, step: FloatStep, item: Field | None) -> None:
+        type_ = step.type
         self.lines.refuse_if(f"type({value}) is not float")
         if type_.bits == 32:
             self.lines.refuse_if(f"not -{_GREATEST_FLOAT32} <= {value} <= {_GREATEST_FLOAT32}")
@@ -309,96 +311,106 @@ class _Writer:
         if type_.byte_bits == 7:
             call = f'_fast.seven_bit_float({type_.bits}, "{type_.byte_order}")'
             value = f"{self.lines.constants.named('FLOAT', call)}.encode({value})"
-        self._put(type_, value)
+        self._put(step, value)
 
-    def _text(self, value: str, type_: Text) -> None:
+    def _text(self, value: str, step: BytesStep) -> None:
         data = self.lines.local()
         self.lines.add(f'{data} = {value}.encode("ascii")')
-        if isinstance(type_.extent, Fixed):
-            padded = f'len({data}) > {type_.extent.count} or {data}.endswith(b"\\0")'
+        if step.count.is_fixed:
+            padded = f'len({data}) > {step.count.known} or {data}.endswith(b"\\0")'
             self.lines.refuse_if(padded)
-            self._put(type_, data)
+            self._put(step, data)
         else:
-            self._counted(data, type_.extent)
+            self._counted(data, step.count)
             self._piece(data)
 
-    def _octets(self, value: str, type_: Octets) -> None:
+    def _octets(self, value: str, step: BytesStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
-        self._counted(value, type_.extent)
-        if type_.byte_bits == 7:
+        self._counted(value, step.count)
+        if step.type.byte_bits == 7:
             self.lines.refuse_if(f"not {value}.isascii()")
-        if isinstance(type_.extent, Fixed):
-            self._put(type_, value)
+        if step.count.is_fixed:
+            self._put(step, value)
         else:
             self._piece(value)
 
-    def _counted(self, value: str, extent: Extent) -> None:
-        """Check a number of bytes or elements."""
-        match extent:
-            case Fixed():
-                self.lines.refuse_if(f"len({value}) != {extent.count}")
-            case Fill():
-                self.lines.refuse_if(f"len({value}) > {extent.greatest}")
-            case Counted():
-                self.lines.refuse_if(f"len({value}) != {self.raw[extent.field]}")
-                if extent.stated:
-                    self.lines.refuse_if(f"not {extent.least} <= len({value}) <= {extent.greatest}")
+    def _rest(self, value: str, rest: RestStep) -> None:
+        self.lines.refuse_if(f"type({value}) is not bytes")
+        self.lines.refuse_if(f"len({value}) > {rest.greatest}")
+        if rest.seven_bit:
+            self.lines.refuse_if(f"not {value}.isascii()")
 
-    def _switch(self, value: str, switch: Switch) -> None:
+    def _counted(self, value: str, count: Count) -> None:
+        """Check a number of bytes or elements."""
+        if count.is_fixed:
+            self.lines.refuse_if(f"len({value}) != {count.known}")
+        elif count.fills:
+            self.lines.refuse_if(f"len({value}) > {count.greatest}")
+        else:
+            self.lines.refuse_if(f"len({value}) != {self.raw[count.field]}")
+            if count.stated:
+                self.lines.refuse_if(f"not {count.least} <= len({value}) <= {count.greatest}")
+
+    def _choose(self, value: str, step: ChooseStep) -> None:
         self._flush()
         data = self.lines.local("case")
-        selector = self.raw[switch.selector]
+        selector = self.raw[step.selector_name]
         word = "if"
-        empty = [str(case.value) for case in switch.cases if is_empty(case.type)]
+        empty = [str(case.value) for case in step.cases if case.is_empty]
         if empty:
             with self.lines.block(f"{word} {selector} in {tuple_of(empty)}:"):
                 self.lines.refuse_if(f"{value} is not None")
                 self.lines.add(f'{data} = b""')
             word = "elif"
-        for case in switch.cases:
-            if is_empty(case.type):
+        for case in step.cases:
+            if case.is_empty:
                 continue
             with self.lines.block(f"{word} {selector} == {case.value}:"):
-                self.lines.add(f"{data} = {self._apart(value, case.type, None)}")
+                self.lines.add(f"{data} = {self._apart(value, case.step, None)}")
             word = "elif"
         with self.lines.block("else:"):
-            if switch.rest is None:
+            if step.rest is None:
                 self.lines.add("raise _fast.Unclear")
             else:
-                rest = Octets(extent=Fill(greatest=switch.rest), byte_bits=switch.byte_bits)
-                self.lines.add(f"{data} = {self._apart(value, rest, None)}")
+                self._rest(value, step.rest)
+                self.lines.add(f"{data} = {value}")
         self._piece(data)
 
     # --- arrays -----------------------------------------------------------------------------------
 
-    def _array(self, value: str, array: Array, item: Field | None) -> None:
+    def _array(self, value: str, step: RepeatStep, item: Field | None) -> None:
         self.lines.refuse_if(f"type({value}) is not list")
-        self._counted(value, array.extent)
-        element = array.element
-        if isinstance(element, Struct) and _are_plain(element.fields):
+        self._counted(value, step.count)
+        element = step.element
+        if isinstance(element, RecordStep) and _are_plain(element.steps):
             self._plain_records(value, element)
-        elif isinstance(element, Struct):
-            outer = "".join(f", {self.raw[name]}" for name in outer_names(element))
+        elif isinstance(element, RecordStep):
+            outer = "".join(f", {self.raw[name]}" for name in outer_names(element.type))
             self._flush()
             data = self.lines.local()
-            written = f"_write_{element.name}(each{outer})"
+            written = f"_write_{element.type.name}(each{outer})"
             self.lines.add(f'{data} = b"".join([{written} for each in {value}])')
             self._piece(data)
-        elif is_pair(element) and isinstance(element, Integer) and not is_named(element):
+        elif (
+            isinstance(element, IntegerStep)
+            and is_pair(element.type)
+            and not is_named(element.type)
+        ):
             self._all_in_range(value, item)
-            arguments = f'{element.bits}, {element.signed}, "{element.byte_order}"'
+            type_ = element.type
+            arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
             encode = f"_fast.PairLists({arguments}).encode"
             self._piece(f"{self.lines.constants.named('PAIR_LIST', encode)}({value})")
-        elif array_code(array) is not None and isinstance(element, Integer):
+        elif array_code(step) is not None and isinstance(element, IntegerStep):
             self._all_in_range(value, item)
-            self._piece(self._packed(value, array))
+            self._piece(self._packed(value, step))
         else:
             self._one_by_one(value, element, item)
 
-    def _plain_records(self, value: str, element: Struct) -> None:
+    def _plain_records(self, value: str, element: RecordStep) -> None:
         """Records of integers, written together with what stands in front of them."""
-        codes = "".join(str(code_of(item.type)) for item in element.fields)
-        order = next((order_of(item.type) for item in element.fields if order_of(item.type)), "")
+        codes = "".join(str(code_of(step)) for step in element.steps)
+        order = common_order(element.steps)
         if self._bytes.order and order and self._bytes.order != order:
             self._flush()
         due = self._bytes
@@ -408,8 +420,8 @@ class _Writer:
         # All that `struct` is given, whatever it is: what is no integer it refuses.
         self.lines.add(f"{values}: list[_typing.Any] = [{', '.join(due.values)}]")
         with self.lines.block(f"for each in {value}:"):
-            self.lines.refuse_if(f"type(each) is not {class_name(element.name)}")
-            numbers = tuple_of(f"each.{item.name}" for item in element.fields)
+            self.lines.refuse_if(f"type(each) is not {class_name(element.type.name)}")
+            numbers = tuple_of(f"each.{step.name}" for step in element.steps)
             self.lines.add(f"{values} += {numbers}")
         due.codes = ""
         self._piece(f"{packers}[len({value})](*{values})")
@@ -422,15 +434,15 @@ class _Writer:
             allowed += f" or each in {tuple_of(str(named.value) for named in item.special)}"
         self.lines.refuse_if(f"not all({allowed} for each in {value})")
 
-    def _packed(self, value: str, array: Array) -> str:
-        code, order = array_code(array), order_of(array.element) or "<"
-        if isinstance(array.extent, Fixed):
-            layout = f'"{order}{array.extent.count}{code}"'
+    def _packed(self, value: str, step: RepeatStep) -> str:
+        code, order = array_code(step), order_of(step.element) or "<"
+        if step.count.is_fixed:
+            layout = f'"{order}{step.count.known}{code}"'
             pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
             return f"{pack}(*{value})"
         return f'_struct.pack(f"{order}{{len({value})}}{code}", *{value})'
 
-    def _one_by_one(self, value: str, element: Type, item: Field | None) -> None:
+    def _one_by_one(self, value: str, element: AnyStep, item: Field | None) -> None:
         self._flush()
         data, each = self.lines.local(), self.lines.local("each")
         self.lines.add(f"{data}: list[bytes] = []")

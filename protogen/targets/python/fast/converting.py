@@ -1,0 +1,90 @@
+"""Values as `struct` reads them, made the values of attributes."""
+
+from __future__ import annotations
+
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    FloatStep,
+    IntegerStep,
+    without_constant,
+)
+from protogen.model.types import Float, Integer, Octets
+from protogen.targets.python.fast.layout import code_of, is_named, is_native, is_pair
+from protogen.targets.python.fast.lines import Lines
+from protogen.targets.python.spelling import class_name
+
+
+class Converter:
+    """Writes the expressions that convert values."""
+
+    def __init__(self, lines: Lines, *, is_ascii: bool) -> None:
+        """With `is_ascii`, the caller has seen that no byte has its most significant bit set."""
+        self.lines = lines
+        self.is_ascii = is_ascii
+
+    def converted(self, variable: str, step: AnyStep) -> str:
+        """The attribute's value for what `struct` has read."""
+        match without_constant(step):
+            case IntegerStep(type=type_):
+                return self.named(self._integer(variable, type_, code_of(step)), type_)
+            case FloatStep(type=Float(byte_bits=7) as type_):
+                call = f'_fast.seven_bit_float({type_.bits}, "{type_.byte_order}").decode'
+                return f"{self.lines.constants.named('FLOAT', call)}({variable})"
+            case BytesStep() as string:
+                return self.string(variable, string)
+        return variable
+
+    def _integer(self, variable: str, type_: Integer, code: str | None) -> str:
+        if type_.role == "bool":
+            self.lines.refuse_if(f"{variable} > 1")
+            return f"{variable} == 1"
+        if is_native(type_):
+            return variable
+        if is_pair(type_):
+            if self.is_ascii and type_.bits == 14:
+                table = f"_TABLES.pairs({type_.bits}, {type_.signed})"
+                return f"{self.lines.constants.named('PAIRS', table)}[{variable}]"
+            return f"{self._pairs(type_)}[{variable}]"
+        assert code is not None
+        if code.endswith("s"):
+            return f"{self.lines.constants.number(type_)}.decode({variable})"
+        if not (self.is_ascii and type_.bits == 7):
+            self.lines.refuse_if(f"{variable} >> {type_.bits}")
+        if not type_.signed:
+            return variable
+        sign = f"0x{1 << (type_.bits - 1):X}"
+        return f"({variable} ^ {sign}) - {sign}"
+
+    def _pairs(self, type_: Integer) -> str:
+        arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
+        return self.lines.constants.named("PAIRS", f"_fast.Pairs({arguments})")
+
+    def named(self, value: str, type_: Integer) -> str:
+        """The member of an enum or a set of flags for a number."""
+        named = type_.enum or type_.flags
+        if named is None:
+            return value
+        if not type_.is_closed and not type_.signed and type_.bits <= 8:
+            table = f"_TABLES.members({class_name(named.name)}, {type_.bits})"
+            return f"{self.lines.constants.named('MEMBERS', table)}[{value}]"
+        kind = "closed" if type_.is_closed else "Members"
+        members = f"_fast.{kind}({class_name(named.name)})"
+        return f"{self.lines.constants.named('MEMBERS', members)}[{value}]"
+
+    def string(self, value: str, step: BytesStep) -> str:
+        """The text of some bytes, or the bytes themselves."""
+        if step.type.byte_bits == 7 and not self.is_ascii:
+            self.lines.refuse_if(f"not {value}.isascii()")
+        if isinstance(step.type, Octets):
+            return value
+        padding = '.rstrip(b"\\0")' if step.count.is_fixed else ""
+        return f'{value}{padding}.decode("latin-1")'
+
+    def is_seen(self, step: AnyStep) -> bool:
+        """True if a byte is the value itself, now that its top bit was seen to be clear."""
+        if not isinstance(step, IntegerStep):
+            return False
+        type_ = step.type
+        is_byte = (self.is_ascii, type_.bits, type_.size, type_.signed) == (True, 7, 1, False)
+        return is_byte and type_.role != "bool" and not is_named(type_)
