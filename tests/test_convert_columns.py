@@ -21,13 +21,13 @@ np = pytest.importorskip("numpy")
 pa = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 
-from protogen.convert import cells  # noqa: E402
-from protogen.convert.arrays import Lists, Numbers, Octets  # noqa: E402
+from protogen.convert.arrays import Lists, Numbers  # noqa: E402
 from protogen.convert.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
 from protogen.convert.batches import Batch, Tally  # noqa: E402
 from protogen.convert.chunks import Chunk  # noqa: E402
 from protogen.convert.composed import Scattered, Structs  # noqa: E402
 from protogen.convert.decoding import open_decoder  # noqa: E402
+from protogen.convert.kinds import OutputFormat  # noqa: E402
 from protogen.convert.meanings import NameFinder, physical  # noqa: E402
 from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Record, Scalar, tables_of  # noqa: E402
 from protogen.convert.values import as_list  # noqa: E402
@@ -62,11 +62,17 @@ EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders() + SAMPLED, 
 
 
 def batches_of(
-    path: Path, sender: str, data: bytes, engine: str | None, start: int = 0, timed: bool = False
+    path: Path,
+    sender: str,
+    data: bytes,
+    engine: str | None,
+    start: int = 0,
+    timed: bool = False,
+    to: OutputFormat = OutputFormat.PARQUET,
 ) -> list[Batch]:
     protocol = protocol_of(path)
     tables = tables_of(protocol, protocol.sender(sender))
-    decoder = open_decoder(tables, module_at(path).PROTOCOL.sender(sender), engine, start)
+    decoder = open_decoder(tables, module_at(path).PROTOCOL.sender(sender), to, engine, start)
     found: list[Batch] = []
     dice = Random(7)
     for place, piece in enumerate(portions(data, dice)):
@@ -127,7 +133,8 @@ def test_are_those_of_events(path: Path, sender: str, engine: str | None) -> Non
     found = batches_of(path, sender, data, engine)
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, sender, data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
     assert tally_of(found) == tally_of(expected)
 
 
@@ -137,20 +144,29 @@ def test_have_the_same_times_and_offsets(path: Path, sender: str) -> None:
     expected = batches_of(path, sender, data, "events", 1 << 40, timed=True)
     found = batches_of(path, sender, data, None, 1 << 40, timed=True)
     assert rows_of(found) == rows_of(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(
+        batches_of(path, sender, data, None, 1 << 40, timed=True, to=OutputFormat.JSONL)
+    )
+    assert lines == lines_of(expected)
 
 
 @pytest.mark.parametrize("sender", ["pc", "board"])
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
 def test_hold_every_kind_of_value(tmp_path: Path, sender: str, engine: str | None) -> None:
-    (tmp_path / "sink.yaml").write_text(SINK)
+    path = tmp_path / "sink.yaml"
+    path.write_text(SINK)
     for seed in range(3):
-        data = capture_of(tmp_path / "sink.yaml", sender, seed, 200)
-        expected = batches_of(tmp_path / "sink.yaml", sender, data, "events", timed=True)
-        found = batches_of(tmp_path / "sink.yaml", sender, data, engine, timed=True)
+        data = capture_of(path, sender, seed, 200)
+        expected = batches_of(path, sender, data, "events", timed=True)
+        found = batches_of(path, sender, data, engine, timed=True)
         assert rows_of(found) == rows_of(expected)
         assert arrow_rows(found) == arrow_rows(expected)
-        assert lines_of(found) == lines_of(expected)
+        lines = lines_of(
+            batches_of(
+                tmp_path / "sink.yaml", sender, data, engine, timed=True, to=OutputFormat.JSONL
+            )
+        )
+        assert lines == lines_of(expected)
 
 
 FLAT = """
@@ -180,7 +196,8 @@ def test_hold_lists_that_are_always_empty(
     assert len(rows_of(expected)["empty"]) == 3
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, "one", data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
     for rows in (rows for batch in found for rows in batch.rows()):
         table = pa.Table.from_batches([batch_of(rows, schema_of(rows.table, {}))])
         parquet.write_table(table, tmp_path / "rows.parquet")
@@ -226,7 +243,8 @@ def test_hold_lists_of_structs_without_values(tmp_path: Path, engine: str | None
     assert [len(it["marks"]) for it in shown] == [2, 0, 3]
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, "one", data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
@@ -243,7 +261,8 @@ def test_hold_switches_whose_cases_are_all_empty(tmp_path: Path, engine: str | N
     found = batches_of(path, "one", data, engine)
     assert len(rows_of(expected)["m"]) == 2
     assert rows_of(found) == rows_of(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, "one", data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
 
 
 CASES_IN_LISTS = """
@@ -324,7 +343,8 @@ def test_are_chosen_by_what_is_in_front(tmp_path: Path, engine: str | None) -> N
     assert chosen == [200, 200, -56, -56]
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, "one", data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
@@ -338,10 +358,11 @@ def test_hold_numbers_that_floats_have_not(tmp_path: Path, engine: str | None) -
     data = b"".join(b"\x5a\xa5" + bytes((id, len(it))) + it for id, it in payloads)
     expected = batches_of(path, "one", data, "events")
     found = batches_of(path, "one", data, engine)
-    assert len(lines_of(found)) == len(payloads)
+    assert len(lines_of(expected)) == len(payloads)
     assert rows_of(found) == rows_of(expected)
     assert arrow_rows(found) == arrow_rows(expected)
-    assert lines_of(found) == lines_of(expected)
+    lines = lines_of(batches_of(path, "one", data, engine, to=OutputFormat.JSONL))
+    assert lines == lines_of(expected)
 
 
 class TestPhysical:
@@ -386,43 +407,6 @@ def test_names_are_found(dtype: str) -> None:
     found = finder.find(Numbers(np.array(raw, dtype))).tolist()
     names = {0: "off", 5: "on", 127: "high", 300: "far", -2: "below"}
     assert found == [names.get(value) for value in raw]
-
-
-class TestCells:
-    @pytest.mark.parametrize("dtype", ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8"])
-    def test_integers(self, dtype: str) -> None:
-        limits = np.iinfo(dtype)
-        dice = Random(3)
-        values = [0, int(limits.min), int(limits.max), 9, 10, 99, 100]
-        values += [10**power + delta for power in range(20) for delta in (-1, 0, 1)]
-        values += [dice.randrange(int(limits.min), int(limits.max)) for _ in range(200)]
-        values = [value for value in values if limits.min <= value <= limits.max]
-        assert texts_of(cells.integers(np.array(values, dtype))) == [str(v) for v in values]
-        small = [value for value in values if 0 <= value < 10_000]
-        assert texts_of(cells.integers(np.array(small, dtype))) == [str(v) for v in small]
-        assert len(cells.integers(np.zeros(0, dtype))) == 0
-
-    def test_floats_and_bools(self) -> None:
-        values = [0.0, -0.0, 1e300, 0.1, math.inf, -math.inf]
-        assert texts_of(cells.numbers(np.array(values))) == [
-            "0.0", "-0.0", "1e+300", "0.1", '"inf"', '"-inf"',
-        ]  # fmt: skip
-        assert texts_of(cells.numbers(np.array([True, False]))) == ["true", "false"]
-
-    def test_lists_and_bytes(self) -> None:
-        values = np.array([[1, 20, 3], [4, 5, 6]], "u1")
-        assert texts_of(cells.lists(Lists(values))) == ["1, 20, 3", "4, 5, 6"]
-        counts = np.array([0, 2])
-        assert texts_of(cells.lists(Lists(values, counts))) == ["", "4, 5"]
-        assert texts_of(cells.hexadecimal(Octets(values, counts))) == ["", "0405"]
-        assert texts_of(cells.hexadecimal(Octets(values))) == ["011403", "040506"]
-
-    def test_texts_are_quoted(self) -> None:
-        assert texts_of(cells.texts(['a"b', "é\0"])) == ['"a\\"b"', '"é\\u0000"']
-
-
-def texts_of(matrix: Any) -> list[str]:
-    return [row.tobytes().replace(b"\0", b"").decode() for row in matrix]
 
 
 def test_what_is_missing_has_members_that_parquet_takes() -> None:

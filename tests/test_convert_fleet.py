@@ -68,8 +68,7 @@ class Splitter:
     def __init__(self, path: Path, sender: str, data: bytes) -> None:
         self.protocol = protocol_of(path)
         self.tables = tables_of(self.protocol, self.protocol.sender(sender))
-        spec = module_at(path).PROTOCOL.sender(sender)
-        self.make = column_decoders(self.tables, spec, None)
+        self.make = column_decoders(self.tables, None)
         self.data = data
         self.repaired = 0
 

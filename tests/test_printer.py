@@ -6,34 +6,49 @@ import csv
 import io
 import json
 import struct
-import tracemalloc
-from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
 from compiled import ROOT, module_at, name_of, protocol_of, senders
-from test_convert_columns import batches_of, lines_of
+from test_convert_columns import GREAT, batches_of
+from test_convert_columns import lines_of as lines_in
 from test_json_lines import capture_of
 from tooling import require_tool
 
 np = pytest.importorskip("numpy")
 
-from protogen.convert.arrays import Lists, Numbers  # noqa: E402
-from protogen.convert.batches import Rows, Tally  # noqa: E402
-from protogen.convert.composed import ListsOf, Structs  # noqa: E402
+from protogen.convert.batches import Tally  # noqa: E402
+from protogen.convert.csv_text import quoted_characters  # noqa: E402
 from protogen.convert.csv_writer import CsvWriter  # noqa: E402
+from protogen.convert.decoding import _PRINTERS  # noqa: E402
+from protogen.convert.kinds import OutputFormat  # noqa: E402
 from protogen.convert.outputs import Pending  # noqa: E402
-from protogen.convert.printed_csv import CsvPrinter, json_texts  # noqa: E402
-from protogen.convert.programs import PLAIN, QUOTED, Programs, operand  # noqa: E402
-from protogen.convert.tables import TEXT, tables_of  # noqa: E402
 from protogen.convert.writers import write_all  # noqa: E402
-from protogen.native.printer import CODES, Kind, Printer, Table, _function  # noqa: E402
+from protogen.native.print_source import UnprintableError, source_of  # noqa: E402
+from protogen.native.print_steps import (  # noqa: E402
+    IN_CELLS,
+    IN_LINES,
+    Characters,
+    HexOf,
+    Literal,
+    Name,
+    Physical,
+    Place,
+    Quoted,
+    Source,
+    Spelling,
+    Step,
+    number,
+)
+from protogen.native.printer import PrintedRows, Printer, build_printer  # noqa: E402
 from protogen.runtime.assembly import encode_frame  # noqa: E402
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 SENDERS = [(path, it.name) for path in SAMPLERS for it in protocol_of(path).senders]
+CODES = ("u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -41,19 +56,22 @@ def _has_compiler() -> None:
     require_tool("cc")
 
 
-def printed(columns: list[Any], programs: Programs) -> str:
-    offsets = np.arange(len(columns[0]), dtype="u8")
-    table = Table([offsets, *columns], 0, len(offsets))
-    return b"".join(Printer(programs.script()).texts([table])).decode()
+def printed(values: Any, *steps: Step, line: bytes = b"") -> list[str]:
+    """Each value as these steps print it; it lies at offset 8 of its row."""
+    rows = np.zeros(len(values), [("offset", "u8"), ("value", values.dtype, values.shape[1:])])
+    rows["offset"] = np.arange(len(values))
+    rows["value"] = values
+    built = build_printer("test", [[*steps, Literal("\0")]], quoted_characters())
+    texts = Printer(built).texts([PrintedRows(0, rows)], line)
+    return b"".join(texts).decode().split("\0")[:-1]
+
+
+def place_of(values: Any) -> Place:
+    return Place(0, "?" if values.dtype == bool else values.dtype.str[1:], 8)
 
 
 def numbers(values: Any) -> list[str]:
-    code = "?" if values.dtype == bool else values.dtype.str[1:]
-    programs = Programs()
-    programs.number(operand(code, source=1), code, QUOTED)
-    programs.text("\n")
-    programs.end()
-    return printed([values], programs).splitlines()
+    return printed(values, number(place_of(values), IN_LINES))
 
 
 class TestNumbers:
@@ -78,12 +96,13 @@ class TestNumbers:
         found = numbers(np.array([float("nan"), float("inf"), -float("inf")]))
         assert found == ['"nan"', '"inf"', '"-inf"']
 
-    @pytest.mark.parametrize("code", CODES[:8])
-    def test_of_integers_reach_the_limits(self, code: str) -> None:
+    @pytest.mark.parametrize("code", CODES)
+    def test_of_integers_are_those_of_python(self, code: str) -> None:
         limits = np.iinfo(code)
         least, most = int(limits.min), int(limits.max)
-        every = {least, least + 1, 0, 1, 9, 10, 99, 100, most - 1, most}
-        every |= {10**power + more for power in range(20) for more in (-1, 0)}
+        every = {least, least + 1, 0, 1, 9, most - 1, most, 1 << 31, 1 << 32, 1 << 63}
+        every |= {10**power + more for power in range(20) for more in (-1, 0, 1)}
+        every |= {-value for value in every}
         values = sorted(value for value in every if least <= value <= most)
         assert numbers(np.array(values, code)) == [str(value) for value in values]
 
@@ -91,28 +110,95 @@ class TestNumbers:
         assert numbers(np.array([True, False])) == ["true", "false"]
 
 
+class TestPhysicalValues:
+    @pytest.mark.parametrize("code", CODES)
+    @pytest.mark.parametrize(
+        ("scale", "offset"),
+        [
+            (Fraction(1, 3), Fraction(1, 7)),
+            (Fraction(1, 16), Fraction(0)),
+            (Fraction(-3), Fraction(5)),
+            (Fraction(-3, 4), Fraction(0)),
+            (Fraction(1, 10**9), Fraction(-27315, 100)),
+            (Fraction(10**12 + 1, 7), Fraction(-1, 10**6)),
+        ],
+    )
+    def test_are_exact_and_rounded_once(self, code: str, scale: Fraction, offset: Fraction) -> None:
+        dice = Random(f"{code} {scale}")
+        limits = np.iinfo(code)
+        least, most = int(limits.min), int(limits.max)
+        values = [least, most, 0, 1, 3, 77, most // 3]
+        values += [dice.randint(least, most) >> dice.randrange(64) for _ in range(500)]
+        raw = np.array([value for value in values if least <= value <= most], code)
+        found = printed(raw, Physical(place_of(raw), scale, offset, [3, 77], "", IN_CELLS))
+        due = [float(it * scale + offset) for it in raw.tolist()]
+        missing = [it in (3, 77) for it in raw.tolist()]
+        pairs = zip(due, missing, strict=True)
+        assert found == ["" if none else repr(value) for value, none in pairs]
+
+    @pytest.mark.parametrize("code", ["f4", "f8"])
+    def test_of_floats_are_rounded_twice_as_in_python(self, code: str) -> None:
+        dice = Random(code)
+        scale, offset = Fraction(1, 3), Fraction(1, 7)
+        raw = np.array([0.0, 1e30, 3.0, *(dice.uniform(-9, 9) for _ in range(500))], code)
+        found = printed(raw, Physical(place_of(raw), scale, offset, [3], "none", IN_CELLS))
+        due = ["none" if it == 3 else repr(it * scale + offset) for it in raw.tolist()]
+        assert found == due
+
+    def test_are_left_to_python_where_c_has_no_such_numbers(self) -> None:
+        step = Physical(Place(0, "u8", 8), Fraction(1 << 64, 3), Fraction(0), [], "", IN_CELLS)
+        with pytest.raises(UnprintableError):
+            source_of([[step]], [])
+
+
 class TestTexts:
     def test_are_as_long_as_they_are(self) -> None:
-        programs = Programs()
-        programs.step(Kind.STRING, b=4, c=PLAIN, x=operand("u1", source=1))
-        programs.text("|")
-        programs.end()
-        assert printed([np.array([b"ab", b"", b"a\0b", b"\xe9"], "S4")], programs) == "ab||a\0b|é|"
+        values = np.array([b"ab", b"", b"a\1b", b"\xe9"], "S4")
+        step = Characters(Place(0, "u1", 8), 4, None, Spelling.PLAIN)
+        assert printed(values, step) == ["ab", "", "a\1b", "é"]
+
+    def test_hold_and_end_with_nul_where_they_have_a_length(self) -> None:
+        values = np.array([b"ab", b"", b"a\0b"], "S4")
+        step = Characters(Place(0, "u1", 8), 4, 3, Spelling.JSON)
+        assert printed(values, step) == ["ab\\u0000", 3 * "\\u0000", "a\\u0000b"]
+
+    @pytest.mark.parametrize("spelling", [Spelling.JSON, Spelling.JSON_ASCII])
+    def test_have_every_character_as_json_does(self, spelling: Spelling) -> None:
+        values = np.arange(256, dtype="u1").reshape(256, 1)
+        is_ascii = spelling is Spelling.JSON_ASCII
+        due = [json.dumps(chr(code), ensure_ascii=is_ascii)[1:-1] for code in range(256)]
+        assert printed(values, Characters(Place(0, "u1", 8), 1, 1, spelling)) == due
 
     def test_may_be_longer_than_the_room(self) -> None:
-        programs = Programs()
-        programs.step(Kind.SPAN, 2, x=operand("u8", source=1), y=operand("u8", source=1, offset=8))
-        programs.end()
         line = bytes(range(256)) * 8000
         spans = np.array([[0, 2], [1, len(line) - 1]], "u8")
-        assert printed([spans, line], programs) == "0001" + line[1:].hex()
+        step = HexOf(Source.LINE, Place(0, "u8", 8), Place(0, "u8", 16))
+        assert "".join(printed(spans, step, line=line)) == "0001" + line[1:].hex()
 
     def test_are_chosen_by_number(self) -> None:
-        programs = Programs()
-        programs.name(operand("i2", source=1), ("a", "bc"))
-        programs.text(";")
-        programs.end()
-        assert printed([np.array([1, -1, 0, 2], "i2")], programs) == "bc;;a;;"
+        values = np.array([1, -1, 0, 2, -3], "i2")
+        assert printed(values, Name(place_of(values), {0: "a", 1: "b?", -3: "c"})) == [
+            "b?", "", "a", "", "c",
+        ]  # fmt: skip
+
+    def test_are_in_quotes_where_csv_puts_them(self) -> None:
+        texts = ['"', "a,b", "", "\r", "\n", " x ", "é", 'say ""', "'", "a;b"]
+        values = np.array([text.encode("latin-1") for text in texts], "S8")
+        found = printed(values, Quoted([Characters(Place(0, "u1", 8), 8, None, Spelling.PLAIN)]))
+        assert found == [csv_cell(text) for text in texts]
+
+
+def csv_cell(text: str) -> str:
+    file = io.StringIO(newline="")
+    csv.writer(file, lineterminator="\n").writerow([text, ""])
+    return file.getvalue().removesuffix(",\n")
+
+
+# --- lines ----------------------------------------------------------------------------------------
+
+
+def lines_of(path: Path, sender: str, data: bytes, engine: str | None, *how: Any) -> list[bytes]:
+    return lines_in(batches_of(path, sender, data, engine, *how, to=OutputFormat.JSONL))
 
 
 @pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
@@ -120,8 +206,8 @@ class TestTexts:
 def test_lines_are_those_of_events(path: Path, sender: str, timed: bool) -> None:
     for seed in range(3):
         data = capture_of(path, sender, seed, 150)
-        expected = batches_of(path, sender, data, "events", 1 << 40, timed)
-        assert lines_of(batches_of(path, sender, data, None, 1 << 40, timed)) == lines_of(expected)
+        expected = lines_of(path, sender, data, "events", 1 << 40, timed)
+        assert lines_of(path, sender, data, None, 1 << 40, timed) == expected
 
 
 @pytest.mark.parametrize("bits", ["7fc00000", "ffc00000", "7fc00001", "7f800001", "7f800000"])
@@ -132,8 +218,8 @@ def test_a_nan_that_json_does_not_tell_has_its_bytes(bits: str) -> None:
     assert message is not None
     payload = bytes.fromhex(bits) + bytes(protocol_of(path).message("floats").sizes.greatest - 4)
     data = encode_frame(spec, message.IDENTITY, payload, {}, strict=False)
-    (line,) = lines_of(batches_of(path, "one", data, None))
-    assert lines_of(batches_of(path, "one", data, "events")) == [line]
+    (line,) = lines_of(path, "one", data, None)
+    assert lines_of(path, "one", data, "events") == [line]
     assert (b'"raw"' in line) == (bits not in ("7fc00000", "7f800000"))
 
 
@@ -155,15 +241,21 @@ def test_unknown_frames_have_their_bytes_where_an_encoder_makes_others(name: str
         b"".join(escaped),
         b"".join(2 * frame[:1] + frame[1:] + frame[-1:] for frame in frames),
     ):
-        lines = lines_of(batches_of(path, "station", data, "events"))
-        assert lines_of(batches_of(path, "station", data, None)) == lines
-    plain = lines_of(batches_of(path, "station", b"".join(frames), None))
+        expected = lines_of(path, "station", data, "events")
+        assert lines_of(path, "station", data, None) == expected
+    plain = lines_of(path, "station", b"".join(frames), None)
     assert sum(b'"unknown"' in line for line in plain) > 200
     assert not any(b'"raw"' in line for line in plain)
 
 
-def csv_files(batches: list[Any], folder: Path) -> dict[str, bytes]:
+# --- CSV ------------------------------------------------------------------------------------------
+
+
+def csv_files(
+    folder: Path, path: Path, sender: str, data: bytes, engine: str | None, *how: Any
+) -> dict[str, bytes]:
     writer = CsvWriter("run", pending := Pending(folder))
+    batches = batches_of(path, sender, data, engine, *how, to=OutputFormat.CSV)
     write_all(writer, batches, Tally())
     pending.commit()
     return {path.parent.name: path.read_bytes() for path in folder.glob("*/*.csv")}
@@ -173,157 +265,53 @@ def csv_files(batches: list[Any], folder: Path) -> dict[str, bytes]:
 def test_csv_is_that_of_events(path: Path, sender: str, tmp_path: Path) -> None:
     data = capture_of(path, sender, 4, 150)
     each = [
-        csv_files(batches_of(path, sender, data, engine, 7, timed), tmp_path / f"{engine} {timed}")
+        csv_files(tmp_path / f"{engine} {timed}", path, sender, data, engine, 7, timed)
         for engine in ("events", None)
         for timed in (False, True)
     ]
     assert each[:2] == each[2:]
 
 
-def test_csv_puts_in_quotes_what_csv_does(tmp_path: Path) -> None:
-    texts = ['"', "a,b", "", "\r", "\n", " x ", "é", 'say ""', "'", "a;b"]
-    table = tables_of(protocol_of(SENDERS[0][0]), protocol_of(SENDERS[0][0]).sender("one")).unknown
-    column = replace(table.columns[0], type=TEXT)
-    offsets = Numbers(np.arange(len(texts), dtype="u8"))
-    rows = Rows(replace(table, frame_columns=table.frame_columns[:1], columns=(column,)), [])
-    expected = io.StringIO(newline="")
-    csv.writer(expected, lineterminator="\n").writerows(enumerate(texts))
-    printer = CsvPrinter(lambda column, values: values)
-    found = b"".join(printer.lines(replace(rows, columns=[offsets, texts])))
-    assert found.decode() == expected.getvalue()
+SCALED = """
+      a: {type: uint64, scale: 1/3, offset: 5, unit: m}
+      b: {type: sint64, scale: 1e-9, unit: s, special: {absent: 0}}
+      c: {type: uint32, scale: 1/1000, offset: -273.15, unit: degC, special: {absent: 0xFFFFFFFF}}
+      d: {type: float32, scale: 16, offset: 0.1, unit: m}
+      e: {type: uint16, count: 5, scale: -1/7, offset: 0.3, unit: m, special: {absent: 0}}
+      f: {type: uint64, count: 3, scale: 3/7, unit: m}
+      g: {type: uint8, unit: m, special: {absent: 0, far: 255}}
+      h: {type: sint8, values: {minus: -1, zero: 0, one: 1}}
+      n: uint8
+      t: {type: ascii, size: n}
+"""
+GREATER = "      q: {type: uint64, scale: 123456789012345678901/7, unit: m}\n"
 
 
-@pytest.mark.parametrize("code", ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8"])
-def test_integers_of_any_length_are_those_of_python(code: str) -> None:
-    limits = np.iinfo(code)
-    around = [10**power + more for power in range(20) for more in (-1, 0, 1)]
-    values = [sign * value for value in [*around, 1 << 31, 1 << 32, 1 << 63] for sign in (-1, 1)]
-    fitting = [value for value in values if limits.min <= value <= limits.max]
-    rows = np.array([*fitting, limits.min, limits.max], code)
-    programs = Programs()
-    programs.number(operand(code, source=1), code)
-    programs.text("\n")
-    programs.end()
-    assert printed([rows], programs).splitlines() == [str(it) for it in rows.tolist()]
+@pytest.mark.parametrize("more", ["", GREATER], ids=["in_c", "in_python"])
+def test_csv_has_the_same_physical_values(tmp_path: Path, more: str) -> None:
+    path = tmp_path / "great.yaml"
+    message = f"  scaled:\n    id: 3\n    from: one\n    fields:{SCALED}{more}"
+    path.write_text(GREAT[: GREAT.index("  scaled:")] + message)
+    data = capture_of(path, "one", 4, 200)
+    expected = csv_files(tmp_path / "events", path, "one", data, "events")
+    assert expected["scaled"].count(b"\n") > 20
+    assert csv_files(tmp_path / "native", path, "one", data, None) == expected
 
 
-@pytest.mark.parametrize("counts", [[0, 0], [2, 0], [1, 2]])
-def test_lists_in_lists_may_all_be_empty(counts: list[int]) -> None:
-    """Then there is no struct that has the inner ones."""
-    inside = np.arange(sum(counts)) % 2
-    innermost = Structs({"y": Numbers(np.arange(sum(inside)))}, sum(inside))
-    inner = Structs({"x": ListsOf(innermost, inside)}, sum(counts))
-    lists = ListsOf(inner, np.array(counts))
-    assert json_texts(lists, str) == [json.dumps(value) for value in lists.tolist()]
-
-
-def nested_values(dice: Random, rows: int, deep: int) -> Any:
-    """Numbers, lists and structs of them, and now and then a text, which lists hold no more of."""
-    kind = dice.choice(["number", "list", "struct", "lists"] if deep else ["number", "list"])
-    if kind == "struct":
-        names = dice.sample(["x", "naïve", 'a "b"', "y%", "z"], dice.randrange(1, 4))
-        return Structs({name: nested_values(dice, rows, deep - 1) for name in names}, rows)
-    if kind == "lists":
-        counts = np.array([dice.randrange(4) for _ in range(rows)], "i4")
-        return ListsOf(nested_values(dice, int(counts.sum()), deep - 1), counts)
-    if dice.random() < 0.05:
-        return [dice.choice(["", '"', "é"]) for _ in range(rows)]
-    code = dice.choice(["u1", "i2", "u8", "?", "f4", "f8"])
-    size = np.dtype(code).itemsize
-    many = 3 if kind == "list" else 1
-    data = np.frombuffer(dice.randbytes(rows * many * size), "u1" if code == "?" else code)
-    matrix = (data % 2 == 1 if code == "?" else data).reshape(rows, many)
-    if kind == "number":
-        return Numbers(matrix[:, 0].copy())
-    counts = np.array([dice.randrange(many + 1) for _ in range(rows)], "i4")
-    return Lists(matrix, dice.choice([counts, None]))
-
-
-def csv_of_lists(values: ListsOf) -> tuple[str, str, int]:
-    """Lines that C printed, those of Python, and how many columns C knew nothing of."""
-    table = tables_of(protocol_of(SENDERS[0][0]), protocol_of(SENDERS[0][0]).senders[0]).invalid
-    table = replace(table, frame_columns=table.frame_columns[:1], columns=table.columns[-1:])
-    asked = []
-
-    def show(column: Any, shown: Any) -> list[str]:
-        asked.append(column)
-        return json_texts(shown, str)
-
-    printer = CsvPrinter(show)
-    rows = Rows(table, [Numbers(np.arange(len(values), dtype="u8")), values])
-    found = b"".join(printer.lines(rows)).decode()
-    expected = io.StringIO(newline="")
-    texts = map(json.dumps, values.tolist())
-    csv.writer(expected, lineterminator="\n").writerows(enumerate(texts))
-    return found, expected.getvalue(), len(asked)
-
-
-def test_lists_of_anything_are_those_of_python() -> None:
-    known = 0
-    for seed in range(150):
-        dice = Random(seed)
-        counts = np.array([dice.randrange(5) for _ in range(dice.randrange(1, 40))], "i4")
-        inside = nested_values(dice, int(counts.sum()), 3)
-        found, expected, asked = csv_of_lists(ListsOf(inside, counts))
-        assert found == expected, seed
-        known += not asked
-    assert known > 100
-
-
-def test_lists_that_are_long_and_short_by_turns_take_no_room() -> None:
-    counts = np.zeros(5000, "i4")
-    counts[7] = 300
-    found, expected, asked = csv_of_lists(ListsOf(Numbers(np.arange(300)), counts))
-    assert found == expected
-    assert asked == 1
-
-
-def test_lists_in_lists_of_any_length_take_little_memory() -> None:
-    """Each may need many times the room of what it holds, and those inside of it as well."""
-    values: Any = Numbers(np.arange(100_000, dtype="u8"))
-    for _ in range(3):
-        counts = np.ones(len(values), "i4")
-        counts[::14] = 256
-        counts = counts[: np.searchsorted(np.cumsum(counts), len(values)) + 1]
-        counts[-1] -= counts.sum() - len(values)
-        values = ListsOf(values, counts)
-    tracemalloc.start()
-    try:
-        found, expected, asked = csv_of_lists(values)
-        most = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert found == expected
-    assert asked == 1
-    assert most < 150_000_000
-
-
-def test_lists_in_lists_are_printed_as_deep_as_there_is_room() -> None:
-    for deep, is_printed in ((9, True), (10, False)):
-        values: Any = Numbers(np.arange(1))
-        for _ in range(deep):
-            values = ListsOf(values, np.ones(1, "i4"))
-        found, expected, asked = csv_of_lists(values)
-        assert found == expected == f"0,{'[' * deep}0{']' * deep}\n"
-        assert bool(asked) != is_printed
-
-
-def test_without_a_compiler_csv_is_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("to", [OutputFormat.JSONL, OutputFormat.CSV])
+def test_without_a_compiler_text_is_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, to: OutputFormat
 ) -> None:
     path, sender = SENDERS[0]
-    batches = batches_of(path, sender, capture_of(path, sender, 1, 100), None)
-    expected = csv_files(batches, tmp_path / "one")
-    monkeypatch.setenv("CC", "no-such-cc")
-    _function.cache_clear()
-    assert csv_files(batches, tmp_path / "other") == expected
-
-
-def test_without_a_compiler_lines_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    path, sender = SENDERS[0]
     data = capture_of(path, sender, 1, 100)
-    expected = lines_of(batches_of(path, sender, data, None))
-    monkeypatch.setenv("CC", "no-such-cc")
-    _function.cache_clear()
+
+    def text(folder: Path) -> Any:
+        if to is OutputFormat.JSONL:
+            return lines_of(path, sender, data, None)
+        return csv_files(folder, path, sender, data, None)
+
+    expected = text(tmp_path / "one")
+    monkeypatch.setenv("CC", f"no-such-{to.value}")
+    _PRINTERS.clear()
     with pytest.warns(UserWarning, match="columns are filled from Python's events"):
-        assert lines_of(batches_of(path, sender, data, None)) == expected
+        assert text(tmp_path / "other") == expected

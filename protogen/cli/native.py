@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
+from protogen.convert.kinds import OutputFormat
+
+if TYPE_CHECKING:
+    from protogen.convert.tables import Tables
 
 BUILD_EXAMPLE = "Example: protogen native build schemas"
 PATH_EXAMPLE = "Example: du -sh $(protogen native path)"
@@ -26,9 +31,9 @@ def build(
     again.
     """
     from protogen.cli.schemas import open_protocol, schema_files
+    from protogen.convert.tables import tables_of
     from protogen.live.rows import driver_of
     from protogen.native.build import build as build_library
-    from protogen.native.build import build_printer
     from protogen.native.errors import NativeError
 
     protocols = [open_protocol(file) for file in schema_files(schemas)]
@@ -36,12 +41,23 @@ def build(
         for protocol in protocols:
             for sender in protocol.senders:
                 built = build_library(driver_of(protocol, sender))
-                _say(f"{protocol.name} {sender.name}", is_new=built.is_new)
-        _, is_new = build_printer()
+                name = f"{protocol.name} {sender.name}"
+                _say(name, is_new=built.is_new)
+                _build_printers(name, tables_of(protocol, sender))
     except NativeError as error:
         raise UsageError(str(error), "captures can still be read in Python") from None
-    _say("what prints rows as text", is_new=is_new)
     return CLEAN
+
+
+def _build_printers(name: str, tables: Tables) -> None:
+    """Compile what prints rows as text."""
+    from protogen.convert.text_library import built_printer
+    from protogen.native.print_source import UnprintableError
+
+    for format in (OutputFormat.JSONL, OutputFormat.CSV):
+        with suppress(UnprintableError):
+            built = built_printer(tables, format)
+            _say(f"{name} to {format.value}", is_new=built.is_new)
 
 
 def _say(what: str, *, is_new: bool) -> None:

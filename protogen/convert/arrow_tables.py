@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from protogen.convert.batches import Rows
+from protogen.convert.rows import Rows
 from protogen.convert.tables import Column, ColumnType, Listed, Names, Record, Scalar, Table
 
 if TYPE_CHECKING:

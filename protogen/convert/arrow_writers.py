@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from protogen.convert.arrow_tables import batch_of, schema_of
-from protogen.convert.batches import Batch, Rows
+from protogen.convert.batches import Batch
 from protogen.convert.draining import Drain
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.outputs import Pending, continuation
 from protogen.convert.parquet_encodings import spelling_of
+from protogen.convert.rows import Rows
 from protogen.convert.tables import Names, Table
 
 if TYPE_CHECKING:

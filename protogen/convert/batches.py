@@ -9,23 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from protogen.convert.chunks import Chunk, Clock
+from protogen.convert.csv_text import csv_of
 from protogen.convert.plain import plain_fields, reached
+from protogen.convert.rows import Rows
 from protogen.convert.tables import Column, Table, Tables
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.sender import SenderSpec
 
 _ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
-
-
-@dataclass(frozen=True, slots=True)
-class Rows:
-    """Rows of one table, column by column, in the order of `table.all_columns`."""
-
-    table: Table
-    columns: Sequence[Any]
-
-    def __len__(self) -> int:
-        return len(self.columns[0])
 
 
 @dataclass(slots=True)
@@ -77,6 +68,9 @@ class Batch(Protocol):
 
     def lines(self) -> Iterable[bytes]:
         """The events as lines of JSON, in the order of the capture: one or more in each text."""
+
+    def csv(self) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
 
 
 class BatchDecoder(Protocol):
@@ -182,6 +176,11 @@ class EventBatch:
         """The events as lines of JSON."""
         for pair in zip(self.events, self.times, strict=True):
             yield self._line(*pair).encode("utf-8", "surrogatepass")
+
+    def csv(self) -> Iterator[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
+        for rows in self.rows():
+            yield rows.table, [csv_of(rows)]
 
     def _line(self, event: Any, when: int | None) -> str:
         line = event.as_json()

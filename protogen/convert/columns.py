@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,18 +17,29 @@ from protogen.capture.schema import Number as NumberShape
 from protogen.capture.schema import Text as TextShape
 from protogen.capture.tables import Tables as Filled
 from protogen.convert.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
-from protogen.convert.batches import Rows, Tally
+from protogen.convert.batches import Tally
 from protogen.convert.chunks import Chunk
 from protogen.convert.composed import Same, Scattered
 from protogen.convert.meanings import NameFinder, physical
 from protogen.convert.nested import nested
+from protogen.convert.rows import Rows
 from protogen.convert.tables import REASONS, Column, Naming, Physical, Table, Tables
 from protogen.convert.values import Values
 from protogen.model.types import Field, Fixed
 from protogen.model.types import Octets as OctetsType
 from protogen.model.types import Struct as StructType
-from protogen.model.types import Switch as SwitchType
 from protogen.model.types import Text as TextType
+
+
+class BatchPrinter(Protocol):
+    """Prints batches as text: `printed.py`."""
+
+    def lines(self, batch: ColumnBatch) -> Iterable[bytes]:
+        """The rows of all tables in the order of the capture."""
+
+    def table_lines(self, batch: ColumnBatch) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some."""
+
 
 Reader = Callable[[Any], Values]
 """Takes a column out of rows."""
@@ -47,8 +58,6 @@ class Reading:
     held: TableSchema
     frame: tuple[Reader, ...]
     fields: tuple[Reader, ...]
-    is_flat: bool
-    """Whether no column comes from inside of a list or a switch."""
 
 
 class Readings:
@@ -67,21 +76,7 @@ class Readings:
 def _reading(table: Table, held: TableSchema) -> Reading:
     frame = tuple(_frame_readers(table, held))
     fields = tuple(_field_reader(column, held) for column in table.columns)
-    assert held.message is not None
-    # A switch whose cases are all empty has no column.
-    is_flat = not _has_switch(held.message.fields) and all(
-        _flat_reader(column, held) is not None for column in table.columns
-    )
-    return Reading(table, held, frame, fields, is_flat)
-
-
-def _has_switch(fields: Iterable[Field]) -> bool:
-    """Whether a value outside of lists is one of several cases."""
-    return any(
-        isinstance(item.type, SwitchType)
-        or (isinstance(item.type, StructType) and _has_switch(item.type.fields))
-        for item in fields
-    )
+    return Reading(table, held, frame, fields)
 
 
 def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
@@ -230,7 +225,7 @@ class ColumnBatch:
     data: bytes
     """The bytes of the line that the rows cover, and maybe more behind them."""
     times: Times
-    write_lines: Callable[[ColumnBatch], Iterable[bytes]]
+    printer: BatchPrinter | None = None
     start: int = 0
     """What is to be added to the offsets of the rows."""
 
@@ -258,13 +253,17 @@ class ColumnBatch:
 
     def lines(self) -> Iterable[bytes]:
         """The events as lines of JSON."""
-        return self.write_lines(self)
+        assert self.printer is not None, "decoded for a format that has no lines"
+        return self.printer.lines(self)
+
+    def csv(self) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
+        assert self.printer is not None, "decoded for a format that has no lines"
+        return self.printer.table_lines(self)
 
     def with_rows(self, filled: Filled) -> ColumnBatch:
         """The same batch with only these of its rows."""
-        return ColumnBatch(
-            self.readings, filled, self.data, self.times, self.write_lines, self.start
-        )
+        return ColumnBatch(self.readings, filled, self.data, self.times, self.printer, self.start)
 
     def raw(self, offset: int, size: int) -> bytes:
         """The bytes on the wire of an event."""
@@ -321,13 +320,13 @@ class ColumnDecoder:
         self,
         readings: Readings,
         engine: Engine,
-        write_lines: Callable[[ColumnBatch], Iterable[bytes]],
         start: int = 0,
+        printer: BatchPrinter | None = None,
     ) -> None:
         """`start` is the offset of the first byte that will be fed."""
         self._readings = readings
         self._engine = engine
-        self._write_lines = write_lines
+        self._printer = printer
         self._start = start
         self._data = b""
         self._offset = 0
@@ -354,7 +353,7 @@ class ColumnDecoder:
     def _batch(self, filled: Filled) -> ColumnBatch:
         times = Times(self._ends, self._times)
         data = self._data[filled.offset - self._offset :]
-        batch = ColumnBatch(self._readings, filled, data, times, self._write_lines, self._start)
+        batch = ColumnBatch(self._readings, filled, data, times, self._printer, self._start)
         covered = filled.offset + filled.size
         self._data = self._data[covered - self._offset :]
         self._offset = covered

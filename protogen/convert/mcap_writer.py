@@ -16,9 +16,10 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from protogen.convert.batches import Batch, Rows
+from protogen.convert.batches import Batch
 from protogen.convert.errors import needed
 from protogen.convert.outputs import Pending
+from protogen.convert.rows import Rows
 from protogen.convert.tables import Column, ColumnType, Listed, Names, Record, Scalar, Table, Tables
 from protogen.convert.values import as_list
 from protogen.model.protocol import Link

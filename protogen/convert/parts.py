@@ -21,7 +21,7 @@ from protogen.convert.batches import Tally, batches_of
 from protogen.convert.begun import marker_of
 from protogen.convert.errors import ConvertError
 from protogen.convert.inputs import Source, open_stream, opened
-from protogen.convert.kinds import InputKind
+from protogen.convert.kinds import InputKind, OutputFormat
 from protogen.convert.outputs import Pending, name_place, write_whole
 from protogen.convert.ranges import END, START, Frame, RangeDecoder, guess_entry
 from protogen.convert.tables import Tables, tables_of
@@ -143,7 +143,7 @@ def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
     writer = ParquetWriter(part.name, pending, part.capture)
     kind = None if part.input is None else InputKind(part.input)
     senders = [sender.name for sender in work.protocol.senders]
-    decoder = open_decoder(tables, spec, work.engine)
+    decoder = open_decoder(tables, spec, OutputFormat.PARQUET, work.engine)
     with opened(Source(part.place), kind, work.sender, senders, complaints.append) as capture:
         write_all(writer, batches_of(decoder, capture.chunks), tally)
     return PartDone(part.name, START, END, tally, pending.relatives, complaints)
@@ -154,9 +154,8 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
     from protogen.convert.decoding import column_decoders
 
     assert part.span is not None
-    tables, spec = _tools(work.protocol, work.sender)
-
-    make = column_decoders(tables, spec, work.engine)
+    tables, _ = _tools(work.protocol, work.sender)
+    make = column_decoders(tables, work.engine)
     tally = Tally()
     with open_stream(part.place) as raw:
         # Its `read` gives as many bytes as there are.

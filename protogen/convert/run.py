@@ -54,7 +54,7 @@ class Job:
         from protogen.convert.decoding import open_decoder
 
         spec = self.runtime.sender(self.sender.name)
-        return open_decoder(self.tables, spec, self.engine, start)
+        return open_decoder(self.tables, spec, self.format, self.engine, start)
 
     def stamp(self, source: Source) -> dict[str, Any]:
         """All that the result depends on, to see whether an earlier one still holds."""

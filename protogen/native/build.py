@@ -6,7 +6,6 @@ import hashlib
 import platform
 import sys
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -32,19 +31,10 @@ def build(driver: Driver) -> Built:
     """
     schema = driver.schema
     name = f"{schema.protocol}_{schema.sender}"
-    return Built(*_compiled(name, driver.text, (schema.spec_hash, schema.sender)))
+    return Built(*compiled(name, driver.text, (schema.spec_hash, schema.sender)))
 
 
-def build_printer() -> tuple[Path, bool]:
-    """The library that prints rows as text, and whether it was compiled just now.
-
-    It is the same for all schemas. Raises NativeError.
-    """
-    source = files("protogen.native").joinpath("templates", "printer.c")
-    return _compiled("printer", source.read_text("utf-8"), ())
-
-
-def _compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
+def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
     """The library of a C source, and whether it was compiled just now.
 
     `words`: what else it depends on. Raises NativeError.

@@ -1,8 +1,7 @@
-/* Prints rows of tables as text. Made by protogen for its own use.
+/* What prints rows of tables as text. Made by protogen for its own use.
  *
- * A row is printed by a program, a list of steps, that `protogen/convert/programs.py` makes: fixed
- * texts, and between them values that lie in columns. Rows of several tables come in the order of
- * their offsets.
+ * Behind this follow functions that print the rows of one table each, and `put_row`, which calls them.
+ * They return where the text ends, or NULL where there is no room for it.
  */
 #include <float.h>
 #include <math.h>
@@ -16,95 +15,30 @@
 #define PROTOGEN_EXPORT __attribute__((visibility("default")))
 #endif
 
-enum kind {
-    END,
-    TEXT,     /* The text that lies at `b` of the pool and has `c` bytes. */
-    INTEGER,  /* x */
-    PLACE,    /* x, counted from the start of the capture. */
-    FLOAT,    /* x as Python writes it; where it is no finite number, the first, second or third of
-                 the texts from number `b` on: NaN, infinity, minus infinity. */
-    NAME,     /* The text number b + x; nothing unless x is below `c`. */
-    STRING,   /* At x up to `b` bytes as characters, spelled as table `c` of `escapes` says: y of
-                 them, or where a == 0 up to the last that is not NUL. */
-    HEX,      /* At x two digits for each of y bytes, or of `b` where a != 0. */
-    SPAN,     /* Two digits for each of y bytes from x on in column `a`, which b != 0 makes the
-                 bytes of the line. */
-    COPY,     /* y bytes from x on in column `a`, as they are. */
-    LIST,     /* What is behind it up to NEXT for each element: the first lies at x, the next `b`
-                 bytes behind; y of them. a >= 0: a column that has a byte for each element. If
-                 there are none, go on at `c`. */
-    FIXED,    /* The same with `y.offset` elements. */
-    NEXT,
-    SWITCH,   /* Go on where one of the `b` cases from number `a` on says that x is, or at `c`. */
-    JUMP,     /* Go on at `a`. */
-    IF,       /* Go on at `a` where x is 0. */
-    ODD,      /* The same, but not if there was a NaN in the row that JSON does not tell. */
-    QUOTE,    /* From here on up to UNQUOTE stands one value of CSV. */
-    UNQUOTE
-};
+#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#error "doubles are computed with another precision"
+#endif
 
-enum code { U1, I1, U2, I2, U4, I4, U8, I8, F4, F8 };
-
-#define BESIDE (-100) /* The source: what lies beside the element at hand. */
-#define DEPTH 16
-
-/* Where a value is: source >= 0: in that column; -1: in the element at hand, -2: in the one around
- * it, and so on, at last in the row. */
-struct operand {
-    int32_t source;
-    int32_t code;
-    int64_t offset;
-};
-
-struct step {
-    int32_t kind;
-    int32_t a;
-    int64_t b;
-    int64_t c;
-    struct operand x;
-    struct operand y;
-};
-
-struct text {
-    int64_t place;
-    int64_t size;
-};
-
-struct choice {
-    int64_t value;
-    int64_t step;
-};
-
-struct printer {
-    const struct step *steps;
-    const uint8_t *pool; /* Behind it are SLACK bytes more. */
-    const struct text *texts;
-    const struct choice *choices;
-    const uint8_t *escapes; /* Tables: for each character 8 bytes, how many there are and those. */
-    const uint8_t *special; /* For each byte, whether a value of CSV that has it needs quotes. */
+/* What is printed at once. All members have eight bytes, or are pointers. */
+struct job {
+    const uint8_t *line; /* The bytes of the capture from offset `base` on. */
+    uint64_t base;
+    uint64_t start; /* Is added to the offsets of rows. */
     char *(*repr)(double value, char format, int precision, int flags, int *type);
     void (*release)(void *memory);
-    uint64_t start; /* Is added to every PLACE. */
-    uint64_t base;  /* Of the first byte of the line that is at hand. */
-    uint8_t nan4[8]; /* The first four: the NaN that JSON's are read as. */
-    uint8_t nan8[8];
 };
 
-struct table {
-    const uint8_t *const *columns;
-    const int64_t *strides;
-    int64_t rows;
-    int64_t next;    /* The row that is printed next. */
-    int64_t program; /* Its first step. */
-    int64_t offsets; /* The column whose first member is the offset. */
-};
-
-struct element {
-    const uint8_t *record;
-    const uint8_t *beside;
-    int64_t left;
-    int64_t stride;
-    int64_t body;
+/* The rows of a table. Every row begins with the offset of its event. */
+struct rows {
+    const uint8_t *rows;
+    uint64_t stride;
+    uint64_t count;
+    uint64_t next;  /* The row that is printed next. */
+    uint64_t table; /* The number of its function. */
+    const uint8_t *differs; /* NULL: no row does. */
+    const int64_t *times;   /* NULL: none is known. */
+    const uint8_t *timed;
+    const uint8_t *payloads;
 };
 
 static const char DIGITS[] =
@@ -117,62 +51,89 @@ static const double POWERS[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
 
 /* --- values -------------------------------------------------------------------------------------- */
 
-static int64_t value_at(const uint8_t *at, int32_t code) {
-    int8_t i1;
-    uint16_t u2;
-    int16_t i2;
-    uint32_t u4;
-    int32_t i4;
-    int64_t i8;
-    switch (code) {
-    case U1:
-        return *at;
-    case I1:
-        memcpy(&i1, at, 1);
-        return i1;
-    case U2:
-        memcpy(&u2, at, 2);
-        return u2;
-    case I2:
-        memcpy(&i2, at, 2);
-        return i2;
-    case U4:
-        memcpy(&u4, at, 4);
-        return u4;
-    case I4:
-        memcpy(&i4, at, 4);
-        return i4;
-    default:
-        memcpy(&i8, at, 8);
-        return i8;
+#define READER(code, type, result)                    \
+    static inline result code##_at(const uint8_t *at) { \
+        type value;                                   \
+        memcpy(&value, at, sizeof value);             \
+        return (result)value;                         \
     }
+
+READER(u1, uint8_t, uint64_t)
+READER(u2, uint16_t, uint64_t)
+READER(u4, uint32_t, uint64_t)
+READER(u8, uint64_t, uint64_t)
+READER(i1, int8_t, int64_t)
+READER(i2, int16_t, int64_t)
+READER(i4, int32_t, int64_t)
+READER(i8, int64_t, int64_t)
+READER(f4, float, double)
+READER(f8, double, double)
+
+/* Whether a float is another NaN than the one that JSON's are read as. */
+static inline int is_odd_f4(const uint8_t *at) {
+    const uint64_t bits = u4_at(at);
+    return (bits & UINT64_C(0x7FFFFFFF)) > UINT64_C(0x7F800000) && bits != UINT64_C(0x7FC00000);
 }
 
-static double double_at(const uint8_t *at, int32_t code) {
-    double f8;
-    float f4;
-    if (code == F4) {
-        memcpy(&f4, at, 4);
-        return f4;
+static inline int is_odd_f8(const uint8_t *at) {
+    const uint64_t bits = u8_at(at);
+    return (bits & UINT64_C(0x7FFFFFFFFFFFFFFF)) > UINT64_C(0x7FF0000000000000)
+        && bits != UINT64_C(0x7FF8000000000000);
+}
+
+/* value x scale + offset, both rounded. */
+static inline double scaled_float(double value, double scale, double offset) {
+    const volatile double product = value * scale; /* Else they could be made one, which rounds once. */
+    return product + offset;
+}
+
+/* (value x times + plus) / over, rounded once. */
+static double scaled_integer(__int128 value, int64_t times, int64_t plus, uint64_t over) {
+    const __int128 sum = value * times + plus;
+    unsigned __int128 left = sum < 0 ? -(unsigned __int128)sum : (unsigned __int128)sum;
+    unsigned __int128 quotient;
+    double found;
+    int shift = 0;
+    if (left == 0) {
+        return 0.0;
     }
-    memcpy(&f8, at, 8);
-    return f8;
+    while ((left >> 127) == 0) {
+        left <<= 1;
+        shift++;
+    }
+    /* It has at least 65 bits; the last says whether there are more. */
+    quotient = left / over;
+    if (left % over != 0) {
+        quotient |= 1U;
+    }
+    found = (double)quotient / (double)((unsigned __int128)1 << shift);
+    return sum < 0 ? -found : found;
 }
 
 /* --- texts --------------------------------------------------------------------------------------- */
 
-#define MOST_DIGITS 20
 #define SLACK 16 /* So many bytes behind what is printed may be written, too. */
 
-/* Copy a fixed text, in pieces that compilers have instructions for. */
-static uint8_t *put_fixed(uint8_t *out, const uint8_t *from, int64_t size) {
-    int64_t place = 0;
-    do {
-        memcpy(out + place, from + place, SLACK);
-        place += SLACK;
-    } while (place < size);
-    return out + size;
-}
+#define NEED(size)                                      \
+    do {                                                \
+        if ((uint64_t)(end - out) < (uint64_t)(size)) { \
+            return NULL;                                \
+        }                                               \
+    } while (0)
+
+#define OR_FAIL(put)       \
+    do {                   \
+        out = put;         \
+        if (out == NULL) { \
+            return NULL;   \
+        }                  \
+    } while (0)
+
+#define PUT(text)                            \
+    do {                                     \
+        memcpy(out, text, sizeof(text) - 1U); \
+        out += sizeof(text) - 1U;            \
+    } while (0)
 
 /* Four digits. */
 static uint8_t *put_four(uint8_t *out, uint32_t value) {
@@ -215,13 +176,11 @@ static uint8_t *put_natural(uint8_t *out, uint64_t value) {
     return put_four(put_four(out, back / 10000U), back % 10000U);
 }
 
-static uint8_t *put_integer(uint8_t *out, int64_t value, int32_t code) {
-    const uint64_t minus = value < 0 && code != U8;
+static uint8_t *put_integer(uint8_t *out, int64_t value) {
+    const uint64_t minus = value < 0;
     *out = '-';
     return put_natural(out + minus, ((uint64_t)value ^ (0U - minus)) + minus);
 }
-
-#define MOST_OF_FLOAT 40
 
 /* A number of at most 15 digits, whose decimal is the only one so short. NULL: it has more.
  *
@@ -229,7 +188,6 @@ static uint8_t *put_integer(uint8_t *out, int64_t value, int32_t code) {
  * rounds once, gives the number, there is no other decimal of so few digits, and no shorter one.
  */
 static uint8_t *put_short(uint8_t *out, double value) {
-#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 0
     const double absolute = fabs(value);
     int digits;
     if (!(absolute >= 1e-4 && absolute < 1e15)) {
@@ -264,20 +222,13 @@ static uint8_t *put_short(uint8_t *out, double value) {
         }
         return out + digits;
     }
-#else
-    (void)out;
-    (void)value;
-#endif
     return NULL;
 }
 
-static uint8_t *put_text(const struct printer *printer, uint8_t *out, int64_t number) {
-    const struct text *const text = &printer->texts[number];
-    return put_fixed(out, printer->pool + text->place, text->size);
-}
-
-/* The shortest decimal that is read as the same number. NULL where there is no memory. */
-static uint8_t *put_double(const struct printer *printer, uint8_t *out, double value, int64_t others) {
+/* The shortest decimal that is read as the same number, or the text for what is no finite number. NULL
+ * where there is no memory. */
+static uint8_t *put_double(const struct job *job, uint8_t *out, double value, const char *nan, const char *infinity,
+                           const char *minus_infinity) {
     uint8_t *const end = put_short(out, value);
     char *text;
     size_t size;
@@ -285,35 +236,96 @@ static uint8_t *put_double(const struct printer *printer, uint8_t *out, double v
         return end;
     }
     if (value - value != 0.0) {
-        return put_text(printer, out, others + (value > 0.0 ? 1 : value < 0.0 ? 2 : 0));
+        const char *const other = value > 0.0 ? infinity : value < 0.0 ? minus_infinity : nan;
+        size = strlen(other);
+        memcpy(out, other, size);
+        return out + size;
     }
-    text = printer->repr(value, 'r', 0, 2, NULL); /* 2: ".0" behind integers. */
+    text = job->repr(value, 'r', 0, 2, NULL); /* 2: ".0" behind integers. */
     if (text == NULL) {
         return NULL;
     }
     size = strlen(text);
     memcpy(out, text, size);
-    printer->release(text);
+    job->release(text);
     return out + size;
 }
 
-static uint8_t *put_hex(uint8_t *out, const uint8_t *at, size_t size) {
-    size_t place;
+static uint8_t *put_hex(uint8_t *out, const uint8_t *end, const uint8_t *from, uint64_t size) {
+    uint64_t place;
+    NEED(2U * size);
     for (place = 0; place < size; place++) {
-        *out++ = (uint8_t)HEXADECIMAL[at[place] >> 4];
-        *out++ = (uint8_t)HEXADECIMAL[at[place] & 15U];
+        *out++ = (uint8_t)HEXADECIMAL[from[place] >> 4];
+        *out++ = (uint8_t)HEXADECIMAL[from[place] & 15U];
     }
     return out;
 }
 
+/* How many characters there are up to the last one that is not NUL. */
+static int64_t text_size(const uint8_t *from, int64_t room) {
+    while (room > 0 && from[room - 1] == 0) {
+        room--;
+    }
+    return room;
+}
+
+static uint8_t *put_utf8(uint8_t *out, uint8_t character) {
+    if (character >= 0x80U) {
+        *out++ = (uint8_t)(0xC0U | character >> 6);
+        character = (uint8_t)(0x80U | (character & 0x3FU));
+    }
+    *out++ = character;
+    return out;
+}
+
+static uint8_t *put_escape(uint8_t *out, uint8_t character) {
+    PUT("\\u00");
+    *out++ = (uint8_t)HEXADECIMAL[character >> 4];
+    *out++ = (uint8_t)HEXADECIMAL[character & 15U];
+    return out;
+}
+
+/* A character as JSON has it. */
+static uint8_t *put_quotable(uint8_t *out, uint8_t character, int is_ascii) {
+    static const char SHORT[] = "\"\"\\\\\bb\ff\nn\rr\tt";
+    const char *escape;
+    for (escape = SHORT; *escape != '\0'; escape += 2) {
+        if (character == (uint8_t)*escape) {
+            *out++ = '\\';
+            *out++ = (uint8_t)escape[1];
+            return out;
+        }
+    }
+    if (character < 0x20U || (is_ascii && character >= 0x7FU)) {
+        return put_escape(out, character);
+    }
+    return put_utf8(out, character);
+}
+
+/* `count` characters, of which `stored` lie there; the others are NUL. */
+#define PUTTER(name, put)                                                                                      \
+    static uint8_t *name(uint8_t *out, const uint8_t *end, const uint8_t *from, int64_t stored, int64_t count) { \
+        int64_t place;                                                                                         \
+        NEED(6 * count);                                                                                       \
+        for (place = 0; place < count; place++) {                                                              \
+            const uint8_t character = place < stored ? from[place] : 0U;                                       \
+            out = put;                                                                                         \
+        }                                                                                                      \
+        return out;                                                                                            \
+    }
+
+PUTTER(put_json, put_quotable(out, character, 0))
+PUTTER(put_json_ascii, put_quotable(out, character, 1))
+PUTTER(put_plain, put_utf8(out, character))
+
 /* Put the value of CSV that begins at `mark` in quotes if it needs some. NULL: there is no room. */
-static uint8_t *quote(const struct printer *printer, uint8_t *mark, uint8_t *out, const uint8_t *end) {
+static uint8_t *put_quotes(uint8_t *mark, uint8_t *out, const uint8_t *end) {
     size_t more = 2;
     int needed = 0;
     const uint8_t *from;
     uint8_t *to;
     for (from = mark; from != out; from++) {
-        needed |= printer->special[*from];
+        needed |= NEEDS_QUOTES(*from);
         more += *from == '"';
     }
     if (!needed) {
@@ -337,187 +349,25 @@ static uint8_t *quote(const struct printer *printer, uint8_t *mark, uint8_t *out
 
 /* --- rows ---------------------------------------------------------------------------------------- */
 
-static const uint8_t *find(const struct table *table, const struct element *at, const struct operand *operand) {
-    if (operand->source >= 0) {
-        return table->columns[operand->source] + table->next * table->strides[operand->source] + operand->offset;
-    }
-    if (operand->source == BESIDE) {
-        return at->beside;
-    }
-    return at[1 + operand->source].record + operand->offset;
-}
+/* Print the next row. */
+static uint8_t *put_row(const struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end);
 
-#define VALUE(operand) value_at(find(table, at, &(operand)), (operand).code)
-#define NEED(size)                              \
-    do {                                        \
-        if ((uint64_t)(end - out) < (uint64_t)(size)) { \
-            return NULL;                        \
-        }                                       \
-    } while (0)
-
-/* The next row of a table, and where it ends. NULL: there is no room for it. */
-static uint8_t *put_row(const struct printer *printer, const struct table *table, uint8_t *out, const uint8_t *end) {
-    struct element elements[DEPTH];
-    struct element *at = elements;
-    const struct step *step = &printer->steps[table->program];
-    uint8_t *mark = out;
-    int odd = 0;
-    at->record = table->columns[0] + table->next * table->strides[0];
-    at->beside = NULL;
-    for (;;) {
-        switch (step->kind) {
-        case END:
-            return out;
-        case TEXT:
-            NEED(step->c);
-            out = put_fixed(out, printer->pool + step->b, step->c);
-            break;
-        case INTEGER:
-            NEED(MOST_DIGITS + 1);
-            out = put_integer(out, VALUE(step->x), step->x.code);
-            break;
-        case PLACE:
-            NEED(MOST_DIGITS + 1);
-            out = put_natural(out, (uint64_t)VALUE(step->x) + printer->start);
-            break;
-        case FLOAT: {
-            const uint8_t *const from = find(table, at, &step->x);
-            const double value = double_at(from, step->x.code);
-            NEED(MOST_OF_FLOAT);
-            if (value != value) {
-                odd |= memcmp(from, step->x.code == F4 ? printer->nan4 : printer->nan8, step->x.code == F4 ? 4 : 8) != 0;
-            }
-            out = put_double(printer, out, value, step->b);
-            if (out == NULL) {
-                return NULL;
-            }
-            break;
-        }
-        case NAME: {
-            const int64_t number = VALUE(step->x);
-            if (number >= 0 && number < step->c) {
-                NEED(printer->texts[step->b + number].size);
-                out = put_text(printer, out, step->b + number);
-            }
-            break;
-        }
-        case STRING: {
-            const uint8_t *const from = find(table, at, &step->x);
-            const uint8_t *const escapes = &printer->escapes[2048 * step->c];
-            int64_t stored = step->b, size, place;
-            while (stored > 0 && from[stored - 1] == 0) {
-                stored--;
-            }
-            size = step->a != 0 ? VALUE(step->y) : stored;
-            NEED(8 * size);
-            for (place = 0; place < size; place++) {
-                const uint8_t *const escape = &escapes[8U * (place < stored ? from[place] : 0U)];
-                memcpy(out, &escape[1], 7);
-                out += escape[0];
-            }
-            break;
-        }
-        case HEX: {
-            const int64_t size = step->a != 0 ? step->b : VALUE(step->y);
-            NEED(2 * size);
-            out = put_hex(out, find(table, at, &step->x), (size_t)size);
-            break;
-        }
-        case SPAN: {
-            const int64_t size = VALUE(step->y);
-            const uint64_t from = (uint64_t)VALUE(step->x) - (step->b != 0 ? printer->base : 0U);
-            NEED(2 * size);
-            out = put_hex(out, table->columns[step->a] + from, (size_t)size);
-            break;
-        }
-        case COPY: {
-            const int64_t size = VALUE(step->y);
-            NEED(size);
-            memcpy(out, table->columns[step->a] + VALUE(step->x), (size_t)size);
-            out += size;
-            break;
-        }
-        case LIST:
-        case FIXED: {
-            const uint8_t *const first = find(table, at, &step->x);
-            const int64_t count = step->kind == FIXED ? step->y.offset : VALUE(step->y);
-            if (count <= 0) {
-                step = &printer->steps[step->c];
-                continue;
-            }
-            at++;
-            at->record = first;
-            at->beside = step->a < 0 ? NULL : table->columns[step->a] + table->next * table->strides[step->a];
-            at->left = count;
-            at->stride = step->b;
-            at->body = step - printer->steps + 1;
-            break;
-        }
-        case NEXT:
-            if (--at->left > 0) {
-                NEED(2);
-                *out++ = ',';
-                *out++ = ' ';
-                at->record += at->stride;
-                at->beside += at->beside != NULL;
-                step = &printer->steps[at->body];
-                continue;
-            }
-            at--;
-            break;
-        case SWITCH: {
-            const int64_t value = VALUE(step->x);
-            const struct choice *choice = &printer->choices[step->a];
-            const struct choice *const last = choice + step->b;
-            while (choice != last && choice->value != value) {
-                choice++;
-            }
-            step = &printer->steps[choice == last ? step->c : choice->step];
-            continue;
-        }
-        case JUMP:
-            step = &printer->steps[step->a];
-            continue;
-        case IF:
-        case ODD:
-            if (VALUE(step->x) == 0 && !(step->kind == ODD && odd)) {
-                step = &printer->steps[step->a];
-                continue;
-            }
-            break;
-        case QUOTE:
-            mark = out;
-            break;
-        case UNQUOTE:
-            out = quote(printer, mark, out, end);
-            if (out == NULL) {
-                return NULL;
-            }
-            break;
-        default:
-            return NULL;
-        }
-        step++;
-    }
-}
-
-static uint64_t offset_of(const struct table *table) {
-    uint64_t offset;
-    memcpy(&offset, table->columns[table->offsets] + table->next * table->strides[table->offsets], 8);
-    return offset;
+static uint64_t offset_of(const struct rows *rows) {
+    return u8_at(rows->rows + (size_t)rows->next * rows->stride);
 }
 
 /* Print rows of all tables by their offsets, as many as there is room for. Returns the bytes. */
-PROTOGEN_EXPORT size_t protogen_print(const struct printer *printer, struct table *tables, size_t count, uint8_t *room, size_t size) {
+PROTOGEN_EXPORT size_t protogen_print(const struct job *job, struct rows *tables, size_t count, uint8_t *room,
+                                      size_t size) {
     const uint8_t *const end = size < SLACK ? room : room + (size - SLACK);
     uint8_t *out = room;
     for (;;) {
-        struct table *first = NULL;
+        struct rows *first = NULL;
         uint64_t least = UINT64_MAX, limit = UINT64_MAX;
         size_t number;
         for (number = 0; number < count; number++) {
-            struct table *const table = &tables[number];
-            if (table->next < table->rows) {
+            struct rows *const table = &tables[number];
+            if (table->next < table->count) {
                 const uint64_t offset = offset_of(table);
                 if (first == NULL || offset < least) {
                     limit = least;
@@ -532,12 +382,12 @@ PROTOGEN_EXPORT size_t protogen_print(const struct printer *printer, struct tabl
             return (size_t)(out - room);
         }
         do {
-            uint8_t *const behind = put_row(printer, first, out, end);
+            uint8_t *const behind = put_row(job, first, out, end);
             if (behind == NULL) {
                 return (size_t)(out - room);
             }
             out = behind;
             first->next++;
-        } while (first->next < first->rows && offset_of(first) < limit);
+        } while (first->next < first->count && offset_of(first) < limit);
     }
 }
