@@ -11,8 +11,8 @@ from compiled import module_at, protocol_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protogen.cli import codec
-from protogen.cli.tagged import tagged_pieces
+from protogen.cli.wire import codec
+from protogen.cli.wire.tagged import tagged_pieces
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
 RFLEX = str(ROOT / "schemas" / "rflex.yaml")

@@ -9,7 +9,7 @@ import handwritten_matty
 import pytest
 from cli_support import ROOT, run
 
-from protogen.cli.explain import _not_looked_at
+from protogen.cli.wire.explain import _not_looked_at
 from protogen.model.annotate import Row
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")

@@ -40,8 +40,8 @@ def validator() -> jsonschema.Draft7Validator:
 def as_editors_read(path: Path) -> Any:
     """Return a schema as JSON data: an editor takes every key for a text."""
     from protogen.problems import Problems, SourceMap
-    from protogen.schema.document import read_document
-    from protogen.schema.nodes import to_data
+    from protogen.schema.text.document import read_document
+    from protogen.schema.text.nodes import to_data
 
     document = read_document(path, Problems(), SourceMap())
     assert document is not None

@@ -8,7 +8,7 @@ import pytest
 from cli_support import SINK, compiled
 
 from protogen.cli.exits import UsageError
-from protogen.cli.values import raw_values, split_assignment, tree_of
+from protogen.cli.wire.values import raw_values, split_assignment, tree_of
 
 
 def raw(message: str, *assignments: str) -> dict[str, Any]:

@@ -11,16 +11,16 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from protogen.problems import Problems, SourceMap, Span
-from protogen.schema.compose import FAST_LOADER, PURE_LOADER, Loader
-from protogen.schema.document import (
+from protogen.schema.text.compose import FAST_LOADER, PURE_LOADER, Loader
+from protogen.schema.text.document import (
     GREATEST_SIZE,
     Document,
     decode_document,
     parse_document,
     read_document,
 )
-from protogen.schema.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
-from protogen.schema.scalars import SourceFloat, SourceInt, resolve
+from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
+from protogen.schema.text.scalars import SourceFloat, SourceInt, resolve
 
 LOADERS = [
     pytest.param(PURE_LOADER, id="python"),

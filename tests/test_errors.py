@@ -16,8 +16,8 @@ import pytest
 
 from protogen.problems import CODES, Problem, Problems, SourceMap, render_text
 from protogen.problems.catalogue.project import PROJECT_CODES
-from protogen.schema.document import GREATEST_SIZE, read_document
-from protogen.schema.extends import merge_bases
+from protogen.schema.dialects.extends import merge_bases
+from protogen.schema.text.document import GREATEST_SIZE, read_document
 
 CORPUS = Path(__file__).parent / "errors"
 EXPECTATION = re.compile(r"# expect: (?:(?P<file>\S+?):)?(\d+):(\d+) (PG\d{3}) (?P<words>.+)")

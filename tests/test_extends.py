@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from protogen.problems import Problems, SourceMap, Span
-from protogen.schema.document import parse_document, read_document
-from protogen.schema.extends import Merged, merge_bases
-from protogen.schema.merge import merge
-from protogen.schema.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
-from protogen.schema.project_folder import project_folder
-from protogen.schema.renames import apply_renames
+from protogen.schema.dialects.extends import Merged, merge_bases
+from protogen.schema.dialects.merge import merge
+from protogen.schema.dialects.project_folder import project_folder
+from protogen.schema.dialects.renames import apply_renames
+from protogen.schema.text.document import parse_document, read_document
+from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
 
 
 def tree(text: str, file: str) -> Node:

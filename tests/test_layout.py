@@ -17,9 +17,9 @@ from protogen.layout.formatting import format_text
 from protogen.layout.meaning import same_meaning
 from protogen.layout.printer import WIDTH
 from protogen.problems import Problems
-from protogen.schema.compose import FAST_LOADER, PURE_LOADER, Loader
-from protogen.schema.document import parse_document
-from protogen.schema.nodes import to_data
+from protogen.schema.text.compose import FAST_LOADER, PURE_LOADER, Loader
+from protogen.schema.text.document import parse_document
+from protogen.schema.text.nodes import to_data
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = sorted(

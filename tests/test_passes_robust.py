@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from protogen.compiler import Compilation, compile_file
 from protogen.problems import Problems, SourceMap, render_text
 from protogen.problems.sources import split_lines
-from protogen.schema.document import read_document
-from protogen.schema.nodes import to_data
+from protogen.schema.text.document import read_document
+from protogen.schema.text.nodes import to_data
 
 
 def parsed(path: Path) -> Any:

@@ -28,8 +28,8 @@ from protogen.problems.catalogue import files_of, register
 from protogen.problems.docs import main as write_catalogue
 from protogen.problems.docs import render_catalogue
 from protogen.problems.sources import end_of, split_lines
-from protogen.schema.document import Document, parse_document, read_document
-from protogen.schema.extends import merge_bases
+from protogen.schema.dialects.extends import merge_bases
+from protogen.schema.text.document import Document, parse_document, read_document
 
 
 def sources_with(text: str, file: str = "a.yaml") -> SourceMap:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from cli_support import PATIENCE, ROOT, SINK, run, start
 
-from protogen.cli import watching
+from protogen.cli.generation import watching
 from protogen.project.watch import changes, states, wait_for_change
 
 DIALECT = "protocol: dialect\nextends: base/sink.yaml\ntitle: Other\n"

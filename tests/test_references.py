@@ -7,13 +7,13 @@ from textwrap import dedent
 import pytest
 
 from protogen.problems import Problems, SourceMap
-from protogen.schema.document import parse_document
+from protogen.schema.dialects.renames import apply_renames
 from protogen.schema.load import load_syntax
-from protogen.schema.nodes import Node
 from protogen.schema.references import Reference, form_under, references
-from protogen.schema.renames import apply_renames
 from protogen.schema.syntax.forms import Form, keys_of, models_inside
 from protogen.schema.syntax.protocol import SCHEMA
+from protogen.schema.text.document import parse_document
+from protogen.schema.text.nodes import Node
 
 Key = tuple[str, str]
 """A syntax class and one of its keys."""

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import protogen
 from protogen.cli.exits import UsageError
-from protogen.cli.values import raw_values
+from protogen.cli.wire.values import raw_values
 from protogen.model.protocol import Protocol
 from protogen.runtime.nearest import nearest_reading
 from protogen.targets.python.emit import source

@@ -27,8 +27,8 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.problems import Problems, Span, render_text, to_github, to_json
 from protogen.runtime.api import DecodeError
-from protogen.schema.document import parse_document
-from protogen.schema.nodes import to_data
+from protogen.schema.text.document import parse_document
+from protogen.schema.text.nodes import to_data
 
 Compile = Callable[[str], Compilation]
 

@@ -12,26 +12,12 @@ from typing import Annotated
 
 import typer
 
-from protogen.cli import (
-    breaking,
-    check,
-    convert,
-    decode,
-    diff,
-    encode,
-    explain,
-    fmt,
-    fuzz,
-    generate,
-    init,
-    lock,
-    native,
-    rules,
-    schema_json,
-    size,
-)
+from protogen.cli import check, fmt, fuzz, init, native, schema_json
 from protogen.cli.command import Command
+from protogen.cli.evolution import breaking, diff, lock, rules
 from protogen.cli.exits import guarded
+from protogen.cli.generation import generate, size
+from protogen.cli.wire import convert, decode, encode, explain
 
 app = typer.Typer(
     name="protogen",

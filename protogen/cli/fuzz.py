@@ -12,7 +12,7 @@ from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
-    from protogen.cli.codec import Codec
+    from protogen.cli.wire.codec import Codec
     from protogen.fuzzing.engine import Engine
     from protogen.fuzzing.trips import Outcome
 
@@ -41,8 +41,8 @@ def fuzz(
     """
     from random import SystemRandom
 
-    from protogen.cli.codec import open_codec
     from protogen.cli.schemas import find_message
+    from protogen.cli.wire.codec import open_codec
 
     codec = open_codec(schema)
     if message is not None:

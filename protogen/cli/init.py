@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.plan import SCHEMAS
+from protogen.cli.generation.plan import SCHEMAS
 from protogen.starter.framings import Framing
 
 EXAMPLE = "Example: protogen init motor --framing cobs"

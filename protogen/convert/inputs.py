@@ -352,7 +352,7 @@ def _named(chunks: Iterator[Chunk], place: str) -> Iterator[Chunk]:
 
 def _hex(pieces: Iterable[bytes], place: str) -> Iterator[bytes]:
     # The package of the command line imports this module.
-    from protogen.cli.hexinput import HexError, HexReader
+    from protogen.cli.wire.hexinput import HexError, HexReader
 
     reader = HexReader()
     try:

@@ -8,8 +8,8 @@ from typing import Any
 
 from protogen.compiler import compile_file
 from protogen.problems import Problems, Span
-from protogen.schema.document import parse_document
-from protogen.schema.nodes import to_data
+from protogen.schema.text.document import parse_document
+from protogen.schema.text.nodes import to_data
 
 
 def same_meaning(path: str | os.PathLike[str], before: str, after: str) -> bool:

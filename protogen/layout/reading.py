@@ -18,7 +18,7 @@ import yaml
 
 from protogen.layout.comments import place_comments
 from protogen.layout.nodes import Alias, Collection, Item, Node, Scalar, Text
-from protogen.schema.compose import FAST_LOADER
+from protogen.schema.text.compose import FAST_LOADER
 
 _PROPERTIES = re.compile(r"(?:&[^\s,\[\]{}]+\s*(?:#.*\s*)*)+")
 _VERSION = re.compile(r"%YAML[^\n]*\n")

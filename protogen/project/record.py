@@ -26,7 +26,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from protogen.problems.sources import SourceMap
-from protogen.schema.project_folder import project_folder
+from protogen.schema.dialects.project_folder import project_folder
 from protogen.targets.output import File, expected_files, is_current
 from protogen.version import VERSION
 

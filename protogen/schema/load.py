@@ -6,12 +6,12 @@ import os
 from dataclasses import dataclass
 
 from protogen.problems import Problems, SourceMap
-from protogen.schema.document import decode_document, read_document
-from protogen.schema.extends import Merged, merge_bases
-from protogen.schema.nodes import MappingNode, to_data
-from protogen.schema.salvage import Loc
+from protogen.schema.dialects.extends import Merged, merge_bases
+from protogen.schema.recovery import Loc
 from protogen.schema.shape import read_shape
 from protogen.schema.syntax.protocol import ProtocolSyntax
+from protogen.schema.text.document import decode_document, read_document
+from protogen.schema.text.nodes import MappingNode, to_data
 
 
 @dataclass(frozen=True, slots=True)

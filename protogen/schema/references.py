@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from protogen.schema.edit import items_of, keys_of
-from protogen.schema.nodes import MappingNode, Node, ScalarNode, SequenceNode
-from protogen.schema.scalars import Scalar
 from protogen.schema.scopes import Place, Scopes
 from protogen.schema.syntax.forms import Form
 from protogen.schema.syntax.names import BySender, FieldPath, FieldValues, Kind, Mark, Ref
 from protogen.schema.syntax.protocol import SCHEMA
+from protogen.schema.text.edit import items_of, keys_of
+from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from protogen.schema.text.scalars import Scalar
 
 _NAMINGS = ("values", "flags", "bits")
 """Keys under which a field names its values or bits."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protogen.schema.edit import keys_of
-from protogen.schema.nodes import Node, ScalarNode, SequenceNode
-from protogen.schema.scalars import Scalar
 from protogen.schema.syntax.names import Kind
+from protogen.schema.text.edit import keys_of
+from protogen.schema.text.nodes import Node, ScalarNode, SequenceNode
+from protogen.schema.text.scalars import Scalar
 
 Place = tuple[Scalar, ...]
 """Keys and indexes that lead from the root to a node."""

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from protogen.problems import Problems, Span, hint_for
-from protogen.schema.salvage import Loc, Salvage
+from protogen.schema.recovery import Loc, Recovery
 from protogen.schema.syntax.base import Source
 from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, NamedValue
 from protogen.schema.syntax.forms import Form, keys_of
@@ -51,18 +51,18 @@ def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
 
 
 def _without(data: Any, details: Sequence[ErrorDetails]) -> Shape | None:
-    salvage = Salvage(data)
+    recovery = Recovery(data)
     # Inner things first: where something around them is left out as well, they are gone with it.
     for detail in sorted(details, key=lambda detail: -len(detail["loc"])):
         unknown_key = detail["type"] == "extra_forbidden"
-        if not salvage.leave_out(detail["loc"], unknown_key=unknown_key):
+        if not recovery.drop(detail["loc"], unknown_key=unknown_key):
             return None
     try:
         syntax = ProtocolSyntax.model_validate(data)
     except ValidationError:
         return None
     spoilt = any(detail["loc"][2:3] != ("examples",) for detail in details)
-    return Shape(syntax, salvage.consequences(syntax), frozenset(salvage.lost), spoilt)
+    return Shape(syntax, recovery.consequences(syntax), frozenset(recovery.lost), spoilt)
 
 
 def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:

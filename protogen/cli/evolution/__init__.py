@@ -1,0 +1,1 @@
+"""Commands that compare two versions of a schema."""

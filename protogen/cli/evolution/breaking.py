@@ -1,0 +1,137 @@
+"""`protogen breaking`: a gate for changes that hurt the other end of the wire."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.evolution.diff import print_findings
+from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.options import Against, Versions
+from protogen.cli.schemas import open_project
+
+if TYPE_CHECKING:
+    from protogen.evolution.compare import Comparison
+    from protogen.evolution.findings import Finding, Gate
+    from protogen.model.protocol import Protocol
+    from protogen.project.read import Project
+
+EXAMPLE = "Example: protogen breaking schemas --against git:main"
+
+
+class BreakingFormat(StrEnum):
+    """How findings are printed."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+def breaking(
+    versions: Versions = None,
+    against: Against = None,
+    against_lock: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="A lock that NEW is held against; see `protogen lock`."),
+    ] = None,
+    use: Annotated[
+        list[str] | None,
+        typer.Option(metavar="RULE", help="Rules or categories that count. Default: WIRE, VALUE."),
+    ] = None,
+    except_: Annotated[
+        list[str] | None, typer.Option("--except", metavar="RULE", help="Rules that do not count.")
+    ] = None,
+    ignore: Annotated[
+        list[str] | None,
+        typer.Option(metavar="[RULE=]PLACE", help="Places that do not count, as in rn1.gyro.*."),
+    ] = None,
+    format: Annotated[
+        BreakingFormat, typer.Option(help="For people, programs, or GitHub Actions.")
+    ] = BreakingFormat.TEXT,
+) -> int:
+    """Refuse changes that the other end of the wire would misread or lose.
+
+    Each finding has a rule, who is hurt and how, and a frame that shows it. Exits with 0 if nothing
+    is broken, 1 if something is.
+
+    With nothing given, in a project: its schemas, against those of the last commit (git:HEAD); a
+    gate for pull requests names the branch that they go to, as in --against git:origin/main.
+    """
+    import json
+
+    from protogen.cli.console import console
+    from protogen.cli.evolution.versions import LAST_COMMIT, compared
+    from protogen.evolution.report import as_json
+
+    project = open_project()
+    gate = _gate(project, use or [], except_ or [], ignore or [])
+    held = f"lock:{against_lock}" if against_lock is not None else against
+    stopped = False
+    reports = []
+    out = console()
+    with compared(versions or (), held, project) as pairs:
+        for pair in pairs:
+            if pair.old is None:
+                continue
+            comparison, found = _judged(pair.name, pair.old, pair.new, gate)
+            stopped = stopped or bool(found)
+            if format is BreakingFormat.JSON:
+                reports.append({"schema": pair.name} | as_json(comparison, found))
+            elif format is BreakingFormat.GITHUB:
+                _print_github(comparison, found)
+            elif found:
+                print_findings(out, comparison, found)
+    if format is BreakingFormat.JSON:
+        typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
+    elif format is BreakingFormat.TEXT and not stopped:
+        since = "" if versions else f" since {held or LAST_COMMIT}"
+        out.print(f"nothing is broken{since}", style="bold")
+    return FINDINGS if stopped else CLEAN
+
+
+def _judged(
+    name: str, old: Protocol, new: Protocol | None, gate: Gate
+) -> tuple[Comparison, list[Finding]]:
+    from protogen.evolution.findings import findings, gone
+
+    return gone(old, name, gate) if new is None else findings(old, new, gate)
+
+
+def _gate(project: Project | None, use: list[str], except_: list[str], ignore: list[str]) -> Gate:
+    """What counts: the command line over the project's file."""
+    from protogen.evolution.findings import Gate
+    from protogen.evolution.rules import BY_NAME, Category
+    from protogen.problems import hint_for
+
+    places: dict[str, list[str]] = {}
+    for item in ignore:
+        rule, equals, place = item.rpartition("=")
+        places.setdefault(rule if equals else "*", []).append(place)
+    if project is not None:
+        settings = project.settings.breaking
+        use = use or list(settings.use)
+        except_ = except_ or list(settings.except_)
+        for name, patterns in settings.ignore.items():
+            places.setdefault(name, []).extend(patterns)
+    gate = Gate(tuple(use) or Gate().use, tuple(except_), places)
+    for name in gate.unknown():
+        known = [*BY_NAME, *(category.value for category in Category)]
+        message = f"there is no rule `{name}`"
+        raise UsageError(message, hint_for(name, known) or "protogen rules lists them")
+    return gate
+
+
+def _print_github(comparison: Comparison, found: list[Finding]) -> None:
+    from protogen.evolution.places import places_of
+    from protogen.evolution.report import title
+
+    for item in found:
+        span = places_of(comparison, item.change).new
+        where = [f"file={file}" for file in comparison.new.files[:1]]
+        if span is not None:
+            where = [f"file={span.file}", f"line={span.line}"]
+        properties = ",".join([*where, f"title={item.rule.name}"])
+        words = "%0A".join([title(item), *(witness.words for witness in item.witnesses)])
+        typer.echo(f"::error {properties}::{words}")

@@ -1,0 +1,97 @@
+"""`protogen diff`: what changed between two versions of a schema."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import Against, Versions
+from protogen.cli.schemas import open_project
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from protogen.evolution.compare import Comparison
+    from protogen.evolution.findings import Finding
+
+EXAMPLE = "Example: protogen diff git:main:schemas/rn1.yaml schemas/rn1.yaml"
+
+
+class DiffFormat(StrEnum):
+    """How changes are printed."""
+
+    TEXT = "text"
+    MARKDOWN = "markdown"
+    JSON = "json"
+
+
+def diff(
+    versions: Versions = None,
+    against: Against = None,
+    format: Annotated[
+        DiffFormat, typer.Option(help="For people, a changelog entry, or for programs.")
+    ] = DiffFormat.TEXT,
+) -> int:
+    """Say what changed between two versions, and show it with frames.
+
+    Resolved protocols are compared, never text: comments and the order of keys are no change. Exits
+    with 0 if nothing changed, 1 if something did.
+
+    With nothing given, in a project: its schemas, against those of the last commit (git:HEAD).
+    """
+    import json
+
+    from protogen.cli.console import console
+    from protogen.cli.evolution.versions import compared
+    from protogen.evolution.findings import findings
+    from protogen.evolution.report import as_json, markdown
+
+    changed = False
+    reports = []
+    out = console()
+    with compared(versions or (), against, open_project()) as pairs:
+        for name, before, after in pairs:
+            if before is None or after is None:
+                changed = True
+                words = "is new" if before is None else "is gone"
+                reports.append({"schema": name, "text": words})
+                if format is not DiffFormat.JSON:
+                    out.print(f"{name} {words}")
+                continue
+            comparison, found = findings(before, after)
+            changed = changed or bool(found)
+            if format is DiffFormat.JSON:
+                reports.append({"schema": name} | as_json(comparison, found))
+            elif format is DiffFormat.MARKDOWN:
+                typer.echo(markdown(comparison, found))
+            else:
+                print_findings(out, comparison, found)
+    if format is DiffFormat.JSON:
+        typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
+    return FINDINGS if changed else CLEAN
+
+
+def print_findings(out: Console, comparison: Comparison, found: list[Finding]) -> None:
+    """Print findings by message, with their witnesses."""
+    from protogen.evolution.report import by_subject, place, title
+
+    for subject, items in by_subject(found):
+        out.print(subject or comparison.new.name, style="bold cyan")
+        for item in items:
+            style = {"WIRE": "bold red", "VALUE": "red", "SOURCE": "yellow"}.get(item.category)
+            out.print(f"  {item.category}", style=style, end=" ")
+            out.print(f"[{item.rule.name}] {title(item)}")
+            where = place(comparison, item)
+            if where:
+                out.print(f"    at {where}", style="dim")
+            if item.witnesses:
+                out.print(f"    hurts {item.hurt}: {item.harm}")
+            for witness in item.witnesses:
+                out.print(f"    {witness.words}")
+            if item.category not in ("NONE",):
+                out.print(f"    mend: {item.rule.mend}", style="green")
+    if not found:
+        out.print(f"{comparison.new.name}: no change", style="bold")

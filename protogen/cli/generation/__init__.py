@@ -1,0 +1,1 @@
+"""Commands that write generated files, and what one run of them does."""

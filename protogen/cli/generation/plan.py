@@ -1,0 +1,170 @@
+"""What a run of `protogen generate` is to do: the command line over the project's settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from protogen.cli.exits import UsageError
+from protogen.cli.generation import c_options
+from protogen.cli.schemas import schema_files
+
+if TYPE_CHECKING:
+    from protogen.problems import Problems
+    from protogen.project.read import Project
+    from protogen.targets import Target
+
+SCHEMAS = Path("schemas")
+OUTPUT = Path("generated")
+_PYTHON = "python"
+_MARKDOWN = "markdown"
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What the command line said; None where it said nothing."""
+
+    schemas: Sequence[Path] | None
+    output: Path | None
+    targets: Sequence[str] | None
+    standalone: bool | None
+    c: c_options.Choice
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is to be generated from what."""
+
+    schemas: tuple[Path, ...]
+    output: Path
+    targets: tuple[str, ...]
+    standalone: bool
+    c: c_options.Choice
+    pages: tuple[Path, ...]
+    """Hand-written files with marked blocks."""
+    prune: bool
+    """Whether other files of ours in the output are stale: not if only some schemas were named."""
+
+    @property
+    def references(self) -> Path | None:
+        """The folder of the reference pages, if there are any."""
+        return self.output / _MARKDOWN if _MARKDOWN in self.targets else None
+
+    @property
+    def options(self) -> Mapping[str, object]:
+        """What else than files the output depends on, for a record of the run."""
+        return {
+            "output": self.output.as_posix(),
+            "targets": self.targets,
+            "standalone": self.standalone,
+            "c": asdict(self.c),
+            "prune": self.prune,
+        }
+
+    def emitters(self) -> list[Target]:
+        """Return the targets, each with its options."""
+        from protogen.targets import STANDALONE, TARGETS
+
+        targets = {name: TARGETS[name] for name in self.targets}
+        if self.standalone and _PYTHON in targets:
+            targets[_PYTHON] = STANDALONE
+        if not self.c.is_default and c_options.NAME in targets:
+            targets[c_options.NAME] = c_options.ChosenC(self.c)
+        return list(targets.values())
+
+
+def plan(given: Given, project: Project | None, problems: Problems) -> Plan:
+    """Merge the command line with the settings. Paths that lead nowhere are reported.
+
+    Marked blocks are part of a whole run only, where all schemas and targets are at hand.
+    """
+    is_whole = project is not None and not given.schemas and not given.targets
+    targets = _targets(given, project)
+    return Plan(
+        schemas=_schemas(given, project, problems),
+        output=_output(given, project),
+        targets=targets,
+        standalone=_standalone(given, project),
+        c=_c(given, project),
+        pages=_pages(project, problems) if project is not None and is_whole else (),
+        prune=_is_complete(given, project),
+    )
+
+
+# --- options --------------------------------------------------------------------------------------
+
+
+def _targets(given: Given, project: Project | None) -> tuple[str, ...]:
+    from protogen.problems import hint_for
+    from protogen.targets import TARGETS
+
+    for name in given.targets or ():
+        if name not in TARGETS:
+            message = f"there is no target `{name}`; there are {', '.join(TARGETS)}"
+            raise UsageError(message, hint_for(name, TARGETS))
+    configured = project.settings.targets if project is not None else None
+    names = tuple(given.targets or (TARGETS if configured is None else configured))
+    if given.standalone and _PYTHON not in names:
+        raise UsageError(f"--standalone is for the target {_PYTHON}")
+    if not given.c.is_default and c_options.NAME not in names:
+        raise UsageError("--c-style, --events, --only, --sender and --c-stubs are for C")
+    return names
+
+
+def _output(given: Given, project: Project | None) -> Path:
+    if given.output is not None or project is None:
+        return given.output or OUTPUT
+    return project.folder / project.settings.output
+
+
+def _standalone(given: Given, project: Project | None) -> bool:
+    if given.standalone is not None or project is None:
+        return bool(given.standalone)
+    return project.settings.python.standalone
+
+
+def _c(given: Given, project: Project | None) -> c_options.Choice:
+    if project is None:
+        return given.c
+    settings = project.settings.c
+    return c_options.Choice(
+        style=given.c.style or settings.style,
+        events=given.c.events or settings.events,
+        only=given.c.only or settings.only or None,
+        senders=given.c.senders or settings.sender or None,
+        stubs=settings.stubs if given.c.stubs is None else given.c.stubs,
+    )
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+def _schemas(given: Given, project: Project | None, problems: Problems) -> tuple[Path, ...]:
+    if given.schemas:
+        return schema_files(given.schemas)
+    if project is not None:
+        from protogen.project.schemas import named_paths
+
+        return schema_files(named_paths(project, "schemas", project.settings.schemas, problems))
+    if not SCHEMAS.is_dir():
+        raise UsageError(
+            f"no schema is named, and there is neither a protogen.toml nor a folder `{SCHEMAS}`",
+            "name one: `protogen generate rover.yaml`; or write a protogen.toml with "
+            '`schemas = ["rover.yaml"]`, which is then found from every folder below it',
+        )
+    return schema_files([SCHEMAS])
+
+
+def _pages(project: Project, problems: Problems) -> tuple[Path, ...]:
+    from protogen.project.schemas import named_paths
+
+    found = named_paths(project, "blocks", project.settings.blocks, problems)
+    return tuple(dict.fromkeys(path for path in found if not path.is_dir()))
+
+
+def _is_complete(given: Given, project: Project | None) -> bool:
+    if given.schemas:
+        return project is None and all(path.is_dir() for path in given.schemas)
+    return True

@@ -1,0 +1,1 @@
+"""Commands about bytes: decoding, encoding, explaining and converting them."""

@@ -1,0 +1,111 @@
+"""Bytes from a file or standard input, in pieces, so that memory does not grow with the capture."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import stat
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from io import BufferedReader
+from pathlib import Path
+from typing import BinaryIO, cast
+
+from protogen.cli.exits import UsageError
+from protogen.cli.progress import progress
+from protogen.cli.wire.hexinput import HexError, HexReader, parse_hex
+from protogen.cli.wire.tagged import Piece
+
+STANDARD_INPUT = Path("-")
+_PIECE = 1 << 16
+"""The most bytes that are read at once."""
+_LONGEST_LINE = 1 << 24
+"""Characters; no line of JSON is longer."""
+
+
+class InputFormat(StrEnum):
+    """What a capture is written in."""
+
+    RAW = "raw"
+    """The bytes themselves."""
+    HEX = "hex"
+    """Hex digits, in any of the usual ways."""
+    TAGGED = "tagged"
+    """Lines of hex digits behind the name of the sender."""
+
+
+@contextmanager
+def opened(source: Path) -> Iterator[Iterator[bytes]]:
+    """Open a file, or standard input for `-`, as an iterator over its bytes as they come.
+
+    Shows a progress bar meanwhile. Raises UsageError if the file can't be opened.
+    """
+    if source == STANDARD_INPUT:
+        with progress("reading", None, shares_terminal=True, in_bytes=True) as advance:
+            # read1 gives what is there, so that a live stream is shown as it comes.
+            yield _pieces(cast(BufferedReader, sys.stdin.buffer).read1, advance)
+        return
+    try:
+        stream = source.open("rb", buffering=0)
+    except OSError as error:
+        raise UsageError(f"{source}: {error.strerror}") from None
+    with stream, progress("reading", _size(stream), shares_terminal=True, in_bytes=True) as advance:
+        yield _pieces(stream.read, advance)
+
+
+def _size(stream: BinaryIO) -> int | None:
+    """Return the size of a file; None for a device or a pipe, which has none."""
+    status = os.fstat(stream.fileno())
+    return status.st_size if stat.S_ISREG(status.st_mode) else None
+
+
+def _pieces(read: Callable[[int], bytes | None], advance: Callable[[int], None]) -> Iterator[bytes]:
+    while piece := read(_PIECE):
+        yield piece
+        advance(len(piece))
+
+
+# --- one sender -----------------------------------------------------------------------------------
+
+
+def raw_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
+    """The pieces as they are."""
+    return (Piece(sender, piece) for piece in pieces)
+
+
+def hex_bytes(text: str) -> bytes:
+    """What the text says in hex. Raises UsageError with line and column."""
+    try:
+        return parse_hex(text)
+    except HexError as error:
+        raise UsageError(str(error)) from None
+
+
+def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
+    """What the pieces say in hex. Raises UsageError with line and column."""
+    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
+    reader = HexReader()
+    try:
+        for piece in pieces:
+            yield Piece(sender, reader.feed(decode(piece)))
+        yield Piece(sender, reader.finish())
+    except HexError as error:
+        raise UsageError(str(error)) from None
+
+
+# --- lines of text --------------------------------------------------------------------------------
+
+
+def text_lines(pieces: Iterator[bytes]) -> Iterator[str]:
+    """The lines of a text. Raises UsageError if one is so long that it is none."""
+    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
+    rest = ""
+    for piece in pieces:
+        *whole, rest = (rest + decode(piece)).split("\n")
+        yield from whole
+        if len(rest) > _LONGEST_LINE:
+            raise UsageError(f"a line has over {_LONGEST_LINE} characters: this is no text")
+    if rest:
+        yield rest

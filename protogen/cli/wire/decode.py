@@ -1,0 +1,188 @@
+"""`protogen decode`: bytes -> events."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from protogen.cli.exits import CLEAN, FINDINGS, UsageError
+from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
+from protogen.cli.wire.capture import (
+    STANDARD_INPUT,
+    InputFormat,
+    hex_bytes,
+    hex_pieces,
+    opened,
+    raw_pieces,
+)
+from protogen.cli.wire.tagged import Piece, tagged_pieces
+
+if TYPE_CHECKING:
+    from protogen.cli.wire.codec import Codec
+    from protogen.runtime.decoder import Decoder
+
+EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 55020141BC"
+
+Tagged = Annotated[
+    bool,
+    typer.Option(
+        "--tagged",
+        help="The same as --input tagged: a log of both ways, with lines such as `pc: 1B 02`,"
+        " `[pc] 1B 02`, `pc> 1B 02` or `12:00:01.5 pc: 1B 02`.",
+    ),
+]
+
+Show = Callable[[Any], None]
+"""Print an event."""
+
+
+class EventFormat(StrEnum):
+    """How events are printed."""
+
+    TEXT = "text"
+    JSONL = "jsonl"
+
+
+def decode(  # noqa: PLR0913 - each option is one argument
+    schema: SchemaFile,
+    file: CaptureFile = STANDARD_INPUT,
+    sender: SenderOfBytes = None,
+    hex: HexText = None,
+    input: Annotated[
+        InputFormat, typer.Option("--input", help="What the file is written in.")
+    ] = InputFormat.RAW,
+    tagged: Tagged = False,
+    format: Annotated[
+        EventFormat, typer.Option(help="One readable line for each event, or one of JSON.")
+    ] = EventFormat.TEXT,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with 1 if any byte belongs to no valid frame.")
+    ] = False,
+) -> int:
+    """Cut bytes into messages, unknown frames and what is no frame.
+
+    The bytes of all these events, joined, are the capture. Lines of JSON go back through
+    `protogen encode`. Exits with 1 if a line of a tagged log can't be used, as its bytes are lost.
+    """
+    from protogen.cli.wire.codec import open_codec
+
+    kind = _input_format(input, tagged=tagged, has_text=hex is not None)
+    codec = open_codec(schema)
+    both_ways = kind is InputFormat.TAGGED and sender is None
+    senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
+    faults = Faults()
+    show = _printer(codec, format, show_sender=both_ways)
+    with _capture(file, hex, kind, codec, senders[0], faults) as pieces:
+        for events in _batches(codec, senders, pieces):
+            for event in events:
+                faults.see(event)
+                show(event)
+            sys.stdout.flush()
+    faults.report()
+    return FINDINGS if faults.lost or (strict and faults.any) else CLEAN
+
+
+class Faults:
+    """What was wrong with a capture."""
+
+    _MOST_LINES = 20
+    """So many lines of a log are complained of one by one."""
+
+    def __init__(self) -> None:
+        self._lines = 0
+        self.any = False
+        """Whether any byte belongs to no valid frame."""
+
+    @property
+    def lost(self) -> bool:
+        """Whether there were lines whose bytes nobody gets to see."""
+        return self._lines > 0
+
+    def see(self, event: Any) -> None:
+        """Take note of an event."""
+        if event.kind == "invalid":
+            self.any = True
+
+    def complain(self, problem: str) -> None:
+        """Take note of a line that can't be used."""
+        self._lines += 1
+        if self._lines <= self._MOST_LINES:
+            typer.echo(f"warning: {problem}", err=True)
+
+    def report(self) -> None:
+        """Say how many lines were left out without a word."""
+        silent = self._lines - self._MOST_LINES
+        if silent > 0:
+            typer.echo(f"warning: {silent} more lines can't be used", err=True)
+
+
+# --- in -------------------------------------------------------------------------------------------
+
+
+def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
+    """Return what the capture is written in. Raises UsageError where two options disagree."""
+    if tagged and given is InputFormat.HEX:
+        raise UsageError("--tagged and --input hex exclude each other", "leave one of them out")
+    if has_text and (tagged or given is InputFormat.TAGGED):
+        hint = "leave out --tagged and give --sender NAME, or give the lines in a file"
+        raise UsageError("--hex is bytes of one sender, --tagged is for lines that name it", hint)
+    return InputFormat.TAGGED if tagged else given
+
+
+@contextmanager
+def _capture(
+    file: Path, text: str | None, kind: InputFormat, codec: Codec, sender: str, faults: Faults
+) -> Iterator[Iterable[Piece]]:
+    """Open what is to be decoded. It is from `sender`, unless its lines are tagged."""
+    if text is not None and file != STANDARD_INPUT:
+        raise UsageError(f"there are two captures: {file} and --hex")
+    if text is not None:
+        yield [Piece(sender, hex_bytes(text))]
+        return
+    with opened(file) as pieces:
+        match kind:
+            case InputFormat.RAW:
+                yield raw_pieces(pieces, sender)
+            case InputFormat.HEX:
+                yield hex_pieces(pieces, sender)
+            case InputFormat.TAGGED:
+                yield tagged_pieces(pieces, codec.senders, faults.complain)
+
+
+def _batches(
+    codec: Codec, senders: Collection[str], pieces: Iterable[Piece]
+) -> Iterator[list[Any]]:
+    """Yield the events of each piece that is from one of the ``senders``."""
+    decoders: dict[str, Decoder[Any, Any]] = {}
+    for piece in pieces:
+        if piece.sender not in senders:
+            continue
+        if piece.sender not in decoders:
+            decoders[piece.sender] = codec.decoder(piece.sender)
+        yield decoders[piece.sender].feed(piece.data)
+    for decoder in decoders.values():
+        yield decoder.flush()
+
+
+# --- out ------------------------------------------------------------------------------------------
+
+
+def _printer(codec: Codec, format: EventFormat, *, show_sender: bool) -> Show:
+    from protogen.cli.console import console
+    from protogen.cli.wire.event_lines import EventLines, json_line
+
+    if format is EventFormat.JSONL:
+        return lambda event: typer.echo(json_line(event))
+    from rich.text import Text
+
+    out = console()
+    lines = EventLines(codec.protocol, show_sender=show_sender)
+    if out.is_terminal:
+        return lambda event: out.print(Text.assemble(*lines.segments(event)))
+    return lambda event: typer.echo("".join(text for text, _ in lines.segments(event)).rstrip())

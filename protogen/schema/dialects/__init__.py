@@ -1,0 +1,1 @@
+"""Dialects: what `extends` merges, renames, removes and places."""

@@ -1,0 +1,234 @@
+"""YAML events -> nodes.
+
+PyYAML parses; putting the nodes together is done here rather than by its composer, because
+aliases, depth and size must be bounded while the tree grows, not afterwards. Its two parsers give
+the same trees with the same spans. Where they differ is what they accept: without libyaml, a `?`
+inside of a text between brackets needs quotes, for one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from protogen.problems import Problems, Span
+from protogen.problems.sources import Position
+from protogen.schema.text.building import OpenMapping, OpenNode, OpenSequence
+from protogen.schema.text.nodes import Node, ScalarNode
+from protogen.schema.text.places import Places, end_of_span, position_of
+from protogen.schema.text.scalars import resolve
+
+GREATEST_DEPTH = 64
+"""How deeply mappings and lists may stand inside each other, aliases written out."""
+GREATEST_COUNT = 200_000
+"""How many keys and values a file may hold, aliases written out."""
+
+Loader = Callable[[str], Any]
+"""Makes a PyYAML loader, of which only the events are used, for a text."""
+
+PURE_LOADER: Loader = yaml.SafeLoader
+FAST_LOADER: Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""The loader of libyaml where PyYAML was built with it."""
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_SYNTAX_HINTS = {
+    "mapping values are not allowed": "a text that holds `: ` needs quotes around it",
+    "cannot start any token": "a text that starts with this character needs quotes around it",
+    "did not find expected key": "the indentation fits no mapping above",
+    "expected <block end>": "the indentation fits nothing above",
+    "did not find expected '-'": "the indentation fits no list above",
+    "could not find expected ':'": "a key needs a `:` and a space behind it",
+    "unexpected end of stream": "a quote or a bracket is never closed",
+    "block sequence entries are not allowed": "a list starts on the line below its key",
+    "<document start>": "a file holds one mapping and nothing behind it",
+    "unknown escape character": "a backslash is written twice between double quotes",
+}
+"""What usually mends what the parser complains of, by words of its message."""
+
+
+def compose(
+    text: str, file: str, problems: Problems, *, loader: Loader = FAST_LOADER
+) -> Node | None:
+    """Return the tree of the one document in ``text``, or None if there is no usable one.
+
+    ``text`` has no tabs in its structure and only characters that YAML allows.
+    """
+    composer = _Composer(text, file, problems)
+    try:
+        for event in _events(text, loader):
+            composer.take(event)
+    except _GiveUpError:
+        return None
+    except yaml.MarkedYAMLError as error:
+        _report_syntax(error, Places(text, file), problems)
+        return None
+    return composer.finish()
+
+
+class _GiveUpError(Exception):
+    """A problem was reported that makes going on pointless."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Anchored:
+    """A node that an alias can repeat."""
+
+    node: Node
+    count: int
+    """How many keys and values it holds, itself included."""
+    height: int
+    """How many mappings and lists stand inside each other in it."""
+
+
+def _events(text: str, loader: Loader) -> Iterator[Any]:
+    parser = loader(text)
+    try:
+        while parser.check_event():
+            yield parser.get_event()
+    except (ValueError, OverflowError) as error:
+        # The parser in Python takes any number for the code of a character.
+        problem = "found the escape of a character that does not exist"
+        raise yaml.MarkedYAMLError(problem=problem, problem_mark=parser.get_mark()) from error
+    finally:
+        parser.dispose()
+
+
+class _Composer:
+    """Puts one document together, event by event."""
+
+    def __init__(self, text: str, file: str, problems: Problems) -> None:
+        self._places = Places(text, file)
+        self._problems = problems
+        self._open: list[OpenNode] = []
+        self._anchors: dict[str, _Anchored | None] = {}
+        self._count = 0
+        self._root: Node | None = None
+        self._handlers: dict[type, Callable[[Any], None]] = {
+            yaml.DocumentStartEvent: self._start_document,
+            yaml.ScalarEvent: self._scalar,
+            yaml.AliasEvent: self._alias,
+            yaml.MappingStartEvent: self._start,
+            yaml.SequenceStartEvent: self._start,
+            yaml.MappingEndEvent: self._end,
+            yaml.SequenceEndEvent: self._end,
+        }
+
+    def take(self, event: Any) -> None:
+        """Take the next event of the parser."""
+        handler = self._handlers.get(type(event))
+        if handler is not None:
+            handler(event)
+
+    def finish(self) -> Node | None:
+        """Return the root of the document, or None if there is no document or an empty one."""
+        root = self._root
+        if root is None or (isinstance(root, ScalarNode) and root.plain and not root.text):
+            self._problems.add("PG008", self._places.of_file(), "the file is empty")
+            return None
+        return root
+
+    def _start_document(self, event: Any) -> None:
+        if self._root is not None:
+            span = self._places.at(position_of(event.start_mark), 3 if event.explicit else 0)
+            raise self._give_up("PG008", span, "a second document begins here")
+
+    def _scalar(self, event: Any) -> None:
+        self._check_tag(event)
+        plain = not event.style
+        value = resolve(event.value) if plain else event.value
+        node = ScalarNode(value, event.value, plain, self._scalar_span(event))
+        if _SURROGATE.search(event.value):
+            message = "the text holds half of a surrogate pair, which is no character"
+            raise self._give_up("PG004", node.span, message)
+        self._add(1, node.span)
+        self._finish_node(event.anchor, node, 1, 0)
+
+    def _alias(self, event: Any) -> None:
+        name = event.anchor
+        span = self._places.span(position_of(event.start_mark), position_of(event.end_mark))
+        if name not in self._anchors:
+            hint = "a text that starts with `*` needs quotes around it"
+            raise self._give_up("PG004", span, f"no anchor `&{name}` stands before this", hint)
+        anchored = self._anchors[name]
+        if anchored is None:
+            raise self._give_up("PG007", span, f"`*{name}` stands inside of what it repeats")
+        self._add(anchored.count, span)
+        self._check_depth(anchored.height, span)
+        self._place(anchored.node, anchored.height, end_of_span(span))
+
+    def _start(self, event: Any) -> None:
+        self._check_tag(event)
+        begin = self._places.begin(event)
+        span = self._places.at(begin, 1)
+        self._add(1, span)
+        self._check_depth(1, span)
+        if event.anchor is not None:
+            self._anchors[event.anchor] = None
+        if isinstance(event, yaml.MappingStartEvent):
+            self._open.append(OpenMapping(event, begin, self._count - 1, self._problems))
+        else:
+            self._open.append(OpenSequence(event, begin, self._count - 1))
+
+    def _end(self, event: Any) -> None:
+        done = self._open.pop()
+        end = position_of(event.end_mark) if done.event.flow_style else done.end
+        node = done.close(self._places.span(done.begin, end))
+        self._finish_node(done.event.anchor, node, self._count - done.counted, done.height)
+
+    def _finish_node(self, anchor: str | None, node: Node, count: int, height: int) -> None:
+        if anchor is not None:
+            self._anchors[anchor] = _Anchored(node, count, height)
+        self._place(node, height, end_of_span(node.span))
+
+    def _place(self, node: Node, height: int, end: Position) -> None:
+        if self._open:
+            self._open[-1].put(node, height, end)
+        else:
+            self._root = node
+
+    def _check_tag(self, event: Any) -> None:
+        if event.tag is not None:
+            tag, span = self._places.tag(event)
+            self._problems.add("PG011", span, f"the tag `{tag}` is not allowed")
+
+    def _check_depth(self, height: int, span: Span) -> None:
+        if len(self._open) + height > GREATEST_DEPTH:
+            message = f"values are nested more than {GREATEST_DEPTH} deep"
+            raise self._give_up("PG010", span, message)
+
+    def _add(self, count: int, span: Span) -> None:
+        self._count += count
+        if self._count > GREATEST_COUNT:
+            message = f"with this, the file holds more than {GREATEST_COUNT} values"
+            raise self._give_up("PG007", span, message)
+
+    def _give_up(self, code: str, span: Span, message: str, hint: str | None = None) -> Exception:
+        self._problems.add(code, span, message, hint)
+        return _GiveUpError()
+
+    def _scalar_span(self, event: Any) -> Span:
+        if event.style or event.value:
+            return self._places.scalar(event)
+        return self._places.at(self._empty_place(event), 0)
+
+    def _empty_place(self, event: Any) -> Position:
+        """Return the place of a value that was left out: right behind its key."""
+        if self._open and isinstance(self._open[-1], OpenMapping):
+            return self._open[-1].end
+        return position_of(event.end_mark)
+
+
+def _report_syntax(error: yaml.MarkedYAMLError, places: Places, problems: Problems) -> None:
+    """Report what the parser could not read, in its words."""
+    mark = error.problem_mark or error.context_mark
+    problem = error.problem or "this is not YAML"
+    span = places.of_file() if mark is None else places.point(position_of(mark))
+    hint = next((hint for words, hint in _SYNTAX_HINTS.items() if words in problem), None)
+    notes = []
+    if error.context is not None and error.context_mark is not None:
+        notes.append((places.point(position_of(error.context_mark)), error.context))
+    problems.add("PG004", span, problem, hint, notes)

@@ -1,0 +1,137 @@
+"""The immutable tree of a document: scalars, mappings and sequences with their spans."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from protogen.problems.span import Span
+from protogen.schema.text.scalars import Scalar, SourceFloat, SourceInt
+
+Loc = Sequence[Scalar]
+"""A location: the keys and indices that lead from a node to one inside of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ScalarNode:
+    """A single value; ``text`` is what was written, ``plain`` whether without quotes."""
+
+    value: Scalar
+    text: str
+    plain: bool
+    span: Span
+
+    def child(self, step: Scalar) -> Node | None:
+        """Return None: a scalar has nothing inside."""
+        return None
+
+    def at(self, path: Loc) -> Node | None:
+        """Return the node that ``path`` leads to, or None if there is none."""
+        return _walk(self, path)
+
+
+Item = tuple[ScalarNode, "Node"]
+"""A key of a mapping and its value."""
+
+
+@dataclass(frozen=True, slots=True)
+class MappingNode:
+    """Keys with values, in written order. Keys are texts, integers or booleans, each there once."""
+
+    items: tuple[Item, ...]
+    span: Span
+    _index: dict[Scalar, Item] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_index", {item[0].value: item for item in self.items})
+
+    def item(self, key: Scalar) -> Item | None:
+        """Return the key node and the value node of ``key``, or None if there is no such key."""
+        return self._index.get(key)
+
+    def child(self, step: Scalar) -> Node | None:
+        """Return the value of the key ``step``, or None if there is no such key."""
+        item = self._index.get(step)
+        return None if item is None else item[1]
+
+    def at(self, path: Loc) -> Node | None:
+        """Return the node that ``path`` leads to, or None if there is none."""
+        return _walk(self, path)
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceNode:
+    """Values in written order."""
+
+    items: tuple[Node, ...]
+    span: Span
+
+    def child(self, step: Scalar) -> Node | None:
+        """Return the value at the index ``step``, or None if there is none."""
+        if isinstance(step, int) and 0 <= step < len(self.items):
+            return self.items[step]
+        return None
+
+    def at(self, path: Loc) -> Node | None:
+        """Return the node that ``path`` leads to, or None if there is none."""
+        return _walk(self, path)
+
+
+Node = ScalarNode | MappingNode | SequenceNode
+
+
+def to_data(node: Node) -> Any:
+    """Return the tree as dictionaries, lists and scalars.
+
+    Numbers are `SourceInt` and `SourceFloat`, which know how they were written; keys are plain.
+    """
+    if isinstance(node, MappingNode):
+        return {key.value: to_data(value) for key, value in node.items}
+    if isinstance(node, SequenceNode):
+        return [to_data(item) for item in node.items]
+    if isinstance(node.value, bool):
+        return node.value
+    if isinstance(node.value, int):
+        return SourceInt.of(node.value, node.text)
+    if isinstance(node.value, float):
+        return SourceFloat.of(node.value, node.text)
+    return node.value
+
+
+def find(root: Node, loc: Loc, *, key: bool = False) -> Span:
+    """Return the place that an error location of pydantic means, as far as the tree has it.
+
+    Components that name nothing in the tree, such as the label of a tagged union, are skipped.
+    Where one names something only by chance, the reading that explains more of the location wins.
+    With ``key``, or if the location ends in ``[key]``, the place is that of the last key instead
+    of its value.
+    """
+    if loc and loc[-1] == "[key]":
+        return find(root, loc[:-1], key=True)
+    _, item, node = _follow(root, loc)
+    return item[0].span if key and item is not None else node.span
+
+
+_Found = tuple[int, Item | None, Node]
+"""How many components led somewhere, the mapping's item the last one led to, and its node."""
+
+
+def _follow(node: Node, loc: Loc) -> _Found:
+    best: _Found = (0, None, node)
+    for position, step in enumerate(loc):
+        child = node.child(step)
+        if child is None:
+            continue
+        found = _follow(child, loc[position + 1 :])
+        if found[0] + 1 > best[0]:
+            own = node.item(step) if isinstance(node, MappingNode) else None
+            best = (found[0] + 1, found[1] if found[0] else own, found[2])
+    return best
+
+
+def _walk(start: Node, path: Loc) -> Node | None:
+    node: Node | None = start
+    for step in path:
+        node = None if node is None else node.child(step)
+    return node
