@@ -17,11 +17,12 @@ import sys
 import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
+
+from protogen.runtime.values import as_dict
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
@@ -167,7 +168,7 @@ def same_in_c(event: Any, found: Any) -> bool:
         return False
     if event.kind == "invalid":
         return bool(found.reason == event.reason)
-    if (found.parts, found.payload) != (asdict(event.parts), event.payload):
+    if (found.parts, found.payload) != (as_dict(event.parts), event.payload):
         return False
     if event.kind == "unknown":
         return not found.message

@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cache
 from hashlib import sha256
 from itertools import chain, zip_longest
@@ -26,6 +26,7 @@ from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.trips import same
 from protogen.model.protocol import Protocol
+from protogen.runtime.values import as_dict
 from protogen.targets.c.fuzz_driver.driver import driver_of
 from protogen.targets.c.options import COptions
 
@@ -160,7 +161,7 @@ def _event(event: Any) -> CEvent:
     if event.kind == "invalid":
         return CEvent(event.kind, event.offset, event.size, event.reason)
     plain = CEvent(
-        event.kind, event.offset, event.size, parts=asdict(event.parts), payload=event.payload
+        event.kind, event.offset, event.size, parts=as_dict(event.parts), payload=event.payload
     )
     if event.kind == "unknown":
         return plain

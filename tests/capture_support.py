@@ -11,6 +11,7 @@ from compiled import module_at
 
 from protogen.capture import Column, Tables
 from protogen.capture.schema import Choice, Number, Record, Shape, Text
+from protogen.runtime.values import as_dict
 
 Scope = ChainMap[str, Any]
 
@@ -136,8 +137,6 @@ def _place(row: Any) -> tuple[int, int, int]:
 
 def expected_of(path: Path, sender: str, data: bytes) -> list[tuple[Any, ...]]:
     """The same, from the events of the Python decoder."""
-    from dataclasses import asdict
-
     from protogen.capture import InvalidReason
 
     decoder = module_at(path).Decoder(sender)
@@ -147,9 +146,9 @@ def expected_of(path: Path, sender: str, data: bytes) -> list[tuple[Any, ...]]:
         match event.kind:
             case "message":
                 values = _without_constants(event.message)
-                found.append((*place, event.message.NAME, asdict(event.parts), values))
+                found.append((*place, event.message.NAME, as_dict(event.parts), values))
             case "unknown":
-                found.append((*place, "unknown", asdict(event.parts), event.payload))
+                found.append((*place, "unknown", as_dict(event.parts), event.payload))
             case _:
                 found.append((*place, "invalid", int(InvalidReason[event.reason.upper()])))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import handwritten_matty
@@ -13,6 +13,7 @@ from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
 from protogen.runtime.checksum import Crc, Sum8, Xor8
 from protogen.runtime.transparency import Base16Upper, Cobs, Escape, Substitution, hdlc, slip
+from protogen.runtime.values import replace
 
 CRC16 = Crc(16, poly=0x1021, init=0xFFFF)
 BYTE = rt.Number(8)

@@ -9,7 +9,6 @@ past everything in `protogen.evolution`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -25,6 +24,7 @@ from protogen.evolution.rules import BY_NAME, RULES
 from protogen.evolution.witness import Harm, Witness
 from protogen.live import module_of
 from protogen.model.protocol import Protocol
+from protogen.runtime.values import as_dict
 
 FOLDER = Path(__file__).parent / "breaking"
 NAMES = sorted(path.name for path in FOLDER.iterdir())
@@ -147,7 +147,7 @@ def read(module: ModuleType, sender: str, frame: bytes) -> Read | None:
         dict(flat(message.to_dict())),
         {name: repr(value) for name, value in meaning.items() if not callable(value)}
         | {f"unit of {name}": getattr(rule, "unit", "") for name, rule in message.RULES},
-        asdict(messages[0].parts),
+        as_dict(messages[0].parts),
     )
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import struct
 import sys
 from array import array
-from dataclasses import fields, replace
 from decimal import Decimal
 from enum import IntEnum
 from fractions import Fraction
@@ -29,11 +28,14 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import fast, late, pairs, runs
+from protogen.runtime import decoder as runtime_decoder
+from protogen.runtime import fast, pairs, runs
+from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate, Cut, verdict_on
 from protogen.runtime.number import Number
 from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_codes
+from protogen.runtime.values import replace
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 DAGNY, MATTY, RFLEX, RN1 = (
@@ -108,7 +110,7 @@ def test_clean_frames_are_cut_without_the_reference(
             super().__init__(*given, **named)
             candidates.append(self)
 
-    monkeypatch.setattr(late, "Candidate", Counted)
+    monkeypatch.setattr(runtime_decoder, "Candidate", Counted)
     decoder = module_at(path).Decoder(sender)
     events = decoder.feed(b"".join(frames))
     taken_one_by_one = len(candidates)
@@ -401,7 +403,7 @@ def test_few_events_of_unknown_frames_are_taken_back(wrong: int) -> None:
             super().append(event)
 
     sender = module_at(RFLEX).PROTOCOL.sender("flex")
-    frame = late.encode_frame(sender, (0x77, 1), b"unknown", {"number": 5}, strict=False)
+    frame = encode_frame(sender, (0x77, 1), b"unknown", {"number": 5}, strict=False)
     spoilt = frame[:-3] + bytes((frame[-3] ^ 1,)) + frame[-2:]
     events = Counted()
     assert sender.cut is not None
@@ -513,7 +515,8 @@ class TestRuns:
         esp = codec_at(MATTY)
         data = b"".join(self.frames(200))
         others: dict[bytes, Any] = {bytes((number,)): [] for number in range(40)}
-        remembering = runs.StuffedRuns(**esp._RUNS_0.given, numbers=others)
+        remembering = runs.StuffedRuns(**esp._RUNS_0.given)
+        remembering.numbers.update(others)
         assert remembering.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) > 0
         assert len(remembering.numbers) == 1
 
@@ -647,9 +650,9 @@ def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
     by_message = {event.message.NAME: event for event in decoded(path, sender)}
     for event in by_message.values():
         parts = dict(zip_values(spec, event.numbers, names))
-        for field in fields(event.message):
+        for field in event.message.__fields__:
             for value in STRANGE:
-                item = replace(event.message, **{field.name: value})
+                item = replace(event.message, **{field: value})
                 due = outcome(module.encode, item, sender, engine="construct", **parts)
                 assert outcome(module.encode, item, sender, **parts) == due
         for name in names:

@@ -28,7 +28,6 @@ from corpus import (
 from hypothesis import settings
 
 from protogen.runtime import decoder as runtime_decoder
-from protogen.runtime import late
 from protogen.runtime.machine import Candidate
 from protogen.runtime.sender import Cutter
 from protogen.runtime.starts import starts_of
@@ -125,7 +124,7 @@ def candidates(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
             super().__init__(*given, **named)
             made.append(self)
 
-    monkeypatch.setattr(late, "Candidate", Counted)
+    monkeypatch.setattr(runtime_decoder, "Candidate", Counted)
     return made
 
 

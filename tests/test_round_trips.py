@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from random import Random
@@ -29,6 +28,7 @@ from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.errors import DecodeError, EncodeError
+from protogen.runtime.values import as_dict
 
 
 class Case:
@@ -131,7 +131,7 @@ def check_frame(case: Case, record: Any, payload: bytes, values: Values, parts: 
     assert (event.kind, event.offset, event.raw) == ("message", 0, frame)
     assert event.payload == payload
     assert case.yielded == event.message.NAME
-    assert asdict(event.parts) == all_of_it
+    assert as_dict(event.parts) == all_of_it
     if case.yielded == case.message.name:
         assert same(event.message.to_dict(), values)
         assert same(case.module.decode(frame, case.sender.name).to_dict(), values)

@@ -2,7 +2,7 @@
 
 import json
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import construct
@@ -15,6 +15,7 @@ from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
 from protogen.runtime.checksum import Sum8
 from protogen.runtime.transparency import Escape
+from protogen.runtime.values import replace
 
 
 def encode_error(action: Any, *arguments: Any, **named: Any) -> rt.EncodeError:

@@ -2,7 +2,6 @@
 
 import importlib
 import re
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -20,6 +19,7 @@ from protogen.runtime.transparency import (
     hdlc,
     slip,
 )
+from protogen.runtime.values import replace
 
 # The reference for COBS; it decodes every decodable region and encodes canonically.
 cobs_library: Any = importlib.import_module("cobs.cobs")

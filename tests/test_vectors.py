@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import asdict
 from types import ModuleType
 from typing import Any
 
@@ -12,6 +11,8 @@ import pytest
 from compiled import DOCUMENTS, FRAMINGS, module_at
 from vectors import ExpectedEvent, Stream, Vector, VectorFile, read_vectors, vector_files
 from vectors.reading import to_bytes
+
+from protogen.runtime.values import as_dict
 
 FILES = [read_vectors(path) for path in vector_files()]
 
@@ -49,7 +50,7 @@ def test_a_frame_is_one_event_with_its_parts(file: VectorFile, item: Vector) -> 
     (event,) = events_of(module, item.sender, [item.frame])
     assert (event.kind, event.offset, event.raw) == ("message", 0, item.frame)
     assert item.message == event.message.NAME
-    assert agrees(item.parts, asdict(event.parts))
+    assert agrees(item.parts, as_dict(event.parts))
 
 
 def message_of(module: ModuleType, vector: Vector) -> Any:
@@ -107,7 +108,7 @@ def brief(event: Any) -> tuple[Any, ...]:
 
 def check_details(expected: ExpectedEvent, event: Any) -> None:
     if expected.parts is not None:
-        assert agrees(expected.parts, asdict(event.parts))
+        assert agrees(expected.parts, as_dict(event.parts))
     if expected.payload is not None:
         assert event.payload == expected.payload
     if expected.values is not None:

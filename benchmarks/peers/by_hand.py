@@ -82,7 +82,7 @@ def numpy(case: Case) -> Contender:
     from peers import bulk
 
     def rows(array: Any) -> list[Row]:
-        columns = [array[name].tolist() for name in case.kind.__slots__]
+        columns = [array[name].tolist() for name in case.kind.__fields__]
         return [tuple(map(_frozen, row)) for row in zip(*columns, strict=True)]
 
     return Contender(NUMPY, rows=rows, data=case.stream, stream=bulk.STREAMS[case.message])

@@ -71,7 +71,7 @@ class Case:
 
     def made(self, row: Row) -> Any:
         """The generated message of such values."""
-        names = self.kind.__slots__
+        names = self.kind.__fields__
         values = dict(zip(names, row, strict=True))
         if self.message == "sonar_data":
             readings = (rflex.SonarDataReadings(cluster=a, distance=b) for a, b in row[2])
@@ -82,7 +82,7 @@ class Case:
 
     def row(self, message: Any) -> Row:
         """The values of a message of anybody whose attributes are called like the fields."""
-        return tuple(_plain(getattr(message, name)) for name in self.kind.__slots__)
+        return tuple(_plain(getattr(message, name)) for name in self.kind.__fields__)
 
     def frame(self, row: Row, counter: int) -> bytes:
         """The frame of such values, as the reference makes it."""

@@ -52,7 +52,7 @@ def _contender(case: Case, name: str, engine: str, loops: int) -> Contender:
 
 
 def _rows(case: Case, table: Any) -> list[Row]:
-    columns = [_column(table, name) for name in case.kind.__slots__]
+    columns = [_column(table, name) for name in case.kind.__fields__]
     return list(zip(*columns, strict=True))
 
 

@@ -48,7 +48,7 @@ def contender(case: Case) -> Contender:
             return [read(payload) for one in frames for _, payload in payloads(one)]
 
     def row(item: Any) -> Row:
-        return tuple(_plain(getattr(item, name)) for name in case.kind.__slots__)
+        return tuple(_plain(getattr(item, name)) for name in case.kind.__fields__)
 
     return Contender(
         "Kaitai Struct",

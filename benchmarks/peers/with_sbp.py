@@ -121,7 +121,7 @@ def contender(case: Case) -> Contender | None:
 
 
 def _fields(case: Case, row: Row) -> dict[str, Any]:
-    fields = dict(zip(case.kind.__slots__, row, strict=True))
+    fields = dict(zip(case.kind.__fields__, row, strict=True))
     if case.message == "sonar_data":
         fields["readings"] = [{"cluster": one, "distance": two} for one, two in row[2]]
     return fields

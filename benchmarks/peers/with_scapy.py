@@ -142,7 +142,7 @@ def contender(case: Case) -> Contender:
         return [framed(bytes(item), count) for item, count in counted]
 
     def row(item: Any) -> Row:
-        return tuple(_plain(getattr(item, name)) for name in case.kind.__slots__)
+        return tuple(_plain(getattr(item, name)) for name in case.kind.__fields__)
 
     return Contender(
         "scapy",
@@ -156,7 +156,7 @@ def contender(case: Case) -> Contender:
 
 
 def _made(kind: type[Any], case: Case, row: Row) -> Any:
-    fields = dict(zip(case.kind.__slots__, row, strict=True))
+    fields = dict(zip(case.kind.__fields__, row, strict=True))
     if case.message == "sonar_data":
         fields["readings"] = [Reading(cluster=one, distance=two) for one, two in row[2]]
     if case.message == "lidar":

@@ -44,9 +44,10 @@ class PowerCode(_rt.OpenEnum):
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Motor(_rt.Message):
     """Motor command (line 42)."""
+
+    __slots__ = ("s",)
 
     s: int
     """What the document writes as <s>, 0..255 (line 42)."""
@@ -63,10 +64,14 @@ class Motor(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("s", _rt.IntegerRule(8)),))
 
+    def __init__(self, *, s: int) -> None:
+        self.s = s
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Steering(_rt.Message):
     """Steering command (line 43)."""
+
+    __slots__ = ("s",)
 
     s: int
     """What the document writes as <s>, 0..255 (line 43)."""
@@ -83,14 +88,18 @@ class Steering(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("s", _rt.IntegerRule(8)),))
 
+    def __init__(self, *, s: int) -> None:
+        self.s = s
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Reflex(_rt.Message):
     """Queries, enables or disables one reflex (lines 44, 58-74).
 
     Reflexes are simple reactions of the firmware that keep the robot and what surrounds it from
     damage. As a sensor can fail or get stuck, each of them can be switched off.
     """
+
+    __slots__ = ("reflex",)
 
     reflex: int
     """The reflex byte (lines 67-74)."""
@@ -107,6 +116,9 @@ class Reflex(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("reflex", _rt.IntegerRule(8)),))
 
+    def __init__(self, *, reflex: int) -> None:
+        self.reflex = reflex
+
     reflex_command = _rt.EnumRange("reflex", 6, 7, ReflexReflexCommand)
     """What to do with the reflex; bits 6 to 7 of reflex."""
 
@@ -114,11 +126,12 @@ class Reflex(_rt.Message):
     """Number of the reflex; the document lists none; bits 0 to 5 of reflex."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class PowerDown(_rt.Message):
     """Powers the robot down after a time (line 45)."""
 
-    code: PowerCode | int = PowerCode.TIMED_POWER_DOWN
+    __slots__ = ("code",)
+
+    code: PowerCode | int
     """Power control code, constant (lines 45, 82)."""
 
     NAME = "power_down"
@@ -133,10 +146,14 @@ class PowerDown(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode, const=3)),))
 
+    def __init__(self, *, code: PowerCode | int = PowerCode.TIMED_POWER_DOWN) -> None:
+        self.code = code
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Power(_rt.Message):
     """Puts the hardware to sleep, wakes it, or asks for its state (lines 46, 77-82)."""
+
+    __slots__ = ("code",)
 
     code: PowerCode | int
     """Power control code (lines 77-82)."""
@@ -153,14 +170,18 @@ class Power(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode)),))
 
+    def __init__(self, *, code: PowerCode | int) -> None:
+        self.code = code
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Laser(_rt.Message):
     """Laser scan, passed through (lines 9-16, 49).
 
     The scanner makes 512 readings ten times a second. As floats these are 20480 bytes a second,
     more than the link can carry; so each reading is one byte.
     """
+
+    __slots__ = ("readings",)
 
     readings: list[int]
     """Distance; the metres times 50, 2 cm, 0..255, 0..512 elements (lines 14-15)."""
@@ -187,13 +208,17 @@ class Laser(_rt.Message):
         )
     )
 
+    def __init__(self, *, readings: list[int]) -> None:
+        self.readings = readings
+
     readings_cm = _rt.PhysicalList("readings")
     """Distance; the metres times 50 in cm, 0..510."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Command(_rt.Message):
     """Commands, passed through (line 50)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -210,13 +235,17 @@ class Command(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
+
 
 # --- messages of robot ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """Sonar data (line 31)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -233,13 +262,17 @@ class Sonar(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Gps(_rt.Message):
     """GPS data (lines 18, 32).
 
     About 480 bytes a second.
     """
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -256,10 +289,14 @@ class Gps(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Bump(_rt.Message):
     """Bump sensor data (line 33)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -276,10 +313,14 @@ class Bump(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Odometry(_rt.Message):
     """Odometry counts (line 34)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -296,10 +337,14 @@ class Odometry(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Speed(_rt.Message):
     """Speed readings (line 35)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -316,13 +361,17 @@ class Speed(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class WheelSlip(_rt.Message):
     """Notification that a wheel slips (line 36).
 
     The document puts a question mark behind it.
     """
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -339,13 +388,17 @@ class WheelSlip(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Battery(_rt.Message):
     """Battery level readings (line 37).
 
     The only lower-case id; the upper-case B is the bump sensors.
     """
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -362,10 +415,14 @@ class Battery(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ReflexSettings(_rt.Message):
     """Settings of the reflexes (line 38)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -382,10 +439,14 @@ class ReflexSettings(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class HardwareStatus(_rt.Message):
     """Whether the hardware sleeps or is awake (line 39)."""
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -402,16 +463,23 @@ class HardwareStatus(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=128)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("id",)
 
     id: int
     """Which message this is; upper and lower case differ."""
+
+    def __init__(self, id: int) -> None:
+        self._set(id)
 
 
 def _host_frame_spec() -> _rt.FrameSpec:

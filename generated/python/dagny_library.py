@@ -40,7 +40,6 @@ class PowerCode(_rt.OpenEnum):
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Motor(_rt.Message):
     """Sets the speed (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
@@ -49,6 +48,8 @@ class Motor(_rt.Message):
 
     As the Bluetooth side sends it.
     """
+
+    __slots__ = ("speed",)
 
     speed: int
     """Speed; the robot takes at most 50 either way, -128..127 (trainman419/Senior-Project,
@@ -66,8 +67,10 @@ class Motor(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("speed", _rt.IntegerRule(8, signed=True)),))
 
+    def __init__(self, *, speed: int) -> None:
+        self.speed = speed
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Drive(_rt.Message):
     """Sets speed and steering (trainman419/Senior-Project, trainman419/dagny_protocol (facts ...
 
@@ -76,6 +79,8 @@ class Drive(_rt.Message):
 
     As the main board sends it. It replaces the steering command there.
     """
+
+    __slots__ = ("speed", "steer")
 
     speed: int
     """Speed, -128..127 (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -102,14 +107,19 @@ class Drive(_rt.Message):
         )
     )
 
+    def __init__(self, *, speed: int, steer: int) -> None:
+        self.speed = speed
+        self.steer = steer
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Steering(_rt.Message):
     """Steering command (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
     Steering command (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
     arduino/main.c).
     """
+
+    __slots__ = ("position",)
 
     position: int
     """Position of the servo; 127 is straight on, 0..255 (trainman419/Senior-Project,
@@ -127,8 +137,10 @@ class Steering(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("position", _rt.IntegerRule(8)),))
 
+    def __init__(self, *, position: int) -> None:
+        self.position = position
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Power(_rt.Message):
     """Switches the power, or puts it to sleep (trainman419/Senior-Project, ...
 
@@ -137,6 +149,8 @@ class Power(_rt.Message):
 
     The robot does nothing on 0 and 3, and answers in free text.
     """
+
+    __slots__ = ("code",)
 
     code: PowerCode | int
     """Power control code, an ASCII digit (002_5af75f454b134d02.txt, lines 77-82)."""
@@ -153,14 +167,18 @@ class Power(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("code", _rt.IntegerRule(8, named=PowerCode)),))
 
+    def __init__(self, *, code: PowerCode | int) -> None:
+        self.code = code
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class GpsPosition(_rt.Message):
     """Position, passed on to Bluetooth (trainman419/Senior-Project, ...
 
     Position, passed on to Bluetooth (trainman419/Senior-Project, trainman419/dagny_protocol (facts
     only), arduino/gps.cpp).
     """
+
+    __slots__ = ("latitude", "longitude")
 
     latitude: int
     """Latitude, 1/1000000 deg, -2147483648..2147483647 (trainman419/Senior-Project,
@@ -193,6 +211,10 @@ class GpsPosition(_rt.Message):
         )
     )
 
+    def __init__(self, *, latitude: int, longitude: int) -> None:
+        self.latitude = latitude
+        self.longitude = longitude
+
     latitude_deg = _rt.Physical("latitude")
     """Latitude in deg, -2147.483648..2147.483647."""
 
@@ -200,7 +222,6 @@ class GpsPosition(_rt.Message):
     """Longitude in deg, -2147.483648..2147.483647."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Laser(_rt.Message):
     """Laser scan, passed through (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
@@ -209,6 +230,8 @@ class Laser(_rt.Message):
 
     The demo sends 512 readings, the later ROS node 256, each the mean of two.
     """
+
+    __slots__ = ("readings",)
 
     readings: list[int]
     """Distance; the metres times 50, 2 cm, 0..255, 0..512 elements (002_5af75f454b134d02.txt, lines
@@ -236,11 +259,13 @@ class Laser(_rt.Message):
         )
     )
 
+    def __init__(self, *, readings: list[int]) -> None:
+        self.readings = readings
+
     readings_cm = _rt.PhysicalList("readings")
     """Distance; the metres times 50 in cm, 0..510."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Shutdown(_rt.Message):
     """Shuts the robot down after a minute (trainman419/Senior-Project, ...
 
@@ -250,7 +275,9 @@ class Shutdown(_rt.Message):
     Eight letters Z, the id included. The robot passes it on to the main board.
     """
 
-    confirmation: str = "ZZZZZZZ"
+    __slots__ = ("confirmation",)
+
+    confirmation: str
     """Confirmation, constant (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
     arduino/main.c)."""
 
@@ -266,17 +293,21 @@ class Shutdown(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("confirmation", _rt.TextRule(size=7, const="ZZZZZZZ")),))
 
+    def __init__(self, *, confirmation: str = "ZZZZZZZ") -> None:
+        self.confirmation = confirmation
+
 
 # --- messages of robot ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Sonar(_rt.Message):
     """Distances of the five sonars (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
     Distances of the five sonars (trainman419/Senior-Project, trainman419/dagny_protocol (facts
     only), ros/hardware_interface).
     """
+
+    __slots__ = ("distances",)
 
     distances: list[int]
     """Distances, inch, 0..255, 5 elements (trainman419/Senior-Project, trainman419/dagny_protocol
@@ -296,8 +327,10 @@ class Sonar(_rt.Message):
         lambda: (("distances", _rt.ArrayRule(_rt.IntegerRule(8, unit="inch"), count=5)),)
     )
 
+    def __init__(self, *, distances: list[int]) -> None:
+        self.distances = distances
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (trainman419/Senior-Project, trainman419/dagny_protocol ...
 
@@ -306,6 +339,8 @@ class Gps(_rt.Message):
 
     About 480 bytes a second.
     """
+
+    __slots__ = ("nmea",)
 
     nmea: str
     """The sentence without CR and LF (trainman419/Senior-Project, trainman419/dagny_protocol (facts
@@ -323,14 +358,26 @@ class Gps(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=126)),))
 
+    def __init__(self, *, nmea: str) -> None:
+        self.nmea = nmea
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Odometry(_rt.Message):
     """Encoder counts, speeds and steering in one message (trainman419/Senior-Project, ...
 
     Encoder counts, speeds and steering in one message (trainman419/Senior-Project,
     trainman419/dagny_protocol (facts only), arduino/main.cpp).
     """
+
+    __slots__ = (
+        "left_count",
+        "left_speed",
+        "quad_count",
+        "quad_speed",
+        "right_count",
+        "right_speed",
+        "steer",
+    )
 
     right_count: int
     """Right count, 0..65535 (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -382,8 +429,26 @@ class Odometry(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        right_count: int,
+        left_count: int,
+        quad_count: int,
+        right_speed: int,
+        left_speed: int,
+        quad_speed: int,
+        steer: int,
+    ) -> None:
+        self.right_count = right_count
+        self.left_count = left_count
+        self.quad_count = quad_count
+        self.right_speed = right_speed
+        self.left_speed = left_speed
+        self.quad_speed = quad_speed
+        self.steer = steer
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Battery(_rt.Message):
     """Battery level readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts ...
 
@@ -392,6 +457,8 @@ class Battery(_rt.Message):
 
     The only lower-case id; the upper-case B is the bump sensors.
     """
+
+    __slots__ = ("idle", "main_battery", "motor_battery")
 
     main_battery: int
     """ADC reading divided by 4, 0..255 (trainman419/Senior-Project, trainman419/dagny_protocol
@@ -423,14 +490,20 @@ class Battery(_rt.Message):
         )
     )
 
+    def __init__(self, *, main_battery: int, motor_battery: int, idle: int) -> None:
+        self.main_battery = main_battery
+        self.motor_battery = motor_battery
+        self.idle = idle
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Compass(_rt.Message):
     """Compass readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts only), ...
 
     Compass readings (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
     arduino/main.cpp).
     """
+
+    __slots__ = ("x", "y")
 
     x: int
     """X, -32768..32767 (trainman419/Senior-Project, trainman419/dagny_protocol (facts only),
@@ -457,16 +530,24 @@ class Compass(_rt.Message):
         )
     )
 
+    def __init__(self, *, x: int, y: int) -> None:
+        self.x = x
+        self.y = y
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("id",)
 
     id: int
     """Which message this is; upper and lower case differ."""
+
+    def __init__(self, id: int) -> None:
+        self._set(id)
 
 
 def _host_frame_spec() -> _rt.FrameSpec:

@@ -54,12 +54,13 @@ class StatusStatus(_rt.Flags):
 # --- messages of pc ------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Stop(_rt.Message):
     """Stops the robot (line 16).
 
     Switches the drives off.
     """
+
+    __slots__ = ()
 
     NAME = "stop"
     SPEC_HASH = "bec937966960744fcf3cdc2d7d17f3ee78eee1cbed705dd7410bda2eeb5d4bfd"
@@ -70,9 +71,10 @@ class Stop(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (line 17)."""
+
+    __slots__ = ()
 
     NAME = "reset"
     SPEC_HASH = "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
@@ -83,9 +85,10 @@ class Reset(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Mode(_rt.Message):
     """Sets the robot's mode (line 18)."""
+
+    __slots__ = ("mode",)
 
     mode: RobotMode | int
     """The mode to take (line 18)."""
@@ -102,10 +105,14 @@ class Mode(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=RobotMode)),))
 
+    def __init__(self, *, mode: RobotMode | int) -> None:
+        self.mode = mode
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Go(_rt.Message):
     """Sets the driving speed and the wanted angle of the joint (line 19)."""
+
+    __slots__ = ("speed", "steer")
 
     speed: int
     """Driving speed, mm/s, -32768..32767 (line 19)."""
@@ -130,13 +137,18 @@ class Go(_rt.Message):
         )
     )
 
+    def __init__(self, *, speed: int, steer: int) -> None:
+        self.speed = speed
+        self.steer = steer
+
     steer_deg = _rt.Physical("steer")
     """Wanted angle of the joint in deg, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Limits(_rt.Message):
     """Sets the greatest driving speed and the fastest change of the joint's angle (line 20)."""
+
+    __slots__ = ("max_speed", "max_steer")
 
     max_speed: int
     """Greatest driving speed, mm/s, -32768..32767 (line 20)."""
@@ -164,13 +176,18 @@ class Limits(_rt.Message):
         )
     )
 
+    def __init__(self, *, max_speed: int, max_steer: int) -> None:
+        self.max_speed = max_speed
+        self.max_steer = max_steer
+
     max_steer_deg_per_s = _rt.Physical("max_steer")
     """Fastest change of the angle in deg/s, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Timing(_rt.Message):
     """Sets how often the robot sends its data and how long it waits for commands (line 21)."""
+
+    __slots__ = ("period", "timeout")
 
     period: int
     """Time from one status to the next, ms, 0..65535 (line 21)."""
@@ -195,10 +212,15 @@ class Timing(_rt.Message):
         )
     )
 
+    def __init__(self, *, period: int, timeout: int) -> None:
+        self.period = period
+        self.timeout = timeout
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class GpsMode(_rt.Message):
     """Sets what is sent of the GPS receiver (line 22)."""
+
+    __slots__ = ("mode",)
 
     mode: GpsModeMode | int
     """What is sent (line 22)."""
@@ -215,16 +237,20 @@ class GpsMode(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=GpsModeMode)),))
 
+    def __init__(self, *, mode: GpsModeMode | int) -> None:
+        self.mode = mode
+
 
 # --- messages of esp -----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Ack(_rt.Message):
     """Confirms a command (lines 26-29).
 
     The frame's counter is that of the command.
     """
+
+    __slots__ = ()
 
     NAME = "ack"
     SPEC_HASH = "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
@@ -235,12 +261,13 @@ class Ack(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Nack(_rt.Message):
     """Says that a command was not understood (lines 26-29).
 
     The frame's counter is that of the last command that was understood.
     """
+
+    __slots__ = ()
 
     NAME = "nack"
     SPEC_HASH = "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
@@ -251,12 +278,24 @@ class Nack(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """State of the robot (lines 31-34).
 
     Sent regularly, with the period of the timing message.
     """
+
+    __slots__ = (
+        "angle",
+        "current",
+        "encoder0",
+        "encoder1",
+        "encoder2",
+        "encoder3",
+        "mode",
+        "speed",
+        "status",
+        "voltage",
+    )
 
     status: StatusStatus | int
     """Flags (lines 34-43)."""
@@ -313,16 +352,42 @@ class Status(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        status: StatusStatus | int,
+        mode: RobotMode | int,
+        voltage: int,
+        current: int,
+        speed: int,
+        angle: int,
+        encoder0: int,
+        encoder1: int,
+        encoder2: int,
+        encoder3: int,
+    ) -> None:
+        self.status = status
+        self.mode = mode
+        self.voltage = voltage
+        self.current = current
+        self.speed = speed
+        self.angle = angle
+        self.encoder0 = encoder0
+        self.encoder1 = encoder1
+        self.encoder2 = encoder2
+        self.encoder3 = encoder3
+
     angle_deg = _rt.Physical("angle")
     """Angle of the joint in deg, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (lines 45-48).
 
     Sent as soon as it has arrived.
     """
+
+    __slots__ = ("nmea",)
 
     nmea: str
     """The whole sentence, from $ to CR LF (lines 47-48)."""
@@ -339,18 +404,25 @@ class Gps(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=121)),))
 
+    def __init__(self, *, nmea: str) -> None:
+        self.nmea = nmea
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("command", "counter")
 
     counter: int
     """Counts what the sender sends; an acknowledgement has the counter of its command."""
     command: int
     """Which command or message this is."""
+
+    def __init__(self, counter: int, command: int) -> None:
+        self._set(counter, command)
 
 
 def _pc_frame_spec() -> _rt.FrameSpec:

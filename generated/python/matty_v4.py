@@ -61,12 +61,13 @@ class StatusStatus(_rt.Flags):
 # --- messages of pc ------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Stop(_rt.Message):
     """Stops the robot (esp/matty-v4.txt, line 16).
 
     How the robot stops is the argument.
     """
+
+    __slots__ = ("mode",)
 
     mode: StopMode | int
     """How to stop (esp/matty-v4.txt, line 16)."""
@@ -83,10 +84,14 @@ class Stop(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=StopMode)),))
 
+    def __init__(self, *, mode: StopMode | int) -> None:
+        self.mode = mode
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Reset(_rt.Message):
     """Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17)."""
+
+    __slots__ = ()
 
     NAME = "reset"
     SPEC_HASH = "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
@@ -97,9 +102,10 @@ class Reset(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Mode(_rt.Message):
     """Sets the robot's mode (004_bc163d01a5f01dc1.txt, line 18)."""
+
+    __slots__ = ("mode",)
 
     mode: RobotMode | int
     """The mode to take (004_bc163d01a5f01dc1.txt, line 18)."""
@@ -116,13 +122,17 @@ class Mode(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=RobotMode)),))
 
+    def __init__(self, *, mode: RobotMode | int) -> None:
+        self.mode = mode
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Go(_rt.Message):
     """Sets the driving speed and the wanted angle of the joint (004_bc163d01a5f01dc1.txt, ...
 
     Sets the driving speed and the wanted angle of the joint (004_bc163d01a5f01dc1.txt, line 19).
     """
+
+    __slots__ = ("speed", "steer")
 
     speed: int
     """Driving speed, mm/s, -32768..32767 (004_bc163d01a5f01dc1.txt, line 19)."""
@@ -147,17 +157,22 @@ class Go(_rt.Message):
         )
     )
 
+    def __init__(self, *, speed: int, steer: int) -> None:
+        self.speed = speed
+        self.steer = steer
+
     steer_deg = _rt.Physical("steer")
     """Wanted angle of the joint in deg, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Limits(_rt.Message):
     """Sets the greatest driving speed and the fastest change of the joint's angle ...
 
     Sets the greatest driving speed and the fastest change of the joint's angle
     (004_bc163d01a5f01dc1.txt, line 20).
     """
+
+    __slots__ = ("max_speed", "max_steer")
 
     max_speed: int
     """Greatest driving speed, mm/s, -32768..32767 (004_bc163d01a5f01dc1.txt, line 20)."""
@@ -186,17 +201,22 @@ class Limits(_rt.Message):
         )
     )
 
+    def __init__(self, *, max_speed: int, max_steer: int) -> None:
+        self.max_speed = max_speed
+        self.max_steer = max_steer
+
     max_steer_deg_per_s = _rt.Physical("max_steer")
     """Fastest change of the angle in deg/s, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Timing(_rt.Message):
     """Sets how often the robot sends its data and how long it waits for commands ...
 
     Sets how often the robot sends its data and how long it waits for commands
     (004_bc163d01a5f01dc1.txt, line 21).
     """
+
+    __slots__ = ("period", "timeout")
 
     period: int
     """Time from one status to the next, ms, 0..65535 (004_bc163d01a5f01dc1.txt, line 21)."""
@@ -221,10 +241,15 @@ class Timing(_rt.Message):
         )
     )
 
+    def __init__(self, *, period: int, timeout: int) -> None:
+        self.period = period
+        self.timeout = timeout
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class GpsMode(_rt.Message):
     """Sets what is sent of the GPS receiver (004_bc163d01a5f01dc1.txt, line 22)."""
+
+    __slots__ = ("mode",)
 
     mode: GpsModeMode | int
     """What is sent (004_bc163d01a5f01dc1.txt, line 22)."""
@@ -241,10 +266,14 @@ class GpsMode(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("mode", _rt.IntegerRule(8, named=GpsModeMode)),))
 
+    def __init__(self, *, mode: GpsModeMode | int) -> None:
+        self.mode = mode
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class VersionQuery(_rt.Message):
     """Asks for the version (esp/matty-v4.txt, line 23)."""
+
+    __slots__ = ()
 
     NAME = "version_query"
     SPEC_HASH = "64b31edb481abe8981924042da95b29412a42fbd61ac0ae36c8ee3008942abcf"
@@ -255,9 +284,10 @@ class VersionQuery(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Led(_rt.Message):
     """Sets the colour of an LED (esp/Robot/src/data.h)."""
+
+    __slots__ = ("index", "rgb")
 
     index: int
     """Which LED, 0..255 (esp/Robot/src/data.h)."""
@@ -282,16 +312,21 @@ class Led(_rt.Message):
         )
     )
 
+    def __init__(self, *, index: int, rgb: int) -> None:
+        self.index = index
+        self.rgb = rgb
+
 
 # --- messages of esp -----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Ack(_rt.Message):
     """Confirms a command (004_bc163d01a5f01dc1.txt, lines 26-29).
 
     The frame's counter is that of the command.
     """
+
+    __slots__ = ()
 
     NAME = "ack"
     SPEC_HASH = "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
@@ -302,12 +337,13 @@ class Ack(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Nack(_rt.Message):
     """Says that a command was not understood (004_bc163d01a5f01dc1.txt, lines 26-29).
 
     The frame's counter is that of the last command that was understood.
     """
+
+    __slots__ = ()
 
     NAME = "nack"
     SPEC_HASH = "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
@@ -318,12 +354,27 @@ class Nack(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """State of the robot (esp/Robot/src/communication.cpp).
 
     Sent regularly, with the period of the timing message.
     """
+
+    __slots__ = (
+        "angle",
+        "current",
+        "encoder0",
+        "encoder1",
+        "encoder2",
+        "encoder3",
+        "mode",
+        "pitch",
+        "roll",
+        "speed",
+        "status",
+        "voltage",
+        "yaw",
+    )
 
     status: StatusStatus | int
     """Flags (004_bc163d01a5f01dc1.txt, lines 34-43)."""
@@ -392,6 +443,37 @@ class Status(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        status: StatusStatus | int,
+        mode: RobotMode | int,
+        voltage: int,
+        current: int,
+        speed: int,
+        angle: int,
+        encoder0: int,
+        encoder1: int,
+        encoder2: int,
+        encoder3: int,
+        roll: int,
+        pitch: int,
+        yaw: int,
+    ) -> None:
+        self.status = status
+        self.mode = mode
+        self.voltage = voltage
+        self.current = current
+        self.speed = speed
+        self.angle = angle
+        self.encoder0 = encoder0
+        self.encoder1 = encoder1
+        self.encoder2 = encoder2
+        self.encoder3 = encoder3
+        self.roll = roll
+        self.pitch = pitch
+        self.yaw = yaw
+
     angle_deg = _rt.Physical("angle")
     """Angle of the joint in deg, -327.68..327.67."""
 
@@ -405,12 +487,13 @@ class Status(_rt.Message):
     """Yaw in deg, -327.68..327.67."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Gps(_rt.Message):
     """A sentence of the GPS receiver (004_bc163d01a5f01dc1.txt, lines 45-48).
 
     Sent as soon as it has arrived.
     """
+
+    __slots__ = ("nmea",)
 
     nmea: str
     """The whole sentence, from $ to CR LF (004_bc163d01a5f01dc1.txt, lines 47-48)."""
@@ -427,10 +510,14 @@ class Gps(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("nmea", _rt.TextRule(greatest=121)),))
 
+    def __init__(self, *, nmea: str) -> None:
+        self.nmea = nmea
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Version(_rt.Message):
     """Which robot this is, and its firmware (esp/matty-v4.txt, lines 52-55)."""
+
+    __slots__ = ("serial_number", "version")
 
     serial_number: int
     """Number of the robot, 0..255 (esp/matty-v4.txt, lines 52-55)."""
@@ -455,18 +542,26 @@ class Version(_rt.Message):
         )
     )
 
+    def __init__(self, *, serial_number: int, version: int) -> None:
+        self.serial_number = serial_number
+        self.version = version
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("command", "counter")
 
     counter: int
     """Counts what the sender sends; an acknowledgement has the counter of its command."""
     command: int
     """Which command or message this is."""
+
+    def __init__(self, counter: int, command: int) -> None:
+        self._set(counter, command)
 
 
 def _pc_frame_spec() -> _rt.FrameSpec:

@@ -80,9 +80,10 @@ class IoValue(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class SonarDataReadings(_rt.Record):
     """Sonar data readings (lines 226-229)."""
+
+    __slots__ = ("cluster", "distance")
 
     cluster: int
     """Hexadecimal on the ATRV-Jr. Left side 00 (rear) to 05 (front), front 10 (left) to 14 (right),
@@ -104,13 +105,18 @@ class SonarDataReadings(_rt.Record):
         )
     )
 
+    def __init__(self, *, cluster: int, distance: int) -> None:
+        self.cluster = cluster
+        self.distance = distance
+
 
 # --- messages of linux ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class RequestSystemStatus(_rt.Message):
     """Requests the system status (lines 52, 55)."""
+
+    __slots__ = ()
 
     NAME = "request_system_status"
     SPEC_HASH = "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
@@ -121,9 +127,10 @@ class RequestSystemStatus(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Motor00(_rt.Message):
     """Motor packet 00, whose purpose the document does not know (lines 67-75)."""
+
+    __slots__ = ("unknown",)
 
     unknown: int
     """Not said by the document, 0..255 (line 71)."""
@@ -140,10 +147,14 @@ class Motor00(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("unknown", _rt.IntegerRule(8)),))
 
+    def __init__(self, *, unknown: int) -> None:
+        self.unknown = unknown
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MotorCommand(_rt.Message):
     """Sets the velocity of one axis (lines 79, 83-89)."""
+
+    __slots__ = ("acceleration", "axis", "direction", "torque", "velocity")
 
     axis: Axis | int
     """Axis (line 84)."""
@@ -180,14 +191,30 @@ class MotorCommand(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        axis: Axis | int,
+        velocity: int,
+        acceleration: int,
+        torque: int,
+        direction: MotorCommandDirection | int,
+    ) -> None:
+        self.axis = axis
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self.torque = torque
+        self.direction = direction
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Motor0a(_rt.Message):
     """Motor packet 0A, whose purpose the document does not know; sent at startup (lines 101, ...
 
     Motor packet 0A, whose purpose the document does not know; sent at startup (lines 101, 105,
     295).
     """
+
+    __slots__ = ()
 
     NAME = "motor_0a"
     SPEC_HASH = "eedc3fc169634e242a263c754415dd56363ce235e3048ec98cc8fb6b216defc8"
@@ -198,13 +225,14 @@ class Motor0a(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Motor0c(_rt.Message):
     """Motor packet 0C, whose purpose the document does not know; sent at startup (lines 108, ...
 
     Motor packet 0C, whose purpose the document does not know; sent at startup (lines 108, 111, 114,
     296).
     """
+
+    __slots__ = ()
 
     NAME = "motor_0c"
     SPEC_HASH = "a651ee555828b7b5463b3cf907b01232f0190770a91bd51ca9e578c744e26154"
@@ -215,9 +243,10 @@ class Motor0c(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class StartStopMotorPackets(_rt.Message):
     """Starts or stops the sending of motor packets (lines 136, 139-141)."""
+
+    __slots__ = ("start_stop", "timestamp")
 
     timestamp: int
     """See the decision motor_packets_timestamp, 0..4294967295 (line 140)."""
@@ -242,10 +271,15 @@ class StartStopMotorPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, start_stop: StartStopMotorPacketsStartStop | int) -> None:
+        self.timestamp = timestamp
+        self.start_stop = start_stop
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (lines 157, 160)."""
+
+    __slots__ = ()
 
     NAME = "request_joystick_data"
     SPEC_HASH = "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
@@ -256,9 +290,10 @@ class RequestJoystickData(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class StartStopSonarPackets(_rt.Message):
     """Starts or stops the sending of sonar packets (lines 195, 199-203)."""
+
+    __slots__ = ("frequency", "start_stop", "unknown_1", "unknown_2")
 
     frequency: int
     """Sonar frequency; see the decision sonar_frequency, 0..4294967295 (line 200)."""
@@ -291,14 +326,28 @@ class StartStopSonarPackets(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        frequency: int,
+        unknown_1: int,
+        unknown_2: int,
+        start_stop: StartStopSonarPacketsStartStop | int,
+    ) -> None:
+        self.frequency = frequency
+        self.unknown_1 = unknown_1
+        self.unknown_2 = unknown_2
+        self.start_stop = start_stop
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class InitializeDigitalIo(_rt.Message):
     """Initialises the digital I/O; starts or stops the sending of its packets (lines 246, ...
 
     Initialises the digital I/O; starts or stops the sending of its packets (lines 246, 250, 298,
     307).
     """
+
+    __slots__ = ("unknown",)
 
     unknown: int
     """10000 at startup and 0 at shutdown; see the decision initialize_digital_io_word,
@@ -316,10 +365,14 @@ class InitializeDigitalIo(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("unknown", _rt.IntegerRule(32)),))
 
+    def __init__(self, *, unknown: int) -> None:
+        self.unknown = unknown
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class CheckIoChanged(_rt.Message):
     """Asks whether digital inputs have changed (lines 261, 264-265)."""
+
+    __slots__ = ("timestamp",)
 
     timestamp: int
     """See the decision check_timestamp, 0..4294967295 (line 265)."""
@@ -336,13 +389,17 @@ class CheckIoChanged(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("timestamp", _rt.IntegerRule(32)),))
 
+    def __init__(self, *, timestamp: int) -> None:
+        self.timestamp = timestamp
+
 
 # --- messages of flex ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class SystemStatus(_rt.Message):
     """Battery and brake status (lines 52, 58-61)."""
+
+    __slots__ = ("battery_voltage", "brake", "timestamp")
 
     timestamp: int
     """Timestamp, 0..4294967295 (line 59)."""
@@ -371,10 +428,18 @@ class SystemStatus(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, timestamp: int, battery_voltage: int, brake: SystemStatusBrake | int
+    ) -> None:
+        self.timestamp = timestamp
+        self.battery_voltage = battery_voltage
+        self.brake = brake
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmMotorCommand(_rt.Message):
     """Confirms a motor command (lines 80, 92-95)."""
+
+    __slots__ = ("axis", "timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (line 93)."""
@@ -403,10 +468,16 @@ class ConfirmMotorCommand(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int, axis: Axis | int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
+        self.axis = axis
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Motor0cAnswer(_rt.Message):
     """Answers motor packet 0C (lines 108, 117-119)."""
+
+    __slots__ = ("timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (line 118)."""
@@ -431,10 +502,15 @@ class Motor0cAnswer(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ReadMotor(_rt.Message):
     """State of one axis, sent while motor packets are on (lines 125-133)."""
+
+    __slots__ = ("acceleration", "axis", "position", "timestamp", "torque", "unknown", "velocity")
 
     unknown: int
     """Not said by the document, 0..4294967295 (line 127)."""
@@ -479,10 +555,30 @@ class ReadMotor(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        unknown: int,
+        timestamp: int,
+        axis: Axis | int,
+        position: int,
+        velocity: int,
+        acceleration: int,
+        torque: int,
+    ) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
+        self.axis = axis
+        self.position = position
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self.torque = torque
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmStartStopMotorPackets(_rt.Message):
     """Confirms the start or the stop of motor packets (lines 137, 148-150)."""
+
+    __slots__ = ("timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (line 149)."""
@@ -507,10 +603,15 @@ class ConfirmStartStopMotorPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class JoystickData(_rt.Message):
     """Position and buttons of the joystick (lines 157, 167-171)."""
+
+    __slots__ = ("buttons", "horizontal", "timestamp", "vertical")
 
     timestamp: int
     """Timestamp, 0..4294967295 (line 168)."""
@@ -543,10 +644,19 @@ class JoystickData(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, timestamp: int, horizontal: int, vertical: int, buttons: JoystickDataButtons | int
+    ) -> None:
+        self.timestamp = timestamp
+        self.horizontal = horizontal
+        self.vertical = vertical
+        self.buttons = buttons
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmStartStopSonarPackets(_rt.Message):
     """Confirms the start or the stop of sonar packets (lines 196, 213-215)."""
+
+    __slots__ = ("timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (line 214)."""
@@ -571,8 +681,11 @@ class ConfirmStartStopSonarPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class SonarData(_rt.Message):
     """Readings of the sonars of one fire group (lines 180-182, 220-239).
 
@@ -580,7 +693,9 @@ class SonarData(_rt.Message):
     length says, at most 82.
     """
 
-    unknown: int = 2
+    __slots__ = ("readings", "timestamp", "unknown")
+
+    unknown: int
     """00 00 00 02 in the layout and in both examples; see the decision sonar_first_word,
     0..4294967295 (line 224)."""
     timestamp: int
@@ -608,13 +723,21 @@ class SonarData(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, unknown: int = 2, timestamp: int, readings: list[SonarDataReadings]
+    ) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
+        self.readings = readings
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmInitializeDigitalIo(_rt.Message):
     """Confirms that sending of digital I/O packets has started or stopped (lines 301, 309).
 
     Seen only in the transcripts; the layout is the decision confirm_digital_io_layout.
     """
+
+    __slots__ = ("timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (lines 301, 309)."""
@@ -639,13 +762,18 @@ class ConfirmInitializeDigitalIo(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ChangedBumpers(_rt.Message):
     """Bumpers that have changed (lines 253, 257-258).
 
     The document prints two packets and no layout; see the decision changed_bumpers_layout.
     """
+
+    __slots__ = ("position", "timestamp", "value")
 
     timestamp: int
     """Timestamp, 0..4294967295 (lines 257-258)."""
@@ -675,10 +803,16 @@ class ChangedBumpers(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, position: int, value: IoValue | int) -> None:
+        self.timestamp = timestamp
+        self.position = position
+        self.value = value
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class CheckIoChangedAnswer(_rt.Message):
     """Says how many packets answer the check (lines 261, 269-273)."""
+
+    __slots__ = ("package_count", "timestamp", "unknown")
 
     unknown: int
     """Not said by the document, 0..4294967295 (lines 270-271)."""
@@ -707,10 +841,16 @@ class CheckIoChangedAnswer(_rt.Message):
         )
     )
 
+    def __init__(self, *, unknown: int, timestamp: int, package_count: int) -> None:
+        self.unknown = unknown
+        self.timestamp = timestamp
+        self.package_count = package_count
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ChangedByte(_rt.Message):
     """New value of a byte of the digital I/O (lines 275, 278-281)."""
+
+    __slots__ = ("position", "timestamp", "value")
 
     timestamp: int
     """Timestamp, 0..4294967295 (line 279)."""
@@ -740,13 +880,19 @@ class ChangedByte(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, position: int, value: IoValue | int) -> None:
+        self.timestamp = timestamp
+        self.position = position
+        self.value = value
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("class_id", "number", "subclass")
 
     class_id: int
     """The CLASS of the document. 01 system status, 02 motors, 03 joystick, 04 sonars, 05 digital
@@ -755,6 +901,9 @@ class Parts:
     """Running number of some packets, such as motor data; see the decision number_is_free."""
     subclass: int
     """What the packet is within its class."""
+
+    def __init__(self, class_id: int, number: int, subclass: int) -> None:
+        self._set(class_id, number, subclass)
 
 
 def _linux_frame_spec() -> _rt.FrameSpec:

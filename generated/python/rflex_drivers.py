@@ -81,9 +81,10 @@ class JoystickDataButtons(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class SonarDataReadings(_rt.Record):
     """Sonar data readings (003_037af2f07b705118.txt, lines 226-229)."""
+
+    __slots__ = ("cluster", "distance")
 
     cluster: int
     """Hexadecimal on the ATRV-Jr. Left side 00 (rear) to 05 (front), front 10 (left) to 14 (right),
@@ -105,13 +106,18 @@ class SonarDataReadings(_rt.Record):
         )
     )
 
+    def __init__(self, *, cluster: int, distance: int) -> None:
+        self.cluster = cluster
+        self.distance = distance
+
 
 # --- messages of linux ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class RequestSystemStatus(_rt.Message):
     """Requests the system status (003_037af2f07b705118.txt, lines 52, 55)."""
+
+    __slots__ = ()
 
     NAME = "request_system_status"
     SPEC_HASH = "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
@@ -122,9 +128,10 @@ class RequestSystemStatus(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class AxisGetSystem(_rt.Message):
     """Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75)."""
+
+    __slots__ = ("axis",)
 
     axis: Axis | int
     """Axis (rflex-protocol.txt, MOT_AXIS_GET_SYSTEM)."""
@@ -141,10 +148,14 @@ class AxisGetSystem(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("axis", _rt.IntegerRule(8, named=Axis)),))
 
+    def __init__(self, *, axis: Axis | int) -> None:
+        self.axis = axis
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MotorCommand(_rt.Message):
     """Sets the velocity of one axis (003_037af2f07b705118.txt, lines 79, 83-89)."""
+
+    __slots__ = ("acceleration", "axis", "direction", "torque", "velocity")
 
     axis: Axis | int
     """Axis (003_037af2f07b705118.txt, line 84)."""
@@ -184,10 +195,26 @@ class MotorCommand(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        axis: Axis | int,
+        velocity: int,
+        acceleration: int,
+        torque: int,
+        direction: MotorCommandDirection | int,
+    ) -> None:
+        self.axis = axis
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self.torque = torque
+        self.direction = direction
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class SetDefaults(_rt.Message):
     """Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295)."""
+
+    __slots__ = ()
 
     NAME = "set_defaults"
     SPEC_HASH = "331dc1874e44c21540bd0a7bd437fa833e644a317fca702ac2490b670399df50"
@@ -198,9 +225,10 @@ class SetDefaults(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class BrakeSet(_rt.Message):
     """Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET)."""
+
+    __slots__ = ()
 
     NAME = "brake_set"
     SPEC_HASH = "4401cd64cb9a2ca5864d7f599ad76220a0b04b04b4d52eb3104ddff4d4bb7c57"
@@ -211,9 +239,10 @@ class BrakeSet(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class BrakeRelease(_rt.Message):
     """Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296)."""
+
+    __slots__ = ()
 
     NAME = "brake_release"
     SPEC_HASH = "1f9ec56928e572d49d393a26172348d3f39304387a211b910a9ffc8e0eede26b"
@@ -224,12 +253,13 @@ class BrakeRelease(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class StartStopMotorPackets(_rt.Message):
     """Starts or stops the sending of motor packets (003_037af2f07b705118.txt, lines 136, ...
 
     Starts or stops the sending of motor packets (003_037af2f07b705118.txt, lines 136, 139-141).
     """
+
+    __slots__ = ("mask", "period")
 
     period: int
     """Time between two reports; see the decision period_unit, us, 0..4294967295 (rflex-
@@ -255,10 +285,15 @@ class StartStopMotorPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, period: int, mask: StartStopMotorPacketsMask | int) -> None:
+        self.period = period
+        self.mask = mask
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class RequestJoystickData(_rt.Message):
     """Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160)."""
+
+    __slots__ = ()
 
     NAME = "request_joystick_data"
     SPEC_HASH = "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
@@ -269,12 +304,13 @@ class RequestJoystickData(_rt.Message):
     RULES = ()
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class StartStopSonarPackets(_rt.Message):
     """Starts or stops the sending of sonar packets (003_037af2f07b705118.txt, lines 195, ...
 
     Starts or stops the sending of sonar packets (003_037af2f07b705118.txt, lines 195, 199-203).
     """
+
+    __slots__ = ("echo_delay", "mode", "ping_delay", "set_delay")
 
     echo_delay: int
     """How long a sonar waits for its echo, us, 0..4294967295 (rflex-protocol.txt, SONAR_RUN)."""
@@ -308,14 +344,28 @@ class StartStopSonarPackets(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        echo_delay: int,
+        ping_delay: int,
+        set_delay: int,
+        mode: StartStopSonarPacketsMode | int,
+    ) -> None:
+        self.echo_delay = echo_delay
+        self.ping_delay = ping_delay
+        self.set_delay = set_delay
+        self.mode = mode
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class InitializeDigitalIo(_rt.Message):
     """Initialises the digital I/O; starts or stops the sending of its packets ...
 
     Initialises the digital I/O; starts or stops the sending of its packets
     (003_037af2f07b705118.txt, lines 246, 250, 298, 307).
     """
+
+    __slots__ = ("period",)
 
     period: int
     """Time between two reports, 0 for none; see the decision period_unit, us, 0..4294967295 (rflex-
@@ -333,10 +383,14 @@ class InitializeDigitalIo(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("period", _rt.IntegerRule(32, unit="us")),))
 
+    def __init__(self, *, period: int) -> None:
+        self.period = period
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class CheckIoChanged(_rt.Message):
     """Asks whether digital inputs have changed (003_037af2f07b705118.txt, lines 261, 264-265)."""
+
+    __slots__ = ("timestamp",)
 
     timestamp: int
     """See the decision check_timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 265)."""
@@ -353,10 +407,14 @@ class CheckIoChanged(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("timestamp", _rt.IntegerRule(32)),))
 
+    def __init__(self, *, timestamp: int) -> None:
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class IrRun(_rt.Message):
     """Starts or stops the infrared sensors (rflex_commands.cc, rflex_ir_on, rflex_ir_off)."""
+
+    __slots__ = ("mode", "unknown_1", "unknown_2", "unknown_3", "unknown_4", "unknown_5")
 
     unknown_1: int
     """Not said by the document, 0..4294967295 (rflex_commands.cc, rflex_ir_on)."""
@@ -398,13 +456,31 @@ class IrRun(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        unknown_1: int,
+        unknown_2: int,
+        unknown_3: int,
+        unknown_4: int,
+        unknown_5: int,
+        mode: IrRunMode | int,
+    ) -> None:
+        self.unknown_1 = unknown_1
+        self.unknown_2 = unknown_2
+        self.unknown_3 = unknown_3
+        self.unknown_4 = unknown_4
+        self.unknown_5 = unknown_5
+        self.mode = mode
+
 
 # --- messages of flex ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class SystemStatus(_rt.Message):
     """Battery and brake status (003_037af2f07b705118.txt, lines 52, 58-61)."""
+
+    __slots__ = ("battery_voltage", "brake", "timestamp")
 
     timestamp: int
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 59)."""
@@ -434,14 +510,22 @@ class SystemStatus(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, timestamp: int, battery_voltage: int, brake: SystemStatusBrake | int
+    ) -> None:
+        self.timestamp = timestamp
+        self.battery_voltage = battery_voltage
+        self.brake = brake
+
     battery_voltage_v = _rt.Physical("battery_voltage")
     """To be corrected by the power offset of each robot; see the decision battery_scale in V,
     0..42949672.95."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class LcdDump(_rt.Message):
     """One row of the display (rflex-protocol.txt, SYS_LCD_DUMP)."""
+
+    __slots__ = ("byte_count", "pixels", "row", "timestamp")
 
     timestamp: int
     """Timestamp, 0..4294967295 (rflex-protocol.txt, SYS_LCD_DUMP)."""
@@ -475,10 +559,17 @@ class LcdDump(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, row: int, byte_count: int, pixels: bytes) -> None:
+        self.timestamp = timestamp
+        self.row = row
+        self.byte_count = byte_count
+        self.pixels = pixels
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmMotorCommand(_rt.Message):
     """Confirms a motor command (003_037af2f07b705118.txt, lines 80, 92-95)."""
+
+    __slots__ = ("axis", "retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -508,10 +599,16 @@ class ConfirmMotorCommand(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int, axis: Axis | int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
+        self.axis = axis
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class BrakeReleaseAnswer(_rt.Message):
     """Answers the release of the brake (003_037af2f07b705118.txt, lines 108, 117-119)."""
+
+    __slots__ = ("retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -537,13 +634,18 @@ class BrakeReleaseAnswer(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ReadMotor(_rt.Message):
     """State of one axis, sent while motor packets are on (003_037af2f07b705118.txt, lines ...
 
     State of one axis, sent while motor packets are on (003_037af2f07b705118.txt, lines 125-133).
     """
+
+    __slots__ = ("acceleration", "axis", "position", "retval", "timestamp", "torque", "velocity")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -589,13 +691,33 @@ class ReadMotor(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        retval: int,
+        timestamp: int,
+        axis: Axis | int,
+        position: int,
+        velocity: int,
+        acceleration: int,
+        torque: int,
+    ) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
+        self.axis = axis
+        self.position = position
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self.torque = torque
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmStartStopMotorPackets(_rt.Message):
     """Confirms the start or the stop of motor packets (003_037af2f07b705118.txt, lines 137, ...
 
     Confirms the start or the stop of motor packets (003_037af2f07b705118.txt, lines 137, 148-150).
     """
+
+    __slots__ = ("retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -621,10 +743,15 @@ class ConfirmStartStopMotorPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class JoystickData(_rt.Message):
     """Position and buttons of the joystick (003_037af2f07b705118.txt, lines 157, 167-171)."""
+
+    __slots__ = ("buttons", "horizontal", "timestamp", "vertical")
 
     timestamp: int
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 168)."""
@@ -657,13 +784,22 @@ class JoystickData(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, timestamp: int, horizontal: int, vertical: int, buttons: JoystickDataButtons | int
+    ) -> None:
+        self.timestamp = timestamp
+        self.horizontal = horizontal
+        self.vertical = vertical
+        self.buttons = buttons
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmStartStopSonarPackets(_rt.Message):
     """Confirms the start or the stop of sonar packets (003_037af2f07b705118.txt, lines 196, ...
 
     Confirms the start or the stop of sonar packets (003_037af2f07b705118.txt, lines 196, 213-215).
     """
+
+    __slots__ = ("retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -689,8 +825,11 @@ class ConfirmStartStopSonarPackets(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class SonarData(_rt.Message):
     """Readings of the sonars of one fire group (003_037af2f07b705118.txt, lines 180-182, ...
 
@@ -700,7 +839,9 @@ class SonarData(_rt.Message):
     length says, at most 82.
     """
 
-    retval: int = 2
+    __slots__ = ("readings", "retval", "timestamp")
+
+    retval: int
     """Return value; 2 in both packets of the document, 0..4294967295 (003_037af2f07b705118.txt,
     line 224)."""
     timestamp: int
@@ -728,14 +869,22 @@ class SonarData(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, retval: int = 2, timestamp: int, readings: list[SonarDataReadings]
+    ) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
+        self.readings = readings
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ConfirmInitializeDigitalIo(_rt.Message):
     """Confirms that sending of digital I/O packets has started or stopped ...
 
     Confirms that sending of digital I/O packets has started or stopped (003_037af2f07b705118.txt,
     lines 301, 309).
     """
+
+    __slots__ = ("retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -761,10 +910,15 @@ class ConfirmInitializeDigitalIo(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ChangedBumpers(_rt.Message):
     """Bumpers that have changed (003_037af2f07b705118.txt, lines 253, 257-258)."""
+
+    __slots__ = ("address", "data", "timestamp")
 
     timestamp: int
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, lines 257-258)."""
@@ -794,10 +948,16 @@ class ChangedBumpers(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, address: int, data: int) -> None:
+        self.timestamp = timestamp
+        self.address = address
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class CheckIoChangedAnswer(_rt.Message):
     """Says how many packets answer the check (003_037af2f07b705118.txt, lines 261, 269-273)."""
+
+    __slots__ = ("package_count", "retval", "timestamp")
 
     retval: int
     """Return value of what is answered; 0 means that it was done, 0..4294967295
@@ -828,10 +988,16 @@ class CheckIoChangedAnswer(_rt.Message):
         )
     )
 
+    def __init__(self, *, retval: int, timestamp: int, package_count: int) -> None:
+        self.retval = retval
+        self.timestamp = timestamp
+        self.package_count = package_count
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class ChangedByte(_rt.Message):
     """New value of a byte of the digital I/O (003_037af2f07b705118.txt, lines 275, 278-281)."""
+
+    __slots__ = ("address", "data", "timestamp")
 
     timestamp: int
     """Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 279)."""
@@ -861,13 +1027,19 @@ class ChangedByte(_rt.Message):
         )
     )
 
+    def __init__(self, *, timestamp: int, address: int, data: int) -> None:
+        self.timestamp = timestamp
+        self.address = address
+        self.data = data
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class IrReport(_rt.Message):
     """Readings of the infrared sensors (rflex_commands.cc, parseIrReport).
 
     See the decision ir_report_layout.
     """
+
+    __slots__ = ("data",)
 
     data: bytes
     """Not said by the document."""
@@ -884,13 +1056,17 @@ class IrReport(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("data", _rt.OctetsRule(greatest=255)),))
 
+    def __init__(self, *, data: bytes) -> None:
+        self.data = data
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("class_id", "number", "subclass")
 
     class_id: int
     """The CLASS of the document. 01 system status, 02 motors, 03 joystick, 04 sonars, 05 digital
@@ -900,6 +1076,9 @@ class Parts:
     packets here."""
     subclass: int
     """What the packet is within its class."""
+
+    def __init__(self, class_id: int, number: int, subclass: int) -> None:
+        self._set(class_id, number, subclass)
 
 
 def _linux_frame_spec() -> _rt.FrameSpec:

@@ -73,9 +73,10 @@ class SonarStatus(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MaintenanceArgumentReconfigUart(_rt.Record):
     """The speed."""
+
+    __slots__ = ("baud_rate_register",)
 
     baud_rate_register: int
     """What the STM32F205 gets to hold in its baud rate register, 0..65535 (line 46)."""
@@ -87,10 +88,14 @@ class MaintenanceArgumentReconfigUart(_rt.Record):
     )
     RULES = _rt.lazily(lambda: (("baud_rate_register", _rt.IntegerRule(16)),))
 
+    def __init__(self, *, baud_rate_register: int) -> None:
+        self.baud_rate_register = baud_rate_register
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     """The motor controller."""
+
+    __slots__ = ("motor_controller",)
 
     motor_controller: int
     """Number of the motor controller, 1..4 (line 53)."""
@@ -102,13 +107,17 @@ class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     )
     RULES = _rt.lazily(lambda: (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),))
 
+    def __init__(self, *, motor_controller: int) -> None:
+        self.motor_controller = motor_controller
+
 
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MoveManual(_rt.Message):
     """Drive by hand, with a speed and an arc (lines 27-29)."""
+
+    __slots__ = ("arc", "speed")
 
     speed: int
     """0 stops, negative values drive backwards, -64..63 (line 28)."""
@@ -133,10 +142,15 @@ class MoveManual(_rt.Message):
         )
     )
 
+    def __init__(self, *, speed: int, arc: int) -> None:
+        self.speed = speed
+        self.arc = arc
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MoveRelativeTwostep(_rt.Message):
     """Turn on the spot, then drive straight (lines 31-34)."""
+
+    __slots__ = ("angle", "forward")
 
     angle: int
     """How far to turn, 1/16 deg, -8192..8191 (line 33)."""
@@ -161,13 +175,18 @@ class MoveRelativeTwostep(_rt.Message):
         )
     )
 
+    def __init__(self, *, angle: int, forward: int) -> None:
+        self.angle = angle
+        self.forward = forward
+
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MoveRelativeArc(_rt.Message):
     """Turn and drive at the same time, along an arc (lines 36-39)."""
+
+    __slots__ = ("angle", "forward")
 
     angle: int
     """How far to turn, 1/16 deg, -8192..8191 (line 38)."""
@@ -192,11 +211,14 @@ class MoveRelativeArc(_rt.Message):
         )
     )
 
+    def __init__(self, *, angle: int, forward: int) -> None:
+        self.angle = angle
+        self.forward = forward
+
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Maintenance(_rt.Message):
     """Reconfigure the UART, cut the power or start a flasher (lines 42-56).
 
@@ -204,7 +226,9 @@ class Maintenance(_rt.Message):
     115200 8N1 and nothing on it follows this protocol any more, until the brain resets.
     """
 
-    magic: list[int] = _rt.field(default_factory=lambda: [66, 17, 122])
+    __slots__ = ("argument", "magic", "operation")
+
+    magic: list[int]
     """Magic key numbers, 0..127, 3 elements, constant (line 43)."""
     operation: MaintenanceOperation | int
     """What to do (lines 44-56)."""
@@ -258,13 +282,28 @@ class Maintenance(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        magic: list[int] = _rt.OMITTED,
+        operation: MaintenanceOperation | int,
+        argument: MaintenanceArgumentReconfigUart
+        | MaintenanceArgumentRunMotorControllerFlasher
+        | bytes
+        | None,
+    ) -> None:
+        self.magic = [66, 17, 122] if magic is _rt.OMITTED else magic
+        self.operation = operation
+        self.argument = argument
+
 
 # --- messages of brain ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Gyro(_rt.Message):
     """Readings of the three-axis gyroscope (lines 61-65)."""
+
+    __slots__ = ("int_x", "int_y", "int_z", "status")
 
     status: GyroStatus | int
     """State of the gyroscope (line 62)."""
@@ -297,10 +336,17 @@ class Gyro(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: GyroStatus | int, int_x: int, int_y: int, int_z: int) -> None:
+        self.status = status
+        self.int_x = int_x
+        self.int_y = int_y
+        self.int_z = int_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Xcel(_rt.Message):
     """Readings of the three-axis accelerometer (lines 67-71)."""
+
+    __slots__ = ("int_x", "int_y", "int_z", "status")
 
     status: XcelStatus | int
     """State of the accelerometer (line 68)."""
@@ -333,10 +379,17 @@ class Xcel(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: XcelStatus | int, int_x: int, int_y: int, int_z: int) -> None:
+        self.status = status
+        self.int_x = int_x
+        self.int_y = int_y
+        self.int_z = int_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Compass(_rt.Message):
     """Readings of the three-axis compass (lines 73-77)."""
+
+    __slots__ = ("avg_x", "avg_y", "avg_z", "status")
 
     status: CompassStatus | int
     """State of the compass (line 74)."""
@@ -369,10 +422,17 @@ class Compass(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: CompassStatus | int, avg_x: int, avg_y: int, avg_z: int) -> None:
+        self.status = status
+        self.avg_x = avg_x
+        self.avg_y = avg_y
+        self.avg_z = avg_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Optflow(_rt.Message):
     """Readings of the optical flow sensor that looks at the ground (lines 79-83)."""
+
+    __slots__ = ("dx", "dy", "q", "status")
 
     status: int
     """Not said by the document, 0..127 (line 80)."""
@@ -405,14 +465,21 @@ class Optflow(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: int, dx: int, dy: int, q: int) -> None:
+        self.status = status
+        self.dx = dx
+        self.dy = dy
+        self.q = q
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Lidar(_rt.Message):
     """The latest full turn of the LIDAR (lines 85-90).
 
     At 115200 baud this message holds up the others by 63 ms; the document recommends 1 Mbaud with
     it.
     """
+
+    __slots__ = ("distances", "status")
 
     status: LidarStatus | int
     """State of the LIDAR (lines 87-89)."""
@@ -444,10 +511,15 @@ class Lidar(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: LidarStatus | int, distances: list[int]) -> None:
+        self.status = status
+        self.distances = distances
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Sonar(_rt.Message):
     """The latest distances of up to seven sonars (lines 92-94)."""
+
+    __slots__ = ("distances", "status")
 
     status: SonarStatus | int
     """The sonars that are enabled (line 93)."""
@@ -475,10 +547,15 @@ class Sonar(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: SonarStatus | int, distances: list[int]) -> None:
+        self.status = status
+        self.distances = distances
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Facing(_rt.Message):
     """Direction and speed of the robot as its sensors tell (lines 97-100)."""
+
+    __slots__ = ("heading", "speed", "status")
 
     status: int
     """Not said by the document, 0..127 (line 98)."""
@@ -507,16 +584,25 @@ class Facing(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: int, heading: int, speed: int) -> None:
+        self.status = status
+        self.heading = heading
+        self.speed = speed
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("start",)
 
     start: int
     """Tells which message this is."""
+
+    def __init__(self, start: int) -> None:
+        self._set(start)
 
 
 def _host_frame_spec() -> _rt.FrameSpec:

@@ -67,9 +67,10 @@ class SonarStatus(_rt.Flags):
 # --- structs ------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     """The motor controller."""
+
+    __slots__ = ("motor_controller",)
 
     motor_controller: int
     """Number of the motor controller, 1..4 (000_c7d74cf9c866b63b.txt, line 53)."""
@@ -81,13 +82,17 @@ class MaintenanceArgumentRunMotorControllerFlasher(_rt.Record):
     )
     RULES = _rt.lazily(lambda: (("motor_controller", _rt.IntegerRule(7, least=1, greatest=4)),))
 
+    def __init__(self, *, motor_controller: int) -> None:
+        self.motor_controller = motor_controller
+
 
 # --- messages of host ----------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MoveManual(_rt.Message):
     """Drive by hand, with a speed and an arc (000_c7d74cf9c866b63b.txt, lines 27-29)."""
+
+    __slots__ = ("arc", "speed")
 
     speed: int
     """0 stops, negative values drive backwards, -64..63 (000_c7d74cf9c866b63b.txt, line 28)."""
@@ -113,13 +118,18 @@ class MoveManual(_rt.Message):
         )
     )
 
+    def __init__(self, *, speed: int, arc: int) -> None:
+        self.speed = speed
+        self.arc = arc
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MoveRelativeTwostep(_rt.Message):
     """Turn on the spot, then drive straight (main.c, lines 433-435).
 
     Both ends send and read the high seven bits first.
     """
+
+    __slots__ = ("angle", "forward")
 
     angle: int
     """How far to turn, 1/16 deg, -8192..8191 (000_c7d74cf9c866b63b.txt, line 33)."""
@@ -145,18 +155,23 @@ class MoveRelativeTwostep(_rt.Message):
         )
     )
 
+    def __init__(self, *, angle: int, forward: int) -> None:
+        self.angle = angle
+        self.forward = forward
+
     angle_deg = _rt.Physical("angle")
     """How far to turn in deg, -512..511.9375."""
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class DecreasePhaseAngle(_rt.Message):
     """Debugging, sends command 13 to motor controllers 2 and 3 (main.c, lines 437-441).
 
     Meant to decrease the fine adjustment of the motors' phase angle.
     """
 
-    ignored: int = 0
+    __slots__ = ("ignored",)
+
+    ignored: int
     """Not looked at, but the firmware drops a command that has no data byte, 0..127 (main.c, lines
     437-441)."""
 
@@ -172,15 +187,19 @@ class DecreasePhaseAngle(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("ignored", _rt.IntegerRule(7)),))
 
+    def __init__(self, *, ignored: int = 0) -> None:
+        self.ignored = ignored
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class IncreasePhaseAngle(_rt.Message):
     """Debugging, sends command 14 to motor controllers 2 and 3 (main.c, lines 443-446).
 
     Meant to increase the fine adjustment of the motors' phase angle.
     """
 
-    ignored: int = 0
+    __slots__ = ("ignored",)
+
+    ignored: int
     """Not looked at, but the firmware drops a command that has no data byte, 0..127 (main.c, lines
     443-446)."""
 
@@ -196,8 +215,10 @@ class IncreasePhaseAngle(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("ignored", _rt.IntegerRule(7)),))
 
+    def __init__(self, *, ignored: int = 0) -> None:
+        self.ignored = ignored
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Maintenance(_rt.Message):
     """Reconfigure the UART, cut the power or start a flasher (000_c7d74cf9c866b63b.txt, ...
 
@@ -208,7 +229,9 @@ class Maintenance(_rt.Message):
     resets.
     """
 
-    magic: list[int] = _rt.field(default_factory=lambda: [66, 17, 122])
+    __slots__ = ("argument", "magic", "operation")
+
+    magic: list[int]
     """Magic key numbers, 0..127, 3 elements, constant (000_c7d74cf9c866b63b.txt, line 43)."""
     operation: MaintenanceOperation | int
     """What to do (000_c7d74cf9c866b63b.txt, lines 44-56)."""
@@ -247,16 +270,28 @@ class Maintenance(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        magic: list[int] = _rt.OMITTED,
+        operation: MaintenanceOperation | int,
+        argument: MaintenanceArgumentRunMotorControllerFlasher | bytes | None,
+    ) -> None:
+        self.magic = [66, 17, 122] if magic is _rt.OMITTED else magic
+        self.operation = operation
+        self.argument = argument
+
 
 # --- messages of brain ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Gyro(_rt.Message):
     """Readings of the three-axis gyroscope (main.c, lines 800-807).
 
     Not integrals, but the latest readings without their two low bits; status is always 1.
     """
+
+    __slots__ = ("int_x", "int_y", "int_z", "status")
 
     status: GyroStatus | int
     """State of the gyroscope (000_c7d74cf9c866b63b.txt, line 62)."""
@@ -292,13 +327,20 @@ class Gyro(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: GyroStatus | int, int_x: int, int_y: int, int_z: int) -> None:
+        self.status = status
+        self.int_x = int_x
+        self.int_y = int_y
+        self.int_z = int_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Xcel(_rt.Message):
     """Readings of the three-axis accelerometer (main.c, lines 809-816).
 
     Not integrals, but the latest readings without their two low bits; status is always 1.
     """
+
+    __slots__ = ("int_x", "int_y", "int_z", "status")
 
     status: XcelStatus | int
     """State of the accelerometer (000_c7d74cf9c866b63b.txt, line 68)."""
@@ -334,13 +376,20 @@ class Xcel(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: XcelStatus | int, int_x: int, int_y: int, int_z: int) -> None:
+        self.status = status
+        self.int_x = int_x
+        self.int_y = int_y
+        self.int_z = int_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Compass(_rt.Message):
     """Readings of the three-axis compass (main.c, lines 818-825).
 
     Not means, but the latest readings without their two low bits; status is always 1.
     """
+
+    __slots__ = ("avg_x", "avg_y", "avg_z", "status")
 
     status: CompassStatus | int
     """State of the compass (000_c7d74cf9c866b63b.txt, line 74)."""
@@ -376,14 +425,21 @@ class Compass(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: CompassStatus | int, avg_x: int, avg_y: int, avg_z: int) -> None:
+        self.status = status
+        self.avg_x = avg_x
+        self.avg_y = avg_y
+        self.avg_z = avg_z
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Lidar(_rt.Message):
     """The latest full turn of the LIDAR (000_c7d74cf9c866b63b.txt, lines 85-90).
 
     At 115200 baud this message holds up the others by 63 ms; the document recommends 1 Mbaud with
     it.
     """
+
+    __slots__ = ("distances", "status")
 
     status: LidarStatus | int
     """State of the LIDAR (000_c7d74cf9c866b63b.txt, lines 87-89)."""
@@ -415,10 +471,15 @@ class Lidar(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: LidarStatus | int, distances: list[int]) -> None:
+        self.status = status
+        self.distances = distances
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Sonar(_rt.Message):
     """The latest distances of the three sonars (main.c, lines 926-937)."""
+
+    __slots__ = ("distances", "status")
 
     status: SonarStatus | int
     """The sonars that are enabled; always all three (main.c, line 927)."""
@@ -447,17 +508,22 @@ class Sonar(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: SonarStatus | int, distances: list[int]) -> None:
+        self.status = status
+        self.distances = distances
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class Facing(_rt.Message):
     """Direction and speed of the robot as its sensors tell (main.c, lines 909-915)."""
 
-    status: int = 1
+    __slots__ = ("heading", "speed", "status")
+
+    status: int
     """Always 1, 0..127 (main.c, line 910)."""
     heading: int
     """Turn since the start as the gyroscope tells; 0 is no compass direction, deg, -8192..8191
     (main.c, lines 911-912)."""
-    speed: int = 0
+    speed: int
     """Always 0, mm/s, -8192..8191 (main.c, lines 913-914)."""
 
     NAME = "facing"
@@ -480,8 +546,12 @@ class Facing(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: int = 1, heading: int, speed: int = 0) -> None:
+        self.status = status
+        self.heading = heading
+        self.speed = speed
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class OptflowIntegral(_rt.Message):
     """Way seen by the optical flow sensor (main.c, lines 918-924).
 
@@ -489,7 +559,9 @@ class OptflowIntegral(_rt.Message):
     other way round, which was its mistake.
     """
 
-    status: int = 1
+    __slots__ = ("int_x", "int_y", "status")
+
+    status: int
     """Always 1, 0..127 (main.c, line 919)."""
     int_x: int
     """Way in X divided by 4 and rounded down, -8192..8191 (main.c, lines 920-921)."""
@@ -516,10 +588,16 @@ class OptflowIntegral(_rt.Message):
         )
     )
 
+    def __init__(self, *, status: int = 1, int_x: int, int_y: int) -> None:
+        self.status = status
+        self.int_x = int_x
+        self.int_y = int_y
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MotorControllerMessage(_rt.Message):
     """Debugging, the latest word from motor controller 3 (main.c, lines 940-944)."""
+
+    __slots__ = ("last_msg",)
 
     last_msg: int
     """The 14 high bits of a 16-bit word, 0..16383 (main.c, lines 942-943)."""
@@ -536,13 +614,17 @@ class MotorControllerMessage(_rt.Message):
     )
     RULES = _rt.lazily(lambda: (("last_msg", _rt.IntegerRule(14)),))
 
+    def __init__(self, *, last_msg: int) -> None:
+        self.last_msg = last_msg
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class DebugNumbers(_rt.Message):
     """Debugging, four numbers that a developer picks (main.c, lines 946-971).
 
     Each number takes five bytes; the first holds its four highest bits.
     """
+
+    __slots__ = ("dbg1", "dbg2", "dbg3", "dbg4")
 
     dbg1: int
     """Not said by the document, -2147483648..2147483647 (main.c, lines 951-955)."""
@@ -575,16 +657,26 @@ class DebugNumbers(_rt.Message):
         )
     )
 
+    def __init__(self, *, dbg1: int, dbg2: int, dbg3: int, dbg4: int) -> None:
+        self.dbg1 = dbg1
+        self.dbg2 = dbg2
+        self.dbg3 = dbg3
+        self.dbg4 = dbg4
+
 
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("start",)
 
     start: int
     """Tells which message this is."""
+
+    def __init__(self, start: int) -> None:
+        self._set(start)
 
 
 def _host_frame_spec() -> _rt.FrameSpec:

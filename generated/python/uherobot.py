@@ -39,9 +39,10 @@ class MotorsServosLedsLeds(_rt.Flags):
 # --- messages of daemon --------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MotorsServosLeds(_rt.Message):
     """Set both motors, eight servos and the LEDs (lines 40-43)."""
+
+    __slots__ = ("leds", "motor_1", "motor_2", "servos")
 
     motor_1: int
     """Drive of motor 1, -32768..32767 (line 43)."""
@@ -74,10 +75,19 @@ class MotorsServosLeds(_rt.Message):
         )
     )
 
+    def __init__(
+        self, *, motor_1: int, motor_2: int, servos: list[int], leds: MotorsServosLedsLeds | int
+    ) -> None:
+        self.motor_1 = motor_1
+        self.motor_2 = motor_2
+        self.servos = servos
+        self.leds = leds
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MotorsTwoServos(_rt.Message):
     """Set both motors and two servos (lines 45-48)."""
+
+    __slots__ = ("motor_1", "motor_2", "servos")
 
     motor_1: int
     """Drive of motor 1, -32768..32767 (line 48)."""
@@ -106,10 +116,16 @@ class MotorsTwoServos(_rt.Message):
         )
     )
 
+    def __init__(self, *, motor_1: int, motor_2: int, servos: list[int]) -> None:
+        self.motor_1 = motor_1
+        self.motor_2 = motor_2
+        self.servos = servos
 
-@_rt.dataclass(slots=True, kw_only=True)
+
 class MotorTest(_rt.Message):
     """Set both motors and nothing else (lines 55-58)."""
+
+    __slots__ = ("motor_1", "motor_2")
 
     motor_1: int
     """Drive of motor 1, -32768..32767 (lines 57-58)."""
@@ -134,16 +150,21 @@ class MotorTest(_rt.Message):
         )
     )
 
+    def __init__(self, *, motor_1: int, motor_2: int) -> None:
+        self.motor_1 = motor_1
+        self.motor_2 = motor_2
+
 
 # --- messages of board ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """A voltage, a current and a temperature (lines 50-53).
 
     The document does not say what they are measured at.
     """
+
+    __slots__ = ("current", "temperature", "voltage")
 
     voltage: int
     """Voltage, 1/100 V, -32768..32767 (line 53)."""
@@ -175,6 +196,11 @@ class Status(_rt.Message):
         )
     )
 
+    def __init__(self, *, voltage: int, current: int, temperature: int) -> None:
+        self.voltage = voltage
+        self.current = current
+        self.temperature = temperature
+
     voltage_v = _rt.Physical("voltage")
     """Voltage in V, -327.68..327.67."""
 
@@ -185,12 +211,16 @@ class Status(_rt.Message):
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("type",)
 
     type: int
     """Tells which message this is."""
+
+    def __init__(self, type: int) -> None:
+        self._set(type)
 
 
 def _daemon_frame_spec() -> _rt.FrameSpec:

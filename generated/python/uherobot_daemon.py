@@ -43,12 +43,13 @@ class MotorsServosLedsLeds(_rt.Flags):
 # --- messages of daemon --------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class MotorsServosLeds(_rt.Message):
     """Set both motors, eight servos and the LEDs (robotboard2interpreter.cpp, lines 55-296).
 
     The board obeys the motors and passes over the rest.
     """
+
+    __slots__ = ("leds", "left_motor", "right_motor", "servos")
 
     right_motor: int
     """Drive of the right motor, 1/32 percent, -3200..3200 (robotboard2interpreter.cpp)."""
@@ -103,6 +104,19 @@ class MotorsServosLeds(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        right_motor: int,
+        left_motor: int,
+        servos: list[int],
+        leds: MotorsServosLedsLeds | int,
+    ) -> None:
+        self.right_motor = right_motor
+        self.left_motor = left_motor
+        self.servos = servos
+        self.leds = leds
+
     right_motor_percent = _rt.Physical("right_motor")
     """Drive of the right motor in percent, -100..100."""
 
@@ -113,14 +127,22 @@ class MotorsServosLeds(_rt.Message):
 # --- messages of board ---------------------------------------------------------------------------
 
 
-@_rt.dataclass(slots=True, kw_only=True)
 class Status(_rt.Message):
     """A temperature, and currents and voltages of processor and motors (main.c, lines 102-173).
 
     The document does not say what they are measured at.
     """
 
-    reserved: int = 0
+    __slots__ = (
+        "cpu_current",
+        "cpu_voltage",
+        "motor_current",
+        "motor_voltage",
+        "pcb_temperature",
+        "reserved",
+    )
+
+    reserved: int
     """Kept for the processor's own thermometer, which is not in use; always 0, -32768..32767
     (main.c, lines 104-105)."""
     pcb_temperature: int
@@ -163,6 +185,23 @@ class Status(_rt.Message):
         )
     )
 
+    def __init__(
+        self,
+        *,
+        reserved: int = 0,
+        pcb_temperature: int,
+        cpu_current: int,
+        cpu_voltage: int,
+        motor_current: int,
+        motor_voltage: int,
+    ) -> None:
+        self.reserved = reserved
+        self.pcb_temperature = pcb_temperature
+        self.cpu_current = cpu_current
+        self.cpu_voltage = cpu_voltage
+        self.motor_current = motor_current
+        self.motor_voltage = motor_voltage
+
     pcb_temperature_degc = _rt.Physical("pcb_temperature")
     """Temperature of the circuit board in degC, -3276.8..3276.7."""
 
@@ -170,12 +209,16 @@ class Status(_rt.Message):
 # --- frames -------------------------------------------------------------------------------------
 
 
-@_rt.dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(_rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("type",)
 
     type: int
     """Tells which message this is."""
+
+    def __init__(self, type: int) -> None:
+        self._set(type)
 
 
 def _daemon_frame_spec() -> _rt.FrameSpec:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -21,6 +21,7 @@ from protogen.model.readings import physical, value_name
 from protogen.model.types import Field, Integer
 from protogen.model.wire import Unit
 from protogen.runtime.decoder import Decoder
+from protogen.runtime.values import as_dict
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ class Side:
         contents = Contents(self.protocol.message(name).fields, event.payload)
         if like is not None and like.contents == contents:
             contents = like.contents
-        parts = {f"frame.{part}": str(value) for part, value in asdict(event.parts).items()}
+        parts = {f"frame.{part}": str(value) for part, value in as_dict(event.parts).items()}
         return Reading(name, "", contents, parts)
 
 

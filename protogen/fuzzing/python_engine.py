@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from typing import Any, Literal
 
 from protogen.fuzzing.engine import Refused, Seen
@@ -11,6 +10,7 @@ from protogen.fuzzing.samples import Values
 from protogen.runtime.codec import Protocol
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.errors import EncodeError
+from protogen.runtime.values import as_dict
 
 
 class PythonEngine:
@@ -61,5 +61,5 @@ def _seen(event: Any) -> Seen:
     if event.kind != "message":
         return Seen(event.kind, event.size)
     message = event.message
-    parts = asdict(event.parts)
+    parts = as_dict(event.parts)
     return Seen(event.kind, event.size, message.NAME, event.payload, message.to_dict(), parts)

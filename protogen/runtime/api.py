@@ -6,12 +6,26 @@ What belongs to the reference is imported when it is first asked for.
 from typing import TYPE_CHECKING
 
 from protogen.runtime.codec import Encoder, Protocol
-from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.decoder import BytesLike, Decoder, Engine
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import CodecError, DecodeError, EncodeError, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEvent
-from protogen.runtime.late import importer, lazily
+from protogen.runtime.frame import (
+    AfterEnd,
+    Anywhere,
+    ChecksumPart,
+    CounterPart,
+    End,
+    FrameSpec,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    PayloadPart,
+    StartLiteral,
+    StartSet,
+    ValuePart,
+)
+from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.message import Message, Record, Sizes
 from protogen.runtime.number import Number
 from protogen.runtime.physical import (
@@ -23,8 +37,10 @@ from protogen.runtime.physical import (
     PhysicalOrNone,
 )
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.values import OMITTED, Frozen, as_dict, replace
 
 __all__ = [
+    "OMITTED",
     "AfterEnd",
     "Anywhere",
     "ArrayRule",
@@ -48,6 +64,7 @@ __all__ = [
     "Fraction",
     "FrameFormat",
     "FrameSpec",
+    "Frozen",
     "IdentityPart",
     "IntegerRule",
     "InvalidEvent",
@@ -78,29 +95,14 @@ __all__ = [
     "UnknownEvent",
     "ValuePart",
     "Violation",
-    "dataclass",
-    "field",
+    "as_dict",
     "lazily",
+    "replace",
 ]
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from protogen.runtime.frame import (
-        AfterEnd,
-        Anywhere,
-        ChecksumPart,
-        CounterPart,
-        End,
-        FrameSpec,
-        IdentityPart,
-        LengthPart,
-        LiteralPart,
-        PayloadPart,
-        StartLiteral,
-        StartSet,
-        ValuePart,
-    )
     from protogen.runtime.frame_format import FrameFormat
     from protogen.runtime.records import ArrayRule, FieldRules, StructRule, SwitchRule
     from protogen.runtime.rules import (
@@ -116,21 +118,6 @@ else:
         globals(),
         {
             "fractions": ("Fraction",),
-            ".frame": (
-                "AfterEnd",
-                "Anywhere",
-                "ChecksumPart",
-                "CounterPart",
-                "End",
-                "FrameSpec",
-                "IdentityPart",
-                "LengthPart",
-                "LiteralPart",
-                "PayloadPart",
-                "StartLiteral",
-                "StartSet",
-                "ValuePart",
-            ),
             ".frame_format": ("FrameFormat",),
             ".records": (
                 "ArrayRule",

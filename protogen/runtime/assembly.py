@@ -40,7 +40,7 @@ def encode_frame(
     numbers = _value_parts(layout, given, strict)
     numbers |= {part.name: value for part, value in zip(layout.identity, identity, strict=True)}
     wire = _Assembly(layout, numbers, payload).wire()
-    if sender.frame.ambiguous_cut or sender.kin(identity) is None:
+    if sender.frame.ambiguous_cut or sender.group(identity) is None:
         check_cut(sender, wire, payload)
     return wire
 

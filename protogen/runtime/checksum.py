@@ -14,7 +14,7 @@ from itertools import accumulate
 from typing import Any, Protocol
 from zlib import adler32
 
-from protogen.runtime.dataclass import dataclass
+from protogen.runtime.values import Frozen
 
 GREATEST_WIDTH = 64
 
@@ -97,11 +97,15 @@ def in_order(at: int, base: int, events: list[Any], contents: list[bytes], first
     return at
 
 
-@dataclass(frozen=True, slots=True)
-class Xor8:
+class Xor8(Frozen):
     """The exclusive or of all bytes and `init`."""
 
-    init: int = 0
+    __slots__ = ("init",)
+
+    init: int
+
+    def __init__(self, init: int = 0) -> None:
+        self._set(init)
 
     @property
     def width(self) -> int:
@@ -113,12 +117,16 @@ class Xor8:
         return xor_of(data) ^ self.init
 
 
-@dataclass(frozen=True, slots=True)
-class Sum8:
+class Sum8(Frozen):
     """The sum of all bytes and `init` modulo 256; `negated`: what brings that sum to 0."""
 
-    init: int = 0
-    negated: bool = False
+    __slots__ = ("init", "negated")
+
+    init: int
+    negated: bool
+
+    def __init__(self, init: int = 0, negated: bool = False) -> None:
+        self._set(init, negated)
 
     @property
     def width(self) -> int:
@@ -133,14 +141,18 @@ class Sum8:
         return (-total if self.negated else total) & 0xFF
 
 
-@dataclass(frozen=True, slots=True)
-class Fletcher16:
+class Fletcher16(Frozen):
     """Fletcher's checksum of bytes modulo 255, or 256 as UBX has it.
 
     The sum of the bytes is the low byte, the sum of those running sums the high byte.
     """
 
-    modulus: int = 255
+    __slots__ = ("modulus",)
+
+    modulus: int
+
+    def __init__(self, modulus: int = 255) -> None:
+        self._set(modulus)
 
     @property
     def width(self) -> int:
@@ -152,8 +164,7 @@ class Fletcher16:
         return ((sum(accumulate(data)) % self.modulus) << 8) | (sum(data) % self.modulus)
 
 
-@dataclass(frozen=True, slots=True)
-class Crc:
+class Crc(Frozen):
     """A cyclic redundancy check by its Rocksoft parameters, as the CRC RevEng catalogue gives them.
 
     `width` is 1..64 bits. `poly` is the polynomial without its top bit, `init` the register before
@@ -164,19 +175,30 @@ class Crc:
     Raises ValueError when the width is out of range or a parameter has more bits than the width.
     """
 
+    __slots__ = ("init", "poly", "refin", "refout", "width", "xorout")
+
     width: int
     poly: int
-    init: int = 0
-    refin: bool = False
-    refout: bool = False
-    xorout: int = 0
+    init: int
+    refin: bool
+    refout: bool
+    xorout: int
 
-    def __post_init__(self) -> None:
-        if not 1 <= self.width <= GREATEST_WIDTH:
-            raise ValueError(f"a CRC has 1..{GREATEST_WIDTH} bits, not {self.width}")
-        for name in ("poly", "init", "xorout"):
-            if not 0 <= getattr(self, name) < 1 << self.width:
-                raise ValueError(f"{name} does not fit {self.width} bits")
+    def __init__(
+        self,
+        width: int,
+        poly: int,
+        init: int = 0,
+        refin: bool = False,
+        refout: bool = False,
+        xorout: int = 0,
+    ) -> None:
+        if not 1 <= width <= GREATEST_WIDTH:
+            raise ValueError(f"a CRC has 1..{GREATEST_WIDTH} bits, not {width}")
+        for name, value in (("poly", poly), ("init", init), ("xorout", xorout)):
+            if not 0 <= value < 1 << width:
+                raise ValueError(f"{name} does not fit {width} bits")
+        self._set(width, poly, init, refin, refout, xorout)
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0 .. 2**width - 1."""

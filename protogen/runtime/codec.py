@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 
-from protogen.runtime import late
+from protogen.runtime.assembly import encode_frame
 from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import FrameEvent, UnknownEvent
+from protogen.runtime.frame import CounterPart
+from protogen.runtime.lines import encode_line as line_to_bytes
+from protogen.runtime.lines import split_parts
 from protogen.runtime.message import Message, build_payload
+from protogen.runtime.reading import read_frame
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
-
-if TYPE_CHECKING:
-    from protogen.runtime.frame import CounterPart
 
 
 class Protocol(Generic[MessageT_co, PartsT_co]):
@@ -60,15 +61,15 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         Raises EncodeError where something is missing, or the identity belongs to a message.
         """
         spec = self.sender(sender)
-        identity, given = late.split_parts(spec, parts)
-        kin = spec.kin(identity)
-        if kin is not None:
+        identity, given = split_parts(spec, parts)
+        group = spec.group(identity)
+        if group is not None:
             if not identity:
                 problem = f"frames of {spec.name} have no identity, so none of them is unknown"
                 raise EncodeError("message", problem)
-            problem = f"{identity} is the identity of {kin.messages[0].NAME}"
+            problem = f"{identity} is the identity of {group.messages[0].NAME}"
             raise EncodeError(spec.layout.identity[0].name, problem)
-        return late.encode_frame(spec, identity, payload, given, strict=False)
+        return encode_frame(spec, identity, payload, given, strict=False)
 
     def encode_line(self, line: Mapping[str, Any]) -> bytes:
         """The bytes that a JSON line of a decoder stands for. Raises EncodeError."""
@@ -78,14 +79,14 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         spec = self.senders.get(str(name))
         if spec is None:
             raise EncodeError("sender", f"{name!r} sends nothing; {', '.join(self.senders)} do")
-        return late.encode_line(spec, line)
+        return line_to_bytes(spec, line)
 
     def read(self, frame: BytesLike, sender: str) -> FrameEvent[MessageT_co, PartsT_co]:
         """The event of exactly one valid frame. Raises DecodeError.
 
         Raises TypeError for what is not like bytes.
         """
-        return late.read_frame(self.sender(sender), octets(frame))
+        return read_frame(self.sender(sender), octets(frame))
 
     def decode(self, frame: BytesLike, sender: str, engine: Engine = "construct") -> MessageT_co:
         """The message of exactly one frame, as the reference reads it. Raises DecodeError.
@@ -118,7 +119,7 @@ def _encode(
     sender: SenderSpec[Any, Any], message: Message, parts: Mapping[str, int | None], strict: bool
 ) -> bytes:
     payload = build_payload(message, strict)
-    return late.encode_frame(sender, message.IDENTITY, payload, parts, strict)
+    return encode_frame(sender, message.IDENTITY, payload, parts, strict)
 
 
 class Encoder:
@@ -131,7 +132,7 @@ class Encoder:
         self._sender = sender
         self._encode = encode or self._encode_by_reference
         self._counters = {
-            part.name: part for part in sender.layout.values if isinstance(part, late.CounterPart)
+            part.name: part for part in sender.layout.values if isinstance(part, CounterPart)
         }
         self._next = {
             name: part.least if part.default is None else part.default

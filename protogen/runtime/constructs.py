@@ -19,14 +19,14 @@ from __future__ import annotations
 import copyreg
 import io
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any, BinaryIO, Literal, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
 from construct import Construct, Container, Pass, Renamed
 
-from protogen.runtime.errors import ByteError, Reason
+from protogen.runtime.errors import ByteError, PayloadFault, Reason
 from protogen.runtime.number import ByteOrder, Number
+from protogen.runtime.values import Frozen
 
 __all__ = [
     "Cases",
@@ -57,20 +57,24 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class Count:
+class Count(Frozen):
     """The earlier field that gives a number of bytes or elements, from `least` to `greatest`."""
+
+    __slots__ = ("field", "greatest", "least")
 
     field: str
     least: int
     greatest: int
+
+    def __init__(self, field: str, least: int, greatest: int) -> None:
+        self._set(field, least, greatest)
 
 
 Extent = int | str | Count
 """A number of bytes or elements, or the earlier field that gives it."""
 
 
-class PayloadError(construct.ConstructError):  # type: ignore[misc]
+class PayloadError(construct.ConstructError, PayloadFault):  # type: ignore[misc]
     """Bytes are not this payload, or a value is not what the payload can hold.
 
     `reason` is `size` (bytes are missing or left over), `value` (constant, padding, closed enum,

@@ -8,8 +8,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from protogen.runtime import late
-from protogen.runtime.errors import ByteError, Reason
+from protogen.runtime.errors import ByteError, PayloadFault, Reason
 from protogen.runtime.frame import (
     ChecksumPart,
     LengthPart,
@@ -19,7 +18,7 @@ from protogen.runtime.frame import (
     PayloadPart,
 )
 from protogen.runtime.layout import Slice, is_optional
-from protogen.runtime.sender import Kin, SenderSpec
+from protogen.runtime.sender import IdentityGroup, SenderSpec
 
 _UNLIMITED = sys.maxsize
 
@@ -50,7 +49,7 @@ class Content:
         """Whether the payload has begun, and only what follows will tell its size."""
         self.is_full = False
         """Whether all parts are there."""
-        self._kin: Kin[Any] | None = None
+        self._group: IdentityGroup[Any] | None = None
         self._is_measuring = False
         self._limit = _UNLIMITED  # The content has no more bytes than this.
         self._next = -1  # Where the part that is due ends.
@@ -152,9 +151,13 @@ class Content:
 
     def _identify(self) -> None:
         """Find the messages of the identity, and what they say about the size."""
-        self._kin = self._sender.kin(self._sender.identity(self.numbers))
-        if self._kin is not None and self._layout.length is None and self._kin.fixed is not None:
-            self._set_payload(self._kin.fixed)
+        self._group = self._sender.group(self._sender.identity(self.numbers))
+        if (
+            self._group is not None
+            and self._layout.length is None
+            and self._group.fixed is not None
+        ):
+            self._set_payload(self._group.fixed)
 
     def _set_payload(self, size: int) -> None:
         self.payload_size = size
@@ -164,7 +167,7 @@ class Content:
         if self.payload_size is not None:
             self._next = len(self.bytes) + self.payload_size
             self._clear_bits = self._sender.frame.seven_bit
-        elif self._layout.end or self._kin is None:
+        elif self._layout.end or self._group is None:
             self._open_payload()
         else:
             self._is_measuring = True
@@ -175,17 +178,17 @@ class Content:
         self.is_open = True
         # With parts behind the payload, its last bytes can't be told from theirs yet.
         self._clear_bits = self._sender.frame.seven_bit and not self._layout.tail
-        if self._kin is not None:
-            tail = self._layout.tail_size(self._kin.greatest)
-            self._limit = self._layout.head_size + self._kin.greatest + tail
+        if self._group is not None:
+            tail = self._layout.tail_size(self._group.greatest)
+            self._limit = self._layout.head_size + self._group.greatest + tail
 
     def _measure(self) -> None:
         """Try to read a message that nothing delimits but itself."""
-        assert self._kin is not None
+        assert self._group is not None
         start = bytes(self.bytes[self._layout.head_size :])
         try:
-            self._set_payload(self._kin.measure(start))
-        except late.PayloadError as error:
+            self._set_payload(self._group.measure(start))
+        except PayloadFault as error:
             if not error.missing:
                 raise Rejected(error.reason, error.problem) from None
             self._next = len(self.bytes) + error.missing

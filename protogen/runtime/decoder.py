@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, Literal
+from typing import Generic, Literal
 
-from protogen.runtime import late
-from protogen.runtime.errors import Reason
+from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.frame import AfterEnd, Anywhere
+from protogen.runtime.machine import Candidate, Cut, Failure
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
-
-if TYPE_CHECKING:
-    from protogen.runtime.machine import Candidate, Cut, Failure
+from protogen.runtime.starts import starts_of
 
 Engine = Literal["fast", "construct"]
 """What decodes and encodes. `construct` is the reference: byte by byte, and construct's own parser.
@@ -52,13 +51,13 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._sender = sender
         self._cut = sender.cut if engine == "fast" else None
         self._waits = sender.waits if engine == "fast" else None
-        self._starts = late.starts_of(sender.frame)
+        self._starts = starts_of(sender.frame)
         is_alone = not self._starts.context and not sender.layout.shares_delimiter
         self._lane = self._cut if is_alone else None
         """Cuts what comes in, where nothing of earlier frames tells how a frame starts."""
         self._least = sender.frame.least
         self._greatest = sender.frame.greatest
-        self._is_anywhere = isinstance(sender.frame.start, late.Anywhere)
+        self._is_anywhere = isinstance(sender.frame.start, Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
         self._behind = bytearray()  # What came behind it, and the candidate has taken.
@@ -207,7 +206,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return False
 
     def _next_start(self) -> int:
-        if self._is_fresh and isinstance(self._sender.frame.start, late.AfterEnd):
+        if self._is_fresh and isinstance(self._sender.frame.start, AfterEnd):
             return self._scan
         return self._starts.find(self._data, self._scan, len(self._data) + 1)
 
@@ -221,7 +220,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return True
         self._is_waiting = not final and self._still_waits(start)
         if not self._is_waiting:
-            self._candidate = late.Candidate(self._sender)
+            self._candidate = Candidate(self._sender)
         return not self._is_waiting
 
     def _still_waits(self, start: int) -> bool:
@@ -233,7 +232,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._is_waiting = False
         self._is_fresh = False
         self._pushed = self._scan
-        self._candidate = late.Candidate(self._sender)
+        self._candidate = Candidate(self._sender)
 
     def _take_up(self) -> None:
         """Go on with what was waited for: a whole frame now, or something for a candidate."""
@@ -273,7 +272,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return False
 
     def _judge(self, verdict: Cut | Failure) -> bool:
-        self._failure = self._read(verdict) if isinstance(verdict, late.Cut) else verdict
+        self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
         if self._failure is None:
             self._give_up(self._done)
             if self._sender.layout.shares_delimiter and not self._cut_frames():
@@ -284,14 +283,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Where one literal starts and ends frames, that of a valid frame may do both."""
         self._pushed = self._scan
         self._shares_start = True
-        self._candidate = late.Candidate(self._sender, shares_start=True)
+        self._candidate = Candidate(self._sender, shares_start=True)
 
     def _read(self, cut: Cut) -> Failure | None:
         """Deliver the frame, unless its payload is not that of its message."""
         try:
             message = self._sender.read(cut.numbers, cut.payload)
-        except late.PayloadError as error:
-            return late.Failure(cut.size, error.reason, str(error))
+        except PayloadFault as error:
+            return Failure(cut.size, error.reason, str(error))
         self._frame(cut, message)
         return None
 

@@ -55,6 +55,27 @@ class DecodeError(CodecError):
         return f"{place}: {self.problem} ({self.reason})"
 
 
+class PayloadFault(Exception):  # noqa: N818 - `constructs.PayloadError` is the error
+    """Bytes that are not this payload, or a value that it can't hold: construct's kind of error.
+
+    It stands here for those who take it up, and should not wait for construct.
+    """
+
+    reason: Reason
+    problem: str
+    path: str
+    offset: int
+    missing: int
+
+
+class Unclear(Exception):  # noqa: N818 - it is no error: the reference decides
+    """These bytes or values are not plainly in order."""
+
+
+ANYTHING = Exception
+"""What a function of the fast engine may raise; a message may be called like the exception."""
+
+
 class ByteError(ValueError):
     """Bytes that stand for no value: what `Number.decode` and its kind raise."""
 

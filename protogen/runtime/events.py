@@ -6,20 +6,21 @@ The raw bytes of all events, joined, are the input.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal
+from typing import Any, ClassVar, Generic, Literal, Self
 
-from protogen.runtime import late
-from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.errors import EncodeError, Reason
+from protogen.runtime.extraction import payload_of
+from protogen.runtime.lines import encode_line
+from protogen.runtime.machine import Cut
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
-
-if TYPE_CHECKING:
-    from protogen.runtime.machine import Cut
+from protogen.runtime.values import Frozen, Value
 
 
-@dataclass(slots=True, repr=False, init=False)
-class MessageEvent(Generic[MessageT_co, PartsT_co]):
+class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     """A valid frame of a known message."""
+
+    __slots__ = ("codec", "message", "numbers", "offset", "raw")
+    __fields__ = ("offset", "raw", "numbers", "message", "codec")
 
     kind: ClassVar[Literal["message"]] = "message"
 
@@ -35,6 +36,17 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     # Not frozen, without a constructor, and what the raw bytes tell worked out when it is asked
     # for: of some streams a second holds millions.
 
+    def __replace__(self, /, **changes: Any) -> Self:
+        event = type(self)()
+        for name in self.__fields__:
+            setattr(event, name, changes.pop(name) if name in changes else getattr(self, name))
+        if changes:
+            raise TypeError(f"a message event has no field {next(iter(changes))!r}")
+        return event
+
+    def __hash__(self) -> int:
+        return hash((self.offset, self.raw))  # A message may be changed, and has no hash.
+
     @property
     def sender(self) -> str:
         """The endpoint whose bytes are decoded."""
@@ -49,7 +61,7 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
     @property
     def payload(self) -> bytes:
         """The message's bytes in the frame."""
-        return late.payload_of(self.codec, self.raw)
+        return payload_of(self.codec, self.raw)
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")
@@ -68,9 +80,11 @@ class MessageEvent(Generic[MessageT_co, PartsT_co]):
         return _exact(line, self.raw, self.codec)
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownEvent(Generic[PartsT_co]):
+class UnknownEvent(Frozen, Generic[PartsT_co]):
     """A valid frame whose identity belongs to no message."""
+
+    __slots__ = ("codec", "offset", "parts", "payload", "raw", "sender")
+    __compared__ = ("offset", "raw", "sender", "parts", "payload")
 
     kind: ClassVar[Literal["unknown"]] = "unknown"
 
@@ -79,7 +93,18 @@ class UnknownEvent(Generic[PartsT_co]):
     sender: str
     parts: PartsT_co
     payload: bytes
-    codec: SenderSpec[Any, Any] = field(repr=False, compare=False)
+    codec: SenderSpec[Any, Any]
+
+    def __init__(
+        self,
+        offset: int,
+        raw: bytes,
+        sender: str,
+        parts: PartsT_co,
+        payload: bytes,
+        codec: SenderSpec[Any, Any],
+    ) -> None:
+        self._set(offset, raw, sender, parts, payload, codec)
 
     @property
     def size(self) -> int:
@@ -94,9 +119,11 @@ class UnknownEvent(Generic[PartsT_co]):
         return _exact(line, self.raw, self.codec)
 
 
-@dataclass(frozen=True, slots=True)
-class InvalidEvent:
+class InvalidEvent(Frozen):
     """Bytes that are no frame."""
+
+    __slots__ = ("offset", "problem", "raw", "reason", "sender")
+    __compared__ = ("offset", "raw", "sender", "reason")
 
     kind: ClassVar[Literal["invalid"]] = "invalid"
 
@@ -104,8 +131,13 @@ class InvalidEvent:
     raw: bytes
     sender: str
     reason: Reason
-    problem: str = field(default="", compare=False)
+    problem: str
     """The reason in more words."""
+
+    def __init__(
+        self, offset: int, raw: bytes, sender: str, reason: Reason, problem: str = ""
+    ) -> None:
+        self._set(offset, raw, sender, reason, problem)
 
     @property
     def size(self) -> int:
@@ -159,6 +191,6 @@ def _exact(line: dict[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> dic
 
 def _gives_back(line: Mapping[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> bool:
     try:
-        return late.encode_line(codec, line) == raw
+        return encode_line(codec, line) == raw
     except EncodeError:
         return False

@@ -10,22 +10,22 @@ import struct
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol, TypeVar
 
-from protogen.runtime import late
-from protogen.runtime.dataclass import dataclass
 from protogen.runtime.decoder import octets
 from protogen.runtime.enums import KEPT, Flags, OpenEnum
+from protogen.runtime.errors import ANYTHING, Unclear
 from protogen.runtime.events import UnknownEvent
-from protogen.runtime.late import frame_formats
+from protogen.runtime.extraction import payload_of
+from protogen.runtime.formats import frame_formats
 from protogen.runtime.message import Message
-from protogen.runtime.number import ByteOrder, Number
+from protogen.runtime.number import BYTES, ByteOrder, Number
 from protogen.runtime.pairs import (
     PairLists,
     Pairs,
-    Unclear,
     pair_codes,
     pair_values,
 )
 from protogen.runtime.sender import Cutter, SenderSpec
+from protogen.runtime.values import Frozen
 
 AnyT = TypeVar("AnyT")
 
@@ -61,12 +61,6 @@ class _New(Protocol):
 
 new: _New = object.__new__
 """An object without the attributes that its class's `__init__` would set."""
-
-ANYTHING = Exception
-"""What a function of the fast engine may raise; a message may be called like the exception."""
-
-BYTES = tuple(bytes((byte,)) for byte in range(256))
-"""Each byte by its value."""
 
 
 def unknown(
@@ -162,7 +156,7 @@ def _writer(
             parts = [least.get(name) for name in arguments]
         if tables is not None and not tables.are_filled:
             tables.fill()
-        return late.payload_of(sender, message.__encode__(encoders, sender.name, *parts))
+        return payload_of(sender, message.__encode__(encoders, sender.name, *parts))
 
     return write_payload
 
@@ -310,12 +304,16 @@ class Packers(dict[int, Callable[..., bytes]]):
 # --- floats of 7 bits a byte --------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class SevenBitFloat:
+class SevenBitFloat(Frozen):
     """An IEEE 754 number whose bits are those of an unsigned integer, 7 bits a byte."""
+
+    __slots__ = ("layout", "number")
 
     number: Number
     layout: struct.Struct
+
+    def __init__(self, number: Number, layout: struct.Struct) -> None:
+        self._set(number, layout)
 
     def decode(self, data: bytes) -> float:
         """The number of these bytes. Raises ByteError."""

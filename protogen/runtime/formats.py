@@ -1,15 +1,17 @@
-"""The pieces that a generated `FORMAT` is made of, imported when the first of them is used.
+"""What a generated `FORMAT` is made of, and frames as construct declarations, when first used.
 
-They are those of `constructs`, which needs construct.
+The pieces are those of `constructs`, which needs construct.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from protogen.runtime.constructs import *  # noqa: F403 - its `__all__` says which
     from protogen.runtime.constructs import Struct
+    from protogen.runtime.sender import SenderSpec
 
 
 def empty() -> Struct:
@@ -17,6 +19,25 @@ def empty() -> Struct:
     from protogen.runtime import constructs
 
     return constructs.Struct()
+
+
+def frame_formats(
+    namespace: dict[str, Any], **senders: SenderSpec[Any, Any]
+) -> Callable[[str], Any]:
+    """The `__getattr__` of a generated module: frames as construct declarations, by their names."""
+    for name in senders:
+        namespace.pop(name, None)  # What a module made before it was loaded again is outdated.
+
+    def get(name: str) -> Any:
+        sender = senders.get(name)
+        if sender is None:
+            raise AttributeError(f"module {namespace['__name__']!r} has no attribute {name!r}")
+        from protogen.runtime.frame_format import FrameFormat
+
+        namespace[name] = made = FrameFormat(sender)
+        return made
+
+    return get
 
 
 if not TYPE_CHECKING:

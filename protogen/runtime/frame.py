@@ -6,24 +6,24 @@ and only stated here.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from protogen.runtime.dataclass import dataclass
+from protogen.runtime.checksum import Checksum
 from protogen.runtime.number import Number
-
-if TYPE_CHECKING:
-    from protogen.runtime.checksum import Checksum
-    from protogen.runtime.transparency import Transparency
+from protogen.runtime.transparency import Transparency
+from protogen.runtime.values import Frozen
 
 # --- parts ------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class LiteralPart:
+class LiteralPart(Frozen):
     """Fixed bytes."""
+
+    __slots__ = ("name", "value")
 
     name: str
     value: bytes
+
+    def __init__(self, name: str, value: bytes) -> None:
+        self._set(name, value)
 
     @property
     def size(self) -> int:
@@ -31,12 +31,16 @@ class LiteralPart:
         return len(self.value)
 
 
-@dataclass(frozen=True, slots=True)
-class NumberPart:
+class NumberPart(Frozen):
     """A part that is one integer."""
+
+    __slots__ = ("name", "number")
 
     name: str
     number: Number
+
+    def __init__(self, name: str, number: Number) -> None:
+        self._set(name, number)
 
     @property
     def size(self) -> int:
@@ -44,55 +48,90 @@ class NumberPart:
         return self.number.size
 
 
-@dataclass(frozen=True, slots=True)
 class IdentityPart(NumberPart):
     """Tells, alone or with others, which message the frame carries."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class LengthPart(NumberPart):
     """The number of bytes of the parts that it `counts`, before any stuffing.
 
     The payload is one of them; the length itself may be. `least` and `greatest` bound its value.
     """
 
+    __slots__ = ("counts", "greatest", "least")
+
     counts: tuple[str, ...]
     least: int
     greatest: int
 
+    def __init__(
+        self, name: str, number: Number, counts: tuple[str, ...], least: int, greatest: int
+    ) -> None:
+        self._set(name, number, counts, least, greatest)
 
-@dataclass(frozen=True, slots=True)
+
 class ValuePart(NumberPart):
     """A number that the caller gives, from `least` to `greatest`, and that a receiver hands on."""
 
+    __slots__ = ("default", "greatest", "least")
+
     least: int
     greatest: int
-    default: int | None = None
+    default: int | None
+
+    def __init__(
+        self, name: str, number: Number, least: int, greatest: int, default: int | None = None
+    ) -> None:
+        self._set(name, number, least, greatest, default)
 
 
-@dataclass(frozen=True, slots=True)
 class CounterPart(ValuePart):
     """Counts frames from `default` or `least` on; behind `greatest` comes `least`."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
-class PayloadPart:
+    def __init__(
+        self, name: str, number: Number, least: int, greatest: int, default: int | None = None
+    ) -> None:
+        self._set(name, number, least, greatest, default)
+
+
+class PayloadPart(Frozen):
     """The message's fields."""
 
-    name: str = "payload"
-    size: int = 0
+    __slots__ = ("name", "size")
+
+    name: str
+    size: int
     """The payload's bytes are not counted among those of the parts."""
 
+    def __init__(self, name: str = "payload", size: int = 0) -> None:
+        self._set(name, size)
 
-@dataclass(frozen=True, slots=True)
+
 class ChecksumPart(NumberPart):
     """A checksum of other parts: of their bytes before any stuffing, or as they are on the wire."""
 
+    __slots__ = ("algorithm", "covers", "over_wire", "when_payload")
+
     algorithm: Checksum
     covers: tuple[str, ...]
-    over_wire: bool = False
-    when_payload: bool = False
+    over_wire: bool
+    when_payload: bool
     """Absent where the payload is empty."""
+
+    def __init__(
+        self,
+        name: str,
+        number: Number,
+        algorithm: Checksum,
+        covers: tuple[str, ...],
+        over_wire: bool = False,
+        when_payload: bool = False,
+    ) -> None:
+        self._set(name, number, algorithm, covers, over_wire, when_payload)
 
 
 Part = LiteralPart | IdentityPart | LengthPart | ValuePart | PayloadPart | ChecksumPart
@@ -101,52 +140,65 @@ Part = LiteralPart | IdentityPart | LengthPart | ValuePart | PayloadPart | Check
 # --- start and end ----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class StartLiteral:
+class StartLiteral(Frozen):
     """A frame starts with these bytes. Protected: they occur nowhere else in a valid frame."""
+
+    __slots__ = ("protected", "value")
 
     value: bytes
     protected: bool
 
+    def __init__(self, value: bytes, protected: bool) -> None:
+        self._set(value, protected)
 
-@dataclass(frozen=True, slots=True)
-class StartSet:
+
+class StartSet(Frozen):
     """A frame starts with a byte from `least` to `greatest`.
 
     Protected: no other byte of a valid frame is one of them.
     """
 
+    __slots__ = ("greatest", "least", "protected")
+
     least: int
     greatest: int
     protected: bool
 
+    def __init__(self, least: int, greatest: int, protected: bool) -> None:
+        self._set(least, greatest, protected)
 
-@dataclass(frozen=True, slots=True)
-class AfterEnd:
+
+class AfterEnd(Frozen):
     """A frame starts behind an end, or where the stream starts."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
-class Anywhere:
+
+class Anywhere(Frozen):
     """Nothing marks the start: sizes and the checksum tell whether a frame starts at a byte."""
+
+    __slots__ = ()
 
 
 Start = StartLiteral | StartSet | AfterEnd | Anywhere
 
 
-@dataclass(frozen=True, slots=True)
-class End:
+class End(Frozen):
     """A frame ends with these bytes. Protected: they occur nowhere else in a valid frame."""
+
+    __slots__ = ("protected", "value")
 
     value: bytes
     protected: bool
+
+    def __init__(self, value: bytes, protected: bool) -> None:
+        self._set(value, protected)
 
 
 # --- the frame ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class FrameSpec:
+class FrameSpec(Frozen):
     """The frame of one sender.
 
     `parts` are in wire order, one of them the payload. `stuffed` are those under `transparency`,
@@ -154,15 +206,54 @@ class FrameSpec:
     `least` that of the smallest. `greatest_payload` is the most that the payload can have.
     """
 
+    __slots__ = (
+        "ambiguous_cut",
+        "end",
+        "greatest",
+        "greatest_payload",
+        "least",
+        "parts",
+        "seven_bit",
+        "start",
+        "stuffed",
+        "transparency",
+    )
+
     parts: tuple[Part, ...]
     start: Start
     end: End | None
     least: int
     greatest: int
     greatest_payload: int
-    transparency: Transparency | None = None
-    stuffed: tuple[str, ...] = ()
-    seven_bit: bool = False
+    transparency: Transparency | None
+    stuffed: tuple[str, ...]
+    seven_bit: bool
     """Whether every payload byte has its most significant bit clear."""
-    ambiguous_cut: bool = False
+    ambiguous_cut: bool
     """Whether an encoder has to check that a decoder ends the frame where it ends."""
+
+    def __init__(  # noqa: PLR0913 - an argument for each field
+        self,
+        parts: tuple[Part, ...],
+        start: Start,
+        end: End | None,
+        least: int,
+        greatest: int,
+        greatest_payload: int,
+        transparency: Transparency | None = None,
+        stuffed: tuple[str, ...] = (),
+        seven_bit: bool = False,
+        ambiguous_cut: bool = False,
+    ) -> None:
+        self._set(
+            parts,
+            start,
+            end,
+            least,
+            greatest,
+            greatest_payload,
+            transparency,
+            stuffed,
+            seven_bit,
+            ambiguous_cut,
+        )

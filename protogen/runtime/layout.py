@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protogen.runtime.dataclass import dataclass
 from protogen.runtime.frame import (
     AfterEnd,
     ChecksumPart,
@@ -18,6 +17,7 @@ from protogen.runtime.frame import (
     StartSet,
     ValuePart,
 )
+from protogen.runtime.values import Frozen
 
 
 def is_optional(part: Part) -> bool:
@@ -25,13 +25,17 @@ def is_optional(part: Part) -> bool:
     return isinstance(part, ChecksumPart) and part.when_payload
 
 
-@dataclass(frozen=True, slots=True)
-class Slice:
+class Slice(Frozen):
     """Where a part lies in a frame's content: its bytes before stuffing, without the end."""
+
+    __slots__ = ("end", "part", "start")
 
     part: Part
     start: int
     end: int
+
+    def __init__(self, part: Part, start: int, end: int) -> None:
+        self._set(part, start, end)
 
 
 class Layout:

@@ -9,30 +9,38 @@ from __future__ import annotations
 from typing import Any
 
 from protogen.runtime.content import Content, Rejected
-from protogen.runtime.dataclass import dataclass
 from protogen.runtime.errors import Reason
 from protogen.runtime.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
 from protogen.runtime.layout import Slice
 from protogen.runtime.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
+from protogen.runtime.values import Frozen
 
 
-@dataclass(frozen=True, slots=True)
-class Cut:
+class Cut(Frozen):
     """A complete frame whose length and checksums are right: the values of parts, the payload."""
+
+    __slots__ = ("numbers", "payload", "size")
 
     size: int
     numbers: dict[str, int]
     payload: bytes
 
+    def __init__(self, size: int, numbers: dict[str, int], payload: bytes) -> None:
+        self._set(size, numbers, payload)
 
-@dataclass(frozen=True, slots=True)
-class Failure:
+
+class Failure(Frozen):
     """The first `size` bytes of a candidate, which are no frame."""
+
+    __slots__ = ("problem", "reason", "size")
 
     size: int
     reason: Reason
     problem: str
+
+    def __init__(self, size: int, reason: Reason, problem: str) -> None:
+        self._set(size, reason, problem)
 
 
 class Candidate:

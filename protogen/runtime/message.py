@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from protogen.runtime import late
-from protogen.runtime.dataclass import dataclass
-from protogen.runtime.errors import DecodeError, EncodeError
-from protogen.runtime.pairs import Unclear
+from protogen.runtime.errors import DecodeError, EncodeError, PayloadFault, Unclear
+from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
     from protogen.runtime.constructs import Construct
@@ -17,13 +16,24 @@ if TYPE_CHECKING:
     from protogen.runtime.rules import Violation
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+def _records() -> ModuleType:
+    """The functions of the reference, imported where values have to be looked at one by one."""
+    from protogen.runtime import records
+
+    return records
+
+
+class Sizes(Frozen):
     """Sizes in bytes: `least`, `least + step`, ... up to `greatest`."""
+
+    __slots__ = ("greatest", "least", "step")
 
     least: int
     greatest: int
-    step: int = 1
+    step: int
+
+    def __init__(self, least: int, greatest: int, step: int = 1) -> None:
+        self._set(least, greatest, step)
 
     @property
     def fixed(self) -> int | None:
@@ -40,10 +50,13 @@ class Sizes:
         return f"{self.least}..{self.greatest}{steps}"
 
 
-class Record:
-    """A dataclass with a rule for each field: a message, or a struct inside of one."""
+class Record(Value):
+    """Fields with a rule for each: a message, or a struct inside of one."""
 
     __slots__ = ()
+
+    def __init__(self) -> None:
+        """Without fields, unless the class has some."""
 
     if TYPE_CHECKING:
         FORMAT: ClassVar[Construct]
@@ -56,7 +69,8 @@ class Record:
 
         A decoder keeps them. Strict encoding refuses the forbidden ones among them.
         """
-        return late.record_violations(self, late.outermost())
+        found: list[Violation] = _records().record_violations(self)
+        return found
 
     def to_dict(self) -> dict[str, Any]:
         """The fields for JSON.
@@ -64,7 +78,8 @@ class Record:
         Numbers are raw; bytes are hexadecimal text; not-a-number and the infinities, for which
         JSON has no numbers, are the texts `nan`, `inf` and `-inf`; structs are mappings.
         """
-        return late.record_to_json(self, late.outermost())
+        shown: dict[str, Any] = _records().record_to_json(self)
+        return shown
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -73,7 +88,8 @@ class Record:
         Raises EncodeError with the field's path where a field is missing, unknown or of another
         kind. Whether the values can be sent is asked when they are.
         """
-        return late.record_from_json(cls, data, late.outermost())
+        record: Self = _records().record_from_json(cls, data)
+        return record
 
 
 class Message(Record):
@@ -136,7 +152,7 @@ class Message(Record):
                 return message
         try:
             return cls.parse_payload(payload)
-        except late.PayloadError as error:
+        except PayloadFault as error:
             raise DecodeError(
                 error.reason, error.problem, offset=error.offset, path=error.path
             ) from None
@@ -144,19 +160,22 @@ class Message(Record):
     @classmethod
     def parse_payload(cls, payload: bytes) -> Self:
         """The same, but raises construct's kind of error: PayloadError."""
+        from protogen.runtime.constructs import PayloadError, whole  # It takes long to import.
+
         if len(payload) not in cls.SIZES:
             problem = f"{cls.NAME} has {cls.SIZES} bytes of payload, not {len(payload)}"
-            raise late.PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
-        raw = late.whole(cls.FORMAT).parse(payload)
-        return late.record_from_wire(cls, raw, late.outermost())
+            raise PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
+        raw = whole(cls.FORMAT).parse(payload)
+        message: Self = _records().record_from_wire(cls, raw)
+        return message
 
 
 def build_payload(message: Message, strict: bool = True) -> bytes:
     """The payload of a message as construct builds it. Raises EncodeError."""
-    values = late.record_to_wire(message, late.outermost(), strict)
+    values = _records().record_to_wire(message, strict)
     try:
         payload = bytes(type(message).FORMAT.build(values))
-    except late.PayloadError as error:
+    except PayloadFault as error:
         raise EncodeError(error.path, error.problem) from None
     if len(payload) not in message.SIZES:
         problem = f"makes {len(payload)} bytes of payload; {message.NAME} has {message.SIZES}"

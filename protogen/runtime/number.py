@@ -6,29 +6,36 @@ import operator
 from collections.abc import Iterable
 from typing import Literal
 
-from protogen.runtime.dataclass import dataclass, field
 from protogen.runtime.errors import ByteError, EncodeError
+from protogen.runtime.values import Frozen
 
 ByteOrder = Literal["little", "big"]
 
+BYTES = tuple(bytes((byte,)) for byte in range(256))
+"""Each byte by its value."""
 
-@dataclass(frozen=True, slots=True)
-class Number:
+
+class Number(Frozen):
     """An integer of `bits` bits in as few whole bytes as hold it.
 
     A byte carries 8 bits, or with `seven_bit` 7 bits below a clear most significant bit. The bits
     above `bits` are zero, also for signed integers, which are two's complement in `bits` bits.
     """
 
+    __slots__ = ("bits", "order", "seven_bit", "signed", "size")
+
     bits: int
-    signed: bool = False
-    order: ByteOrder = "little"
-    seven_bit: bool = False
-    size: int = field(init=False, repr=False)
+    signed: bool
+    order: ByteOrder
+    seven_bit: bool
+    size: int
     """Bytes on the wire."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "size", -(-self.bits // (7 if self.seven_bit else 8)))
+    def __init__(
+        self, bits: int, signed: bool = False, order: ByteOrder = "little", seven_bit: bool = False
+    ) -> None:
+        self._set(bits, signed, order, seven_bit)
+        object.__setattr__(self, "size", -(-bits // (7 if seven_bit else 8)))
 
     @property
     def least(self) -> int:

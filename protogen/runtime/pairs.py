@@ -8,12 +8,9 @@ from array import array
 from collections.abc import Sequence
 from functools import lru_cache
 
-from protogen.runtime.dataclass import dataclass
+from protogen.runtime.errors import Unclear
 from protogen.runtime.number import ByteOrder, Number
-
-
-class Unclear(Exception):  # noqa: N818 - it is no error: the reference decides
-    """These bytes or values are not plainly in order."""
+from protogen.runtime.values import Frozen
 
 
 class Pairs(dict[int, int]):
@@ -73,13 +70,17 @@ def _exchanged(data: bytes) -> bytes:
     return bytes(exchanged)
 
 
-@dataclass(frozen=True, slots=True)
-class PairLists:
+class PairLists(Frozen):
     """Lists of such integers, all of them at once: each has 16 bits of one great integer."""
+
+    __slots__ = ("bits", "order", "signed")
 
     bits: int
     signed: bool
     order: ByteOrder
+
+    def __init__(self, bits: int, signed: bool, order: ByteOrder) -> None:
+        self._set(bits, signed, order)
 
     def decode(self, data: bytes) -> list[int]:
         """The integers of an even number of bytes. Raises Unclear."""

@@ -12,8 +12,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast, overload
 
-from protogen.runtime import late
-
 if TYPE_CHECKING:
     from protogen.runtime.rules import FloatRule, IntegerRule
 
@@ -53,7 +51,7 @@ class _PhysicalView(_View[ValueT]):
     @cached_property
     def _rule(self) -> IntegerRule | FloatRule:
         rule = dict(self._owner.RULES)[self._field]
-        chosen: Any = rule.element if isinstance(rule, late.ArrayRule) else rule
+        chosen: Any = getattr(rule, "element", rule)  # An array's says it of each element.
         return cast("IntegerRule | FloatRule", chosen)
 
     def _shown_or_none(self, raw: Any) -> float | None:

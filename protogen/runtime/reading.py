@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from protogen.runtime.constructs import PayloadError
-from protogen.runtime.errors import DecodeError
+from protogen.runtime.errors import DecodeError, PayloadFault
 from protogen.runtime.events import FrameEvent, frame_event
 from protogen.runtime.frame import StartLiteral, StartSet
-from protogen.runtime.layout import Layout, is_optional
+from protogen.runtime.layout import Layout
 from protogen.runtime.machine import Candidate, Cut, Failure, verdict_on
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 
@@ -22,39 +19,10 @@ def read_frame(
     cut = _cut(sender, data)
     try:
         message = sender.read(cut.numbers, cut.payload)
-    except PayloadError as error:
+    except PayloadFault as error:
         offset = _wire_offset(sender, data, error.offset)
         raise DecodeError(error.reason, error.problem, offset=offset, path=error.path) from None
     return frame_event(sender, cut, message, data, 0)
-
-
-def payload_of(sender: SenderSpec[Any, Any], raw: bytes) -> bytes:
-    """The payload of what was seen to be a frame: the raw bytes of an event."""
-    layout = sender.layout
-    # Its start may have been the end of the frame before, which is not among its bytes.
-    begins_inside = layout.shares_delimiter and not raw.startswith(layout.start)
-    content = _content_of(layout, layout.start + raw if begins_inside else raw)
-    size = None if content is None else layout.payload_size(len(content))
-    if content is None or size is None:
-        verdict, _ = verdict_on(sender, raw, shares_start=begins_inside)
-        assert isinstance(verdict, Cut)
-        return verdict.payload
-    return content[layout.head_size : layout.head_size + size]
-
-
-def _content_of(layout: Layout, wire: bytes) -> bytes | None:
-    """The content of a whole frame. None where its stuffed bytes can't be told at a glance."""
-    content = wire[: len(wire) - len(layout.end)]
-    transparency = layout.spec.transparency
-    if transparency is None or not layout.stuffed:
-        return content
-    first, last = layout.stuffed[0], layout.stuffed[-1]
-    behind = layout.parts[last + 1 :]
-    if not first <= layout.payload_index <= last or any(map(is_optional, behind)):
-        return None
-    begin = sum(part.size for part in layout.parts[:first])
-    end = len(content) - sum(part.size for part in behind)
-    return content[:begin] + transparency.decode(content[begin:end]) + content[end:]
 
 
 def may_start(layout: Layout, data: bytes) -> bool:

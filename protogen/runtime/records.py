@@ -4,26 +4,19 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, TypeVar
+from typing import Any
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.message import Record
 from protogen.runtime.rules import OctetsRule, Rule, Scope, Violation
 
 FieldRules = tuple[tuple[str, Rule], ...]
 """Name and rule of each field, in wire order."""
 
-
-RecordT = TypeVar("RecordT", bound=Record)
-
-
-def outermost() -> Scope:
-    """The scope of a message's own fields."""
-    return ChainMap()
+OUTERMOST: Scope = ChainMap()
+"""The scope around a message's own fields, which is empty."""
 
 
-def record_to_wire(record: Record, scope: Scope, strict: bool) -> dict[str, Any]:
+def record_to_wire(record: Any, strict: bool, scope: Scope = OUTERMOST) -> dict[str, Any]:
     """What FORMAT builds for the fields of `record`. Raises EncodeError with the field's path."""
     inner = scope.new_child()
     for name, rule in record.RULES:
@@ -34,7 +27,7 @@ def record_to_wire(record: Record, scope: Scope, strict: bool) -> dict[str, Any]
     return dict(inner.maps[0])
 
 
-def record_from_wire(cls: type[RecordT], raw: Mapping[str, Any], scope: Scope) -> RecordT:
+def record_from_wire(cls: Any, raw: Mapping[str, Any], scope: Scope = OUTERMOST) -> Any:
     """The record of what FORMAT parsed."""
     inner = scope.new_child()
     values = {}
@@ -44,7 +37,7 @@ def record_from_wire(cls: type[RecordT], raw: Mapping[str, Any], scope: Scope) -
     return cls(**values)
 
 
-def record_violations(record: Record, scope: Scope) -> list[Violation]:
+def record_violations(record: Any, scope: Scope = OUTERMOST) -> list[Violation]:
     """The violations of all fields, up to the first value that does not even fit the wire."""
     inner = scope.new_child()
     found: list[Violation] = []
@@ -60,7 +53,7 @@ def record_violations(record: Record, scope: Scope) -> list[Violation]:
     return found
 
 
-def record_to_json(record: Record, scope: Scope) -> dict[str, Any]:
+def record_to_json(record: Any, scope: Scope = OUTERMOST) -> dict[str, Any]:
     """The fields as JSON shows them: raw numbers, bytes as hexadecimal text."""
     inner = scope.new_child()
     shown = {}
@@ -69,7 +62,7 @@ def record_to_json(record: Record, scope: Scope) -> dict[str, Any]:
     return shown
 
 
-def record_from_json(cls: type[RecordT], data: Any, scope: Scope) -> RecordT:
+def record_from_json(cls: Any, data: Any, scope: Scope = OUTERMOST) -> Any:
     """The record of what JSON shows; a field with a default may be left out.
 
     Raises EncodeError with the field's path where a field is missing, unknown or of another kind.
@@ -79,11 +72,15 @@ def record_from_json(cls: type[RecordT], data: Any, scope: Scope) -> RecordT:
     _check_names(cls, data)
     inner = scope.new_child()
     values = {}
+    # Of a list, this is a mark: one is made for each record. No field counts or selects by it.
+    defaults = cls.__init__.__kwdefaults__ or {}
     for name, rule in cls.RULES:
         if name in data:
             values[name] = inner[name] = _field_from_json(name, rule, data[name], inner)
+        elif name in defaults:
+            inner[name] = defaults[name]
         else:
-            inner[name] = _default(cls, name)
+            raise EncodeError(name, "the value is missing")
     return cls(**values)
 
 
@@ -94,7 +91,7 @@ def _field_from_json(name: str, rule: Rule, data: Any, scope: Scope) -> Any:
         raise error.inside(name) from None
 
 
-def _check_names(cls: type[Record], data: Mapping[str, Any]) -> None:
+def _check_names(cls: Any, data: Mapping[str, Any]) -> None:
     names = [name for name, _ in cls.RULES]
     for name in data:
         if name not in names:
@@ -102,28 +99,23 @@ def _check_names(cls: type[Record], data: Mapping[str, Any]) -> None:
             raise EncodeError(str(name), f"there is no such field; there are: {has}")
 
 
-def _default(cls: type[Any], name: str) -> Any:
-    item = next(item for item in fields(cls) if item.name == name)
-    if item.default is not MISSING:
-        return item.default
-    if item.default_factory is not MISSING:
-        return item.default_factory()
-    raise EncodeError(name, "the value is missing")
-
-
-@dataclass(frozen=True, slots=True)
 class StructRule(Rule):
     """Fields one after another: an instance of the dataclass `record`."""
 
-    record: type[Record]
+    __slots__ = ("record",)
+
+    record: type[Any]
+
+    def __init__(self, record: type[Any]) -> None:
+        self._set(record)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> dict[str, Any]:
         """The struct's values."""
         if not isinstance(value, self.record):
             raise EncodeError("", f"must be a {self.record.__name__}, not {value!r}")
-        return record_to_wire(value, scope, strict)
+        return record_to_wire(value, strict, scope)
 
-    def from_wire(self, raw: Any, scope: Scope) -> Record:
+    def from_wire(self, raw: Any, scope: Scope) -> Any:
         """The struct."""
         return record_from_wire(self.record, raw, scope)
 
@@ -135,22 +127,32 @@ class StructRule(Rule):
         """A mapping of the fields."""
         return record_to_json(value, scope)
 
-    def from_json(self, data: Any, scope: Scope) -> Record:
+    def from_json(self, data: Any, scope: Scope) -> Any:
         """The struct of a mapping of the fields."""
         return record_from_json(self.record, data, scope)
 
 
-@dataclass(frozen=True, slots=True)
 class ArrayRule(Rule):
     """Values of one kind: `count` of them, or as many as the field `count` says.
 
     None: to the end of the payload, at most `greatest`.
     """
 
+    __slots__ = ("const", "count", "element", "greatest")
+
     element: Rule
-    count: int | str | None = None
-    greatest: int | None = None
-    const: Sequence[Any] | None = None
+    count: int | str | None
+    greatest: int | None
+    const: Sequence[Any] | None
+
+    def __init__(
+        self,
+        element: Rule,
+        count: int | str | None = None,
+        greatest: int | None = None,
+        const: Sequence[Any] | None = None,
+    ) -> None:
+        self._set(element, count, greatest, const)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> list[Any]:
         """The elements."""
@@ -202,9 +204,10 @@ def _each(convert: Any, elements: Sequence[Any], *context: Any) -> Iterator[Any]
             raise error.inside(f"[{index}]") from None
 
 
-@dataclass(frozen=True, slots=True)
 class NothingRule(Rule):
     """A case without bytes: its value is None."""
+
+    __slots__ = ()
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> None:
         """Nothing."""
@@ -220,20 +223,24 @@ class NothingRule(Rule):
 NOTHING = NothingRule()
 
 
-@dataclass(frozen=True, slots=True)
 class SwitchRule(Rule):
     """One of several rules, chosen by the raw value of the field `selector`.
 
     A case of None has no bytes. A value without a case is `rest`, or can't be sent without one.
     """
 
+    __slots__ = ("_chosen", "cases", "rest", "selector")
+
     selector: str
     cases: Mapping[int, Rule | None]
-    rest: OctetsRule | None = None
-    _chosen: Mapping[int, Rule] = field(init=False, repr=False, compare=False)
+    rest: OctetsRule | None
+    _chosen: Mapping[int, Rule]
 
-    def __post_init__(self) -> None:
-        chosen = {value: rule or NOTHING for value, rule in self.cases.items()}
+    def __init__(
+        self, selector: str, cases: Mapping[int, Rule | None], rest: OctetsRule | None = None
+    ) -> None:
+        self._set(selector, cases, rest)
+        chosen = {value: rule or NOTHING for value, rule in cases.items()}
         object.__setattr__(self, "_chosen", chosen)
 
     def case(self, scope: Scope) -> Rule:

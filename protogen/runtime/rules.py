@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections import ChainMap
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -18,32 +17,37 @@ from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import EncodeError, join_path
 from protogen.runtime.nearest import nearest_reading
 from protogen.runtime.number import as_integer
+from protogen.runtime.values import Frozen
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Violation:
+class Violation(Frozen):
     """A value that the schema does not foresee.
 
     `forbidden`: strict encoding refuses it. Otherwise it has no name in the schema, but it may be
     sent.
     """
 
+    __slots__ = ("forbidden", "path", "problem")
+
     path: str
     problem: str
-    forbidden: bool = True
+    forbidden: bool
+
+    def __init__(self, path: str, problem: str, forbidden: bool = True) -> None:
+        self._set(path, problem, forbidden)
 
     def inside(self, outer: str) -> Violation:
         """The same violation as seen by what holds the field."""
-        return replace(self, path=join_path(outer, self.path))
+        return Violation(join_path(outer, self.path), self.problem, self.forbidden)
 
     def __str__(self) -> str:
         return f"{self.path}: {self.problem}" if self.path else self.problem
 
 
-class Rule:
+class Rule(Frozen):
     """What all rules can do. `scope` holds the raw values of the fields in front."""
 
     __slots__ = ()
@@ -79,7 +83,9 @@ def refuse(violations: list[Violation]) -> None:
 # --- numbers ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+_NOTHING: Mapping[str, int] = {}
+
+
 class IntegerRule(Rule):
     """An integer of `bits` bits; whatever Python takes where it needs one is one.
 
@@ -88,17 +94,47 @@ class IntegerRule(Rule):
     raw x scale + offset, in `unit`.
     """
 
+    __slots__ = (
+        "bits",
+        "closed",
+        "const",
+        "greatest",
+        "least",
+        "named",
+        "offset",
+        "scale",
+        "signed",
+        "special",
+        "unit",
+    )
+
     bits: int
-    signed: bool = False
-    named: type[OpenEnum | Flags] | None = None
-    closed: bool = False
-    least: int | None = None
-    greatest: int | None = None
-    const: int | None = None
-    special: Mapping[str, int] = field(default_factory=dict)
-    scale: Fraction = Fraction(1)
-    offset: Fraction = Fraction(0)
-    unit: str | None = None
+    signed: bool
+    named: type[OpenEnum | Flags] | None
+    closed: bool
+    least: int | None
+    greatest: int | None
+    const: int | None
+    special: Mapping[str, int]
+    scale: Fraction
+    offset: Fraction
+    unit: str | None
+
+    def __init__(  # noqa: PLR0913 - an argument for each field
+        self,
+        bits: int,
+        signed: bool = False,
+        named: type[OpenEnum | Flags] | None = None,
+        closed: bool = False,
+        least: int | None = None,
+        greatest: int | None = None,
+        const: int | None = None,
+        special: Mapping[str, int] = _NOTHING,
+        scale: Fraction = Fraction(1),
+        offset: Fraction = Fraction(0),
+        unit: str | None = None,
+    ) -> None:
+        self._set(bits, signed, named, closed, least, greatest, const, special, scale, offset, unit)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> int:
         """The raw value."""
@@ -225,7 +261,6 @@ class IntegerRule(Rule):
         return members[name.upper()]
 
 
-@dataclass(frozen=True, slots=True)
 class FloatRule(Rule):
     """An IEEE 754 number of 32 or 64 bits; `least` and `greatest` as for integers.
 
@@ -233,13 +268,27 @@ class FloatRule(Rule):
     `inf` and `-inf`.
     """
 
+    __slots__ = ("bits", "const", "greatest", "least", "offset", "scale", "unit")
+
     bits: Literal[32, 64]
-    least: Fraction | None = None
-    greatest: Fraction | None = None
-    const: float | None = None
-    scale: Fraction = Fraction(1)
-    offset: Fraction = Fraction(0)
-    unit: str | None = None
+    least: Fraction | None
+    greatest: Fraction | None
+    const: float | None
+    scale: Fraction
+    offset: Fraction
+    unit: str | None
+
+    def __init__(
+        self,
+        bits: Literal[32, 64],
+        least: Fraction | None = None,
+        greatest: Fraction | None = None,
+        const: float | None = None,
+        scale: Fraction = Fraction(1),
+        offset: Fraction = Fraction(0),
+        unit: str | None = None,
+    ) -> None:
+        self._set(bits, least, greatest, const, scale, offset, unit)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> float:
         """The number, if it is not too large for its bits."""
@@ -309,11 +358,15 @@ def _bounds(least: object, greatest: object) -> str:
     return f"{least}.." if greatest is None else f"{least}..{greatest}"
 
 
-@dataclass(frozen=True, slots=True)
 class BoolRule(Rule):
     """False or true."""
 
-    const: bool | None = None
+    __slots__ = ("const",)
+
+    const: bool | None
+
+    def __init__(self, const: bool | None = None) -> None:
+        self._set(const)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bool:
         """False or true; 0 and 1 are taken as well."""
@@ -344,13 +397,19 @@ def _is_bit(value: Any) -> bool:
 # --- bytes and text -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
 class OctetsRule(Rule):
     """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
 
-    size: int | str | None = None
-    greatest: int | None = None
-    const: bytes | None = None
+    __slots__ = ("const", "greatest", "size")
+
+    size: int | str | None
+    greatest: int | None
+    const: bytes | None
+
+    def __init__(
+        self, size: int | str | None = None, greatest: int | None = None, const: bytes | None = None
+    ) -> None:
+        self._set(size, greatest, const)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
@@ -374,7 +433,6 @@ class OctetsRule(Rule):
             raise EncodeError("", f"must be hexadecimal digits, not {data!r}") from None
 
 
-@dataclass(frozen=True, slots=True)
 class TextRule(Rule):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
@@ -382,9 +440,16 @@ class TextRule(Rule):
     pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
     """
 
-    size: int | str | None = None
-    greatest: int | None = None
-    const: str | None = None
+    __slots__ = ("const", "greatest", "size")
+
+    size: int | str | None
+    greatest: int | None
+    const: str | None
+
+    def __init__(
+        self, size: int | str | None = None, greatest: int | None = None, const: str | None = None
+    ) -> None:
+        self._set(size, greatest, const)
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""

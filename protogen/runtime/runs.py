@@ -12,10 +12,9 @@ from typing import Any
 from zlib import adler32
 
 from protogen.runtime.checksum import are_sound
-from protogen.runtime.dataclass import dataclass, field
+from protogen.runtime.errors import ANYTHING, Unclear
 from protogen.runtime.events import MessageEvent
-from protogen.runtime.fast import ANYTHING, BYTES
-from protogen.runtime.pairs import Unclear
+from protogen.runtime.number import BYTES
 from protogen.runtime.sender import Cutter
 
 LONG = 2048
@@ -34,7 +33,6 @@ _LEAST = 8
 """Fewer frames are left to the cutter."""
 
 
-@dataclass(frozen=True, slots=True)
 class StuffedRuns:
     """Runs of frames in which all that is between start and end is stuffed."""
 
@@ -55,8 +53,31 @@ class StuffedRuns:
     """The place of the byte among them that is not."""
     xor_from: int | None
     """Where the bytes begin whose exclusive or is 0. None: the sum of all bytes is 0."""
-    numbers: dict[bytes, list[tuple[int, ...]]] = field(default_factory=dict)
+    numbers: dict[bytes, list[tuple[int, ...]]]
     """The numbers of events by the value of the counter, for each head but for that."""
+
+    def __init__(  # noqa: PLR0913 - an argument for each field
+        self,
+        start: bytes,
+        end: bytes,
+        codes: tuple[tuple[bytes, bytes], ...],
+        greatest: int,
+        specials: bytes,
+        head: slice,
+        alike: tuple[int, ...],
+        counter: int | None,
+        xor_from: int | None,
+    ) -> None:
+        self.start = start
+        self.end = end
+        self.codes = codes
+        self.greatest = greatest
+        self.specials = specials
+        self.head = head
+        self.alike = alike
+        self.counter = counter
+        self.xor_from = xor_from
+        self.numbers = {}
 
     def take(
         self, data: bytes, at: int, base: int, events: list[Any], cut: Cutter, heads: Any

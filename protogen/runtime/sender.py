@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
-from protogen.runtime import late
-from protogen.runtime.dataclass import dataclass, field
+from protogen.runtime.frame import FrameSpec
+from protogen.runtime.layout import Layout
 from protogen.runtime.message import Message
-
-if TYPE_CHECKING:
-    from protogen.runtime.frame import FrameSpec
-    from protogen.runtime.layout import Layout
+from protogen.runtime.values import Frozen
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
@@ -28,25 +25,29 @@ Waiter = Callable[[bytes, int], bool]
 rest of the data is the beginning of a frame, on which there can be no verdict as yet."""
 
 
-@dataclass(frozen=True, slots=True)
-class Kin(Generic[MessageT_co]):
+class IdentityGroup(Frozen, Generic[MessageT_co]):
     """The messages that a receiver may find behind one identity: one, or more told by size."""
 
+    __slots__ = ("fixed", "greatest", "messages")
+
     messages: tuple[type[MessageT_co], ...]
-    fixed: int | None = field(init=False)
+    fixed: int | None
     """The payload's size, where no message has another one."""
-    greatest: int = field(init=False)
+    greatest: int
     """The greatest payload of these messages."""
 
-    def __post_init__(self) -> None:
-        sizes = {message.SIZES.fixed for message in self.messages}
+    def __init__(self, messages: tuple[type[MessageT_co], ...]) -> None:
+        self._set(messages)
+        sizes = {message.SIZES.fixed for message in messages}
         object.__setattr__(self, "fixed", sizes.pop() if len(sizes) == 1 else None)
-        greatest = max(message.SIZES.greatest for message in self.messages)
+        greatest = max(message.SIZES.greatest for message in messages)
         object.__setattr__(self, "greatest", greatest)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
-        return late.prefix_size(self.messages[0].FORMAT, start)
+        from protogen.runtime.constructs import prefix_size  # It takes long to import.
+
+        return prefix_size(self.messages[0].FORMAT, start)
 
     def read(self, payload: bytes) -> MessageT_co:
         """The message of a payload. Raises PayloadError: size, value or encoding."""
@@ -91,14 +92,14 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     @cached_property
     def layout(self) -> Layout:
         """Where the frame's parts lie."""
-        return late.Layout(self.frame)
+        return Layout(self.frame)
 
     @cached_property
-    def _kin(self) -> Mapping[Identity, Kin[MessageT_co]]:
-        kin: dict[Identity, tuple[type[MessageT_co], ...]] = {}
+    def _groups(self) -> Mapping[Identity, IdentityGroup[MessageT_co]]:
+        groups: dict[Identity, tuple[type[MessageT_co], ...]] = {}
         for message in self.messages:
-            kin[message.IDENTITY] = (*kin.get(message.IDENTITY, ()), message)
-        return {key: Kin(value) for key, value in kin.items()}
+            groups[message.IDENTITY] = (*groups.get(message.IDENTITY, ()), message)
+        return {key: IdentityGroup(value) for key, value in groups.items()}
 
     def _compared(self) -> tuple[Any, ...]:
         return self.name, self.frame, self.parts, self.messages, self.encode_only
@@ -114,9 +115,9 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     def __repr__(self) -> str:
         return f"<what {self.name} sends: {', '.join(item.NAME for item in self.messages)}>"
 
-    def kin(self, identity: Identity) -> Kin[MessageT_co] | None:
+    def group(self, identity: Identity) -> IdentityGroup[MessageT_co] | None:
         """The messages of an identity; None where it is unknown."""
-        return self._kin.get(identity)
+        return self._groups.get(identity)
 
     def identity(self, numbers: Mapping[str, int]) -> Identity:
         """The identity among the values of a frame's parts."""
@@ -127,8 +128,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
 
         Raises PayloadError where the payload is not the message's: size, value or encoding.
         """
-        kin = self.kin(self.identity(numbers))
-        return None if kin is None else kin.read(payload)
+        group = self.group(self.identity(numbers))
+        return None if group is None else group.read(payload)
 
     def named(self, name: str) -> type[MessageT_co] | None:
         """The message called `name`, if this endpoint sends one."""

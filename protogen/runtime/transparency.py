@@ -13,13 +13,15 @@ A strict decoder accepts exactly what the encoder makes: a region decodes only i
 result gives the region back. What a `lenient` one accepts beyond that is said with each kind.
 """
 
+from __future__ import annotations
+
 import binascii
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Literal, Protocol
 
-from protogen.runtime.dataclass import dataclass, field
+from protogen.runtime.values import Frozen
 
 TransparencyReason = Literal["stuffing", "encoding"]
 """What is wrong: bytes that are no escape sequence, or that break an encoding of the region."""
@@ -92,11 +94,15 @@ def _cut_sequence(held: bytes) -> TransparencyError:
 # --- none ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Identity:
+class Identity(Frozen):
     """No transparency: the region is the data."""
 
-    lenient: bool = False
+    __slots__ = ("lenient",)
+
+    lenient: bool
+
+    def __init__(self, lenient: bool = False) -> None:
+        self._set(lenient)
 
     def encode(self, data: bytes) -> bytes:
         """Return the data itself."""
@@ -128,8 +134,7 @@ class _IdentityUnstuffer:
 # --- substitution -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Substitution:
+class Substitution(Frozen):
     """Each byte listed in `table` is replaced by a sequence; the other bytes stand for themselves.
 
     The table must make a prefix-free code together with the bytes that stand for themselves, as
@@ -140,12 +145,18 @@ class Substitution:
     one byte passes as it is and reading goes on at the byte behind it.
     """
 
-    table: Mapping[int, bytes] = field(hash=False)
-    lenient: bool = False
-    _book: "_CodeBook" = field(init=False, repr=False, compare=False)
+    __slots__ = ("_book", "lenient", "table")
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_book", _CodeBook(self.table))
+    table: Mapping[int, bytes]
+    lenient: bool
+    _book: _CodeBook
+
+    def __init__(self, table: Mapping[int, bytes], lenient: bool = False) -> None:
+        self._set(table, lenient)
+        object.__setattr__(self, "_book", _CodeBook(table))
+
+    def __hash__(self) -> int:
+        return hash(self.lenient)
 
     def encode(self, data: bytes) -> bytes:
         """Return the data with every listed byte replaced by its sequence."""
@@ -309,8 +320,7 @@ def slip(*, lenient: bool = False) -> Substitution:
 # --- escape -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Escape:
+class Escape(Frozen):
     """Each byte in `of` is replaced by the escape byte `byte` and the byte itself, transformed.
 
     `of` must hold the escape byte too, as the compiler checks for a schema.
@@ -321,14 +331,23 @@ class Escape:
     themselves; only an escape byte at the end of the region is an error.
     """
 
+    __slots__ = ("_strict", "byte", "lenient", "of", "transform")
+
     byte: int
     of: frozenset[int]
-    transform: EscapeTransform = "none"
-    lenient: bool = False
-    _strict: Substitution = field(init=False, repr=False, compare=False)
+    transform: EscapeTransform
+    lenient: bool
+    _strict: Substitution
 
-    def __post_init__(self) -> None:
-        table = {member: bytes((self.byte, member ^ self._mask())) for member in self.of}
+    def __init__(
+        self,
+        byte: int,
+        of: frozenset[int],
+        transform: EscapeTransform = "none",
+        lenient: bool = False,
+    ) -> None:
+        self._set(byte, of, transform, lenient)
+        table = {member: bytes((byte, member ^ self._mask())) for member in of}
         object.__setattr__(self, "_strict", Substitution(table))
 
     def encode(self, data: bytes) -> bytes:
@@ -405,15 +424,19 @@ _UPPER_DIGITS = b"0123456789ABCDEF"
 _ALL_DIGITS = _UPPER_DIGITS + b"abcdef"
 
 
-@dataclass(frozen=True, slots=True)
-class Base16Upper:
+class Base16Upper(Frozen):
     """Each byte is written as two hexadecimal digits in upper case, upper half first.
 
     A byte that is no digit and an odd number of digits are encoding errors. Lenient: the digits
     may be in lower case, too.
     """
 
-    lenient: bool = False
+    __slots__ = ("lenient",)
+
+    lenient: bool
+
+    def __init__(self, lenient: bool = False) -> None:
+        self._set(lenient)
 
     def encode(self, data: bytes) -> bytes:
         """Return the digits of the data."""
@@ -468,8 +491,7 @@ _FULL_GROUP = _FULL_CODE - 1
 """The bytes of the longest group; it is the only one that no zero follows."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cobs:
+class Cobs(Frozen):
     """Consistent overhead byte stuffing: the region never contains a zero.
 
     The region is a run of groups: a code byte n, then n - 1 bytes that are not zero; a zero of the
@@ -480,7 +502,12 @@ class Cobs:
     because 254 bytes without a zero are written without it. Lenient: these two are accepted.
     """
 
-    lenient: bool = False
+    __slots__ = ("lenient",)
+
+    lenient: bool
+
+    def __init__(self, lenient: bool = False) -> None:
+        self._set(lenient)
 
     def encode(self, data: bytes) -> bytes:
         """Return the region for the data."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from protogen.model.readings import readings
+from protogen.runtime.values import as_dict
 
 if TYPE_CHECKING:
     from protogen.model.protocol import Protocol
@@ -67,7 +67,7 @@ class EventLines:
 
     def _unknown(self, event: Any) -> Iterator[Segment]:
         yield self._name("unknown", "bold yellow")
-        for part, value in asdict(event.parts).items():
+        for part, value in as_dict(event.parts).items():
             yield from _value(f"@{part}", str(value))
         yield from _value("payload", f"hex:{event.payload.hex().upper()}")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from protogen.model.messages import Message
@@ -26,7 +28,7 @@ from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import class_name, member_name, unit_suffix
-from protogen.targets.python.wrapping import WIDTH, docstring, remark, union, wrapped
+from protogen.targets.python.wrapping import WIDTH, docstring, method, remark, union, wrapped
 
 _INDENT = 4
 
@@ -52,10 +54,19 @@ class EnumClass:
 
 @dataclass(frozen=True, slots=True)
 class Attribute:
-    """A field of a dataclass, or a property that shows one."""
+    """A field of a class, or a property that shows one."""
 
     text: str
     doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Constructor:
+    """The slots of a class and its `__init__`, whose head ends with the colon."""
+
+    slots: str
+    head: str
+    body: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +82,7 @@ class RecordClass:
     format: tuple[str, ...]
     rules: str
     views: tuple[Attribute, ...]
+    made: Constructor
 
 
 def enum_class(item: Enum) -> EnumClass:
@@ -136,7 +148,33 @@ def _record(
         format=tuple(_format_line(field) for field in fields),
         rules=_rules(fields),
         views=tuple(view for field in fields for view in _views(field, taken)),
+        made=_constructor(fields, taken),
     )
+
+
+def slots_of(names: Iterable[str]) -> str:
+    """The line or lines that name a class's slots, numbers in names by their value."""
+    ordered = sorted(names, key=_natural)
+    return wrapped(tuple_of(map(text, ordered)), _INDENT + len("__slots__ = "), _INDENT, after=0)
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """A key that sorts `servo2` before `servo10`."""
+    return [(int(part), "") if part.isdigit() else (0, part) for part in re.split("([0-9]+)", name)]
+
+
+def _constructor(fields: tuple[Field, ...], taken: frozenset[str]) -> Constructor:
+    """The constructor of a record, which takes keywords only."""
+    parameters, body = ["*"], []
+    for field in fields:
+        kind, default, value = annotation(field.type, taken), _default(field), field.name
+        if isinstance(default, list):
+            value = f"{default} if {field.name} is _rt.OMITTED else {field.name}"
+            default = "_rt.OMITTED"
+        parameters.append(f"{field.name}: {kind}" + (f" = {default}" if default else ""))
+        body.append(f"self.{field.name} = {value}")
+    head = method("def __init__(", ", ".join(["self", *parameters]), ") -> None:", _INDENT)
+    return Constructor(slots_of(field.name for field in fields), head, tuple(body))
 
 
 def _format_line(field: Field) -> str:
@@ -173,10 +211,6 @@ def _rule_line(field: Field) -> str:
 
 def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
     line = union(f"{field.name}: ", annotation(field.type, taken), _INDENT)
-    default = _default(field)
-    if default is not None:
-        column = _INDENT + len(line.rpartition("\n")[2]) + 3
-        line = f"{line} = {wrapped(default, column, _INDENT, after=0)}"
     return Attribute(line, remark(describing.field(field), _INDENT))
 
 
@@ -225,14 +259,14 @@ def _switch_annotation(type_: Switch, taken: frozenset[str]) -> str:
     return " | ".join([*ordered, *(["None"] if "None" in distinct else [])])
 
 
-def _default(field: Field) -> str | None:
-    """The default of an attribute: a constant needs not be given."""
+def _default(field: Field) -> str | list[int | str] | None:
+    """The default of an attribute, a list as such: a constant needs not be given."""
     value = field.const if field.const is not None else field.default
     match value:
         case None:
             return None
         case tuple():
-            return f"_rt.field(default_factory=lambda: {list(value)})"
+            return list(value)
         case bytes():
             return octets_in_class(value)
         case str():

@@ -10,7 +10,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
-from protogen.targets.python.classes import Attribute, EnumClass, RecordClass
+from protogen.targets.python.classes import Attribute, Constructor, EnumClass, RecordClass, slots_of
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
 from protogen.targets.python.spelling import class_name
@@ -22,10 +22,11 @@ _ENGINE = 'engine: _rt.Engine = "fast"'
 
 @dataclass(frozen=True, slots=True)
 class PartsClass:
-    """The dataclass of the parts that events show."""
+    """The class of the parts that events show."""
 
     name: str
     attributes: tuple[Attribute, ...]
+    made: Constructor
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,9 +142,16 @@ def _parts_classes(protocol: Protocol) -> dict[str, PartsClass]:
     attributes = {sender.name: _part_attributes(sender) for sender in protocol.senders}
     alike = len(set(attributes.values())) == 1
     return {
-        name: PartsClass("Parts" if alike else f"{class_name(name)}Parts", items)
+        name: PartsClass("Parts" if alike else f"{class_name(name)}Parts", items, _made(items))
         for name, items in attributes.items()
     }
+
+
+def _made(parts: tuple[Attribute, ...]) -> Constructor:
+    """The constructor of parts, all of which are integers."""
+    names = [part.text.partition(":")[0] for part in parts]
+    head = method("def __init__(", ", ".join(["self", *(p.text for p in parts)]), ") -> None:", 4)
+    return Constructor(slots_of(names), head, (f"self._set({', '.join(names)})",))
 
 
 def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:

@@ -93,9 +93,16 @@ def method(start: str, parameters: str, end: str, indent: int, after: int = 0) -
     margin = " " * indent
     if indent + _INDENT + len(parameters) > WIDTH:
         inner = " " * (indent + _INDENT)
-        lines = [f"{inner}{parameter}," for parameter in _items(parameters)]
+        lines = [f"{_parameter(item, inner)}," for item in _items(parameters)]
         return "\n".join([start, *lines, f"{margin}{end}"])
     return f"{start}\n{margin}{' ' * _INDENT}{parameters}\n{margin}{end}"
+
+
+def _parameter(text: str, margin: str) -> str:
+    """One parameter; the members of a union stand below each other where they do not fit."""
+    if len(margin) + len(text) + 1 <= WIDTH:
+        return margin + text
+    return margin + f"\n{margin}| ".join(text.split(" | "))
 
 
 def docstring(paragraphs: list[str], indent: int) -> str:
