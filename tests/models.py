@@ -22,23 +22,12 @@ from protogen.model.frame import (
     ValuePart,
 )
 from protogen.model.framing import End, Framing, MessageFraming, StartLiteral
+from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.messages import Example, Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.model.sizes import SizeSet
-from protogen.model.types import (
-    Case,
-    Enum,
-    Field,
-    Flags,
-    Integer,
-    NamedBit,
-    NamedValue,
-    Struct,
-    Switch,
-    Type,
-    total,
-)
+from protogen.model.types import Case, Field, Integer, Struct, Switch, Type, total
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.problems.span import Span
 

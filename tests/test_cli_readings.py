@@ -10,7 +10,7 @@ import pytest
 from cli_support import SINK, run
 
 from protogen.cli.progress import progress
-from protogen.model.readings import decimal, physical, type_name
+from protogen.model.readings import decimal, physical
 from protogen.model.types import Field, Integer
 
 
@@ -97,10 +97,10 @@ def test_names_of_types(sink: str) -> None:
     from cli_support import compiled
 
     protocol = compiled(SINK)
-    names = [type_name(field.type) for field in protocol.message("lists").fields]
+    names = [field.type.label for field in protocol.message("lists").fields]
     assert names == ["lists_points[2]", "uint8", "uint16 big[size]", "ascii[4]", "bytes[fill]"]
-    assert type_name(protocol.message("choice").fields[1].type) == "switch(what)"
-    assert type_name(protocol.message("numbers").fields[7].type) == "float32 big"
+    assert protocol.message("choice").fields[1].type.label == "switch(what)"
+    assert protocol.message("numbers").fields[7].type.label == "float32 big"
 
 
 # --- progress -------------------------------------------------------------------------------------

@@ -37,6 +37,7 @@ from models import (
 
 from protogen.compiler import compile_file
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
+from protogen.model.meanings import Enum, NamedValue
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Decision, Endpoint, Link, Protocol
@@ -46,17 +47,7 @@ from protogen.model.reserved import (
     ReservedNames,
     ReservedValues,
 )
-from protogen.model.types import (
-    Array,
-    Enum,
-    Fill,
-    Fixed,
-    Integer,
-    NamedValue,
-    Octets,
-    Struct,
-    Text,
-)
+from protogen.model.types import Array, Fill, Fixed, Integer, Octets, Struct, Text
 from protogen.targets import TARGETS
 from protogen.targets.banner import is_banner
 from protogen.targets.markdown.emit import emit

@@ -29,20 +29,9 @@ from models import (
 )
 
 from protogen.model.frame import Cobs, Frame, LiteralPart, Transparency
+from protogen.model.meanings import BitField, NamedValue
 from protogen.model.messages import Contradiction
-from protogen.model.types import (
-    Array,
-    BitField,
-    Counted,
-    Fill,
-    Fixed,
-    Float,
-    Integer,
-    NamedValue,
-    Octets,
-    Struct,
-    Text,
-)
+from protogen.model.types import Array, Counted, Fill, Fixed, Float, Integer, Octets, Struct, Text
 
 
 def test_example_is_cut_into_parts_and_fields():

@@ -30,17 +30,7 @@ from protogen.model.checksums import find_algorithm
 from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
 from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
-from protogen.model.types import (
-    Array,
-    Case,
-    Counted,
-    Fill,
-    Fixed,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-)
+from protogen.model.types import Array, Case, Counted, Fill, Fixed, Octets, Struct, Switch, Text
 from protogen.targets.markdown.layout import has_further_codes
 
 

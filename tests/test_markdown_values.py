@@ -23,20 +23,16 @@ from models import (
     protocol,
 )
 
+from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About, Source
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
-    BitField,
     Case,
-    Enum,
     Fill,
     Fixed,
-    Flags,
     Float,
     Integer,
-    NamedBit,
-    NamedValue,
     Octets,
     Struct,
     Switch,

@@ -12,8 +12,9 @@ from math import prod
 from typing import Literal
 
 from protogen.model.frame import NumberPart
+from protogen.model.meanings import Enum, Flags, NamedValue
 from protogen.model.messages import Message
-from protogen.model.types import Enum, Field, Flags, Float, Integer, NamedValue, Type
+from protogen.model.types import Field, Float, Integer, Type
 from protogen.runtime.errors import Reason
 
 Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]

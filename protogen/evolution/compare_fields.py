@@ -9,7 +9,7 @@ from fractions import Fraction
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of
-from protogen.model.readings import decimal, type_name
+from protogen.model.readings import decimal
 from protogen.model.types import Field
 
 _CHANGES = {
@@ -152,7 +152,7 @@ def _described(field: Field) -> str:
     size = field.size
     bytes_ = "" if size is None else f", {size} byte{'' if size == 1 else 's'}"
     at = "" if field.position is None else f" at byte {field.position}"
-    return f"{type_name(field.type)}{at}{bytes_}"
+    return f"{field.type.label}{at}{bytes_}"
 
 
 def _joined(prefix: str, name: str) -> str:

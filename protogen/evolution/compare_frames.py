@@ -21,7 +21,6 @@ from protogen.model.frame import (
     ValuePart,
 )
 from protogen.model.protocol import Sender
-from protogen.model.readings import type_name
 from protogen.model.types import Integer
 from protogen.passes.framing.capacity import payload_range
 
@@ -88,7 +87,7 @@ class _Frames:
         self, old: NumberPart, new: NumberPart, renamed: dict[str, str]
     ) -> Iterator[Change]:
         if _layout(old.type) != _layout(new.type):
-            words = named(type_name(old.type), type_name(new.type))
+            words = named(old.type.label, new.type.label)
             yield self._change("frame-part-type", old.name, words)
         elif (old.least, old.greatest) != (new.least, new.greatest):
             yield self._range(old, new)
@@ -115,8 +114,8 @@ class _Frames:
         self, old: ChecksumPart, new: ChecksumPart, renamed: dict[str, str]
     ) -> Iterator[Change]:
         if (old.algorithm, _layout(old.type)) != (new.algorithm, _layout(new.type)):
-            before = f"{old.algorithm.name} in {type_name(old.type)}"
-            after = f"{new.algorithm.name} in {type_name(new.type)}"
+            before = f"{old.algorithm.name} in {old.type.label}"
+            after = f"{new.algorithm.name} in {new.type.label}"
             yield self._change("frame-checksum-algorithm", old.name, named(before, after))
         covers = [renamed.get(name, name) for name in old.covers]
         if (covers, old.over_wire, old.when_payload) != (
@@ -169,7 +168,7 @@ def _layout(type: Integer) -> tuple[object, ...]:
 def _kind(part: Part) -> str:
     name = type(part).__name__.removesuffix("Part").lower()
     if isinstance(part, NumberPart | ChecksumPart):
-        return f"{name}, {type_name(part.type)}"
+        return f"{name}, {part.type.label}"
     return f"{name} {part.bytes.hex(' ').upper()}" if isinstance(part, LiteralPart) else name
 
 

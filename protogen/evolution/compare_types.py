@@ -7,19 +7,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from protogen.evolution.change import Change, Mark, named
-from protogen.model.readings import type_name
+from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.types import (
     Array,
-    BitField,
     Counted,
-    Enum,
     Extent,
     Fill,
     Fixed,
-    Flags,
     Float,
     Integer,
-    NamedBit,
     Octets,
     Struct,
     Switch,
@@ -54,7 +50,7 @@ class TypeComparison:
             case Octets(), Octets():
                 yield from self._strings(old, new, path)
             case _ if type(old) is not type(new) and _bytes(old) == _bytes(new) is not None:
-                yield self._report("field-kind", path, named(type_name(old), type_name(new)))
+                yield self._report("field-kind", path, named(old.label, new.label))
             case Array(), Array():
                 yield from self._extents(old.extent, new.extent, path)
                 yield from self.compare(old.element, new.element, path)
@@ -63,10 +59,10 @@ class TypeComparison:
             case Switch(), Switch():
                 yield from self._switches(old, new, path)
             case _:
-                yield self._report("field-encoding", path, named(type_name(old), type_name(new)))
+                yield self._report("field-encoding", path, named(old.label, new.label))
 
     def _integers(self, old: Integer, new: Integer, path: str) -> Iterator[Change]:
-        words = named(type_name(old), type_name(new))
+        words = named(old.label, new.label)
         is_bool = [kind.role == "bool" for kind in (old, new)]
         tests = {
             "field-width": old.bits != new.bits and (old.size != new.size or not any(is_bool)),
@@ -85,7 +81,7 @@ class TypeComparison:
         yield from self._bits(old.bit_fields, new.bit_fields, path)
 
     def _floats(self, old: Float, new: Float, path: str) -> Iterator[Change]:
-        words = named(type_name(old), type_name(new))
+        words = named(old.label, new.label)
         if old.bits != new.bits:
             yield self._report("field-width", path, words)
         elif old.byte_order != new.byte_order:
@@ -96,7 +92,7 @@ class TypeComparison:
     def _strings(self, old: Text | Octets, new: Text | Octets, path: str) -> Iterator[Change]:
         yield from self._extents(old.extent, new.extent, path)
         if old.byte_bits != new.byte_bits:
-            yield self._report("field-encoding", path, named(type_name(old), type_name(new)))
+            yield self._report("field-encoding", path, named(old.label, new.label))
 
     def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
         if old == new:

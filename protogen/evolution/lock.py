@@ -14,10 +14,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from protogen.model import checksums, frame, framing, messages, origin, protocol, reserved, sizes
+from protogen.model import (
+    checksums,
+    frame,
+    framing,
+    meanings,
+    messages,
+    origin,
+    protocol,
+    reserved,
+    sizes,
+)
 from protogen.model import types as model_types
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
+from protogen.passes.framing.frame_plan import plan_frame
 from protogen.problems.span import Span
 from protogen.version import VERSION
 
@@ -34,12 +45,14 @@ _LEFT_OUT: Mapping[str, Any] = {
     "examples": (),
     "exchanges": (),
     "decisions": (),
+    "plan": None,
 }
-"""What people read, with what stands for it when a lock is read."""
+"""Texts for people, and what follows from the rest, with what stands for it in a lock."""
 _MODULES = (
     checksums,
     frame,
     framing,
+    meanings,
     messages,
     model_types,
     origin,
@@ -139,11 +152,14 @@ def _restored(value: Any) -> Any:
 def _with_messages(item: Protocol) -> Protocol:
     """The protocol whose senders hold the messages that they name."""
     known: dict[Any, Message] = {message.name: message for message in item.messages}
-    senders = tuple(
-        replace(sender, messages=tuple(known[name] for name in sender.messages))
-        for sender in item.senders
-    )
+    senders = tuple(_with_plan(sender, known) for sender in item.senders)
     return replace(item, senders=senders)
+
+
+def _with_plan(sender: Sender, known: Mapping[Any, Message]) -> Sender:
+    messages = tuple(known[name] for name in sender.messages)
+    plan = plan_frame(sender.frame, sender.framing, messages, sender.overloads)
+    return replace(sender, messages=messages, plan=plan)
 
 
 @cache

@@ -15,7 +15,7 @@ from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.live import kept_module
 from protogen.model.dissect import Cursor, Row, dissect
-from protogen.model.payload_plan import plan_of
+from protogen.model.payload_builder import plan_of
 from protogen.model.protocol import Protocol
 from protogen.model.readings import physical, value_name
 from protogen.model.types import Field, Integer

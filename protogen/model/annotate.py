@@ -22,7 +22,7 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.numbers import codec
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.readings import character, type_name
+from protogen.model.readings import character
 from protogen.model.wire import FULL_GROUP, Unit, Wire, unstuff
 from protogen.runtime import checksum as sums
 from protogen.runtime.errors import ByteError
@@ -141,7 +141,7 @@ class _Frame:
                 return row
             return replace(row, fault=f"must be {_hex(part.bytes)}")
         assert isinstance(part, NumberPart | ChecksumPart)
-        row = piece.row(part.name, type_name(part.type), subject=part, value_type=part.type)
+        row = piece.row(part.name, part.type.label, subject=part, value_type=part.type)
         if piece.missing:
             return row
         try:

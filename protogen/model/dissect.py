@@ -27,7 +27,6 @@ from protogen.model.readings import (
     integer_reading,
     physical,
     quoted,
-    type_name,
     value_name,
 )
 from protogen.model.types import Field, Fixed, Float, Scalar, Text
@@ -204,7 +203,7 @@ class _Reader:
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
         size = _count(step.count, scope) if isinstance(step, BytesStep) else step.type.size
         piece = self._cursor.take(self._cursor.left if size is None else size)
-        row = piece.row(path, type_name(step.type), subject=step.field, value_type=step.type)
+        row = piece.row(path, step.type.label, subject=step.field, value_type=step.type)
         self._short = bool(piece.missing)
         if not piece.missing:
             row = _read(step, row)

@@ -7,7 +7,8 @@ from functools import cached_property
 from typing import Any
 
 from protogen.model.origin import NOTHING, About
-from protogen.model.payload_plan import PayloadPlan, plan_of
+from protogen.model.payload_builder import plan_of
+from protogen.model.payload_plan import PayloadPlan
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
 from protogen.problems.span import Span

@@ -8,8 +8,8 @@ of the records around it holds it. Targets print steps and decide nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from enum import Enum, auto
 from functools import cached_property
 from math import ceil, floor
@@ -17,22 +17,13 @@ from math import ceil, floor
 from protogen.model.numbers import constant_bytes
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
-    Array,
-    Case,
-    Counted,
-    Extent,
     Field,
-    Fill,
-    Fixed,
     Float,
     Integer,
     Octets,
     Struct,
-    Switch,
     Text,
     Type,
-    count_name,
-    total,
 )
 
 
@@ -53,6 +44,9 @@ class Check(Enum):
     """The number that an earlier field gives is out of bounds."""
     CASE = auto()
     """No case has the value of the selector."""
+
+
+_NO_CHECKS: frozenset[Check] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +93,7 @@ class Step:
     """Name of the field or case; empty for an element of an array."""
     field: Field
     """The field that says what the values mean."""
+    type: Type
     sizes: SizeSet
     """Wire bytes."""
     checks: frozenset[Check]
@@ -151,7 +146,7 @@ class IntegerStep(NumberStep):
     @property
     def bounds(self) -> tuple[int, int]:
         """The least and the greatest integer that an encoder allows, special values aside."""
-        return _bounds(self.field, self.type)
+        return allowed(self.field, self.type)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,9 +166,13 @@ class BytesStep(Step):
 class ConstantStep(Step):
     """Bytes that are always the same."""
 
-    data: bytes
     value: IntegerStep | FloatStep | BytesStep | RepeatStep
     """The step that the field would be without the constant."""
+
+    @property
+    def data(self) -> bytes:
+        """The bytes."""
+        return constant_bytes(self.field)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -250,7 +249,7 @@ class PayloadPlan:
     @cached_property
     def checks(self) -> frozenset[Check]:
         """What can be wrong with the right number of bytes."""
-        return _checks(self.steps)
+        return _NO_CHECKS.union(*(step.checks for step in self.steps))
 
     @property
     def has_wrong_values(self) -> bool:
@@ -273,12 +272,6 @@ def without_constant(step: AnyStep) -> AnyStep:
     return step.value if isinstance(step, ConstantStep) else step
 
 
-def plan_of(fields: Sequence[Field]) -> PayloadPlan:
-    """The plan of a message's or struct's fields."""
-    steps = _Builder(0, {}, {}).record(fields, is_last=True)
-    return PayloadPlan(steps=steps, sizes=total(tuple(fields)))
-
-
 def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
     """All steps and those inside of them, in wire order."""
     for step in steps:
@@ -294,248 +287,8 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step(case.step for case in step.cases)
 
 
-# --- building -------------------------------------------------------------------------------------
-
-_NOTHING: frozenset[Check] = frozenset()
-_Scope = Mapping[str, "int | Reference"]
-"""The numbers in front, some of which are constants."""
-_Key = tuple[str, int, bool, "tuple[tuple[str, int | Reference], ...]"]
-
-
-class _Builder:
-    """Makes the steps of what lies at one depth of records, behind some numbers."""
-
-    def __init__(self, level: int, scope: _Scope, made: dict[_Key, tuple[AnyStep, ...]]) -> None:
-        self._level = level
-        self._scope = dict(scope)
-        self._made = made
-
-    def record(self, fields: Sequence[Field], *, is_last: bool) -> tuple[AnyStep, ...]:
-        """The steps of the fields of a record at this depth."""
-        steps: list[AnyStep] = []
-        needed = _needed_behind(fields)
-        for index, field in enumerate(fields):
-            member = count_name(fields, field) if field.fills else ""
-            at_end = is_last and index == len(fields) - 1
-            step = self._step(field, field.type, field.name, at_end, member)
-            if isinstance(step, IntegerStep) and field.name in needed[index]:
-                step = replace(step, is_needed=True)
-            steps.append(_constant(field, step) if field.const is not None else step)
-            self._remember(field)
-        return tuple(steps)
-
-    def _remember(self, field: Field) -> None:
-        number = field.constant_number
-        if number is not None:
-            self._scope[field.name] = number
-        elif isinstance(field.type, Integer):
-            self._scope[field.name] = Reference(field.name, self._level, field.type)
-
-    def _find(self, name: str) -> int | Reference:
-        return self._scope.get(name, Reference(name, -1, None))
-
-    def _step(
-        self, field: Field, type_: Type, name: str, is_last: bool, member: str = ""
-    ) -> AnyStep:
-        match type_:
-            case Integer():
-                return IntegerStep(
-                    name=name,
-                    field=field,
-                    sizes=type_.sizes,
-                    checks=_number_checks(type_),
-                    is_refusable=_is_number_refusable(field, type_),
-                    is_last=is_last,
-                    type=type_,
-                )
-            case Float():
-                return FloatStep(
-                    name=name,
-                    field=field,
-                    sizes=type_.sizes,
-                    checks=_number_checks(type_),
-                    is_refusable=field.ranged,
-                    is_last=is_last,
-                    type=type_,
-                )
-            case Text() | Octets():
-                count = self._count(type_.extent, member)
-                return BytesStep(
-                    name=name,
-                    field=field,
-                    sizes=type_.sizes,
-                    checks=_seven_bit(type_) | _count_checks(type_.extent),
-                    is_refusable=isinstance(type_, Text)
-                    or type_.byte_bits == 7
-                    or not isinstance(type_.extent, Fixed),
-                    is_last=is_last,
-                    type=type_,
-                    count=count,
-                )
-            case Struct():
-                steps = self._inner(type_, is_last)
-                return RecordStep(
-                    name=name,
-                    field=field,
-                    sizes=type_.sizes,
-                    checks=_checks(steps),
-                    is_refusable=any(step.is_refusable for step in steps),
-                    holds_values=any(step.holds_values or step.fills for step in steps),
-                    is_last=is_last,
-                    type=type_,
-                    steps=steps,
-                )
-            case Array():
-                return self._repeat(field, type_, name, is_last, member)
-            case Switch():
-                return self._choose(field, type_, name, is_last)
-
-    def _inner(self, type_: Struct, is_last: bool) -> tuple[AnyStep, ...]:
-        """The steps of a struct, made once for all places where they are the same."""
-        outer = tuple((name, self._find(name)) for name in sorted(type_.needs))
-        key = type_.name, self._level, is_last, outer
-        if key not in self._made:
-            inner = _Builder(self._level + 1, self._scope, self._made)
-            self._made[key] = inner.record(type_.fields, is_last=is_last)
-        return self._made[key]
-
-    def _repeat(
-        self, field: Field, type_: Array, name: str, is_last: bool, member: str
-    ) -> RepeatStep:
-        element = self._step(field, type_.element, "", is_last=False)
-        return RepeatStep(
-            name=name,
-            field=field,
-            sizes=type_.sizes,
-            checks=element.checks | _count_checks(type_.extent),
-            is_refusable=element.is_refusable or not isinstance(type_.extent, Fixed),
-            holds_values=element.holds_values,
-            is_last=is_last,
-            element=element,
-            count=self._count(type_.extent, member),
-        )
-
-    def _choose(self, field: Field, type_: Switch, name: str, is_last: bool) -> ChooseStep:
-        cases = tuple(self._case(field, case, is_last) for case in type_.cases)
-        inside = _checks(case.step for case in cases)
-        return ChooseStep(
-            name=name,
-            field=field,
-            sizes=type_.sizes,
-            checks=inside | ({Check.CASE} if type_.rest is None else _NOTHING),
-            is_refusable=True,
-            holds_values=type_.holds_values,
-            is_last=is_last,
-            selector_name=type_.selector,
-            selector=self._find(type_.selector),
-            cases=cases,
-            rest=None if type_.rest is None else _rest(field, type_, type_.rest, is_last),
-        )
-
-    def _case(self, field: Field, case: Case, is_last: bool) -> CaseStep:
-        step = self._step(field, case.type, case.name, is_last)
-        return CaseStep(value=case.value, name=case.name, step=step)
-
-    def _count(self, extent: Extent, member: str) -> Count:
-        least, greatest = extent.counts.least, extent.counts.greatest
-        if isinstance(extent, Fixed):
-            return Count(known=extent.count, least=least, greatest=greatest, stated=True)
-        if isinstance(extent, Fill):
-            return Count(
-                member=member, fills=True, least=least, greatest=greatest, stated=extent.stated
-            )
-        number = self._find(extent.field)
-        by = None if isinstance(number, int) else number
-        known = number if isinstance(number, int) else None
-        if least == greatest:
-            known = least
-        return Count(
-            field=extent.field,
-            known=known,
-            by=by,
-            least=least,
-            greatest=greatest,
-            stated=extent.stated,
-        )
-
-
-def _needed_behind(fields: Sequence[Field]) -> list[frozenset[str]]:
-    """For each field the names that count or select in those behind it."""
-    found: list[frozenset[str]] = []
-    needed: frozenset[str] = frozenset()
-    for field in reversed(fields):
-        found.append(needed)
-        needed = (needed - {field.name}) | field.type.needs
-    return found[::-1]
-
-
-def _constant(field: Field, step: AnyStep) -> ConstantStep:
-    assert isinstance(step, NumberStep | BytesStep | RepeatStep)
-    return ConstantStep(
-        name=field.name,
-        field=field,
-        sizes=step.sizes,
-        checks=step.checks | {Check.CONSTANT},
-        is_refusable=isinstance(field.type.extent, Counted),
-        holds_values=False,
-        is_last=step.is_last,
-        data=constant_bytes(field),
-        value=step,
-    )
-
-
-def _rest(field: Field, type_: Switch, greatest: int, is_last: bool) -> RestStep:
-    return RestStep(
-        name=type_.rest_name,
-        field=field,
-        sizes=SizeSet.between(0, greatest),
-        checks=frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING,
-        is_refusable=True,
-        is_last=is_last,
-        greatest=greatest,
-        seven_bit=type_.byte_bits == 7,
-    )
-
-
-# --- facts of numbers -----------------------------------------------------------------------------
-
-
-def _checks(steps: Iterable[Step]) -> frozenset[Check]:
-    return _NOTHING.union(*(step.checks for step in steps))
-
-
-def _number_checks(type_: Integer | Float) -> frozenset[Check]:
-    found = set(_seven_bit(type_))
-    if type_.bits < type_.byte_bits * type_.size:
-        found.add(Check.PADDING)
-    if isinstance(type_, Integer) and type_.role == "bool":
-        found.add(Check.BOOLEAN)
-    if isinstance(type_, Integer) and type_.is_closed:
-        found.add(Check.CLOSED)
-    return frozenset(found)
-
-
-def _seven_bit(type_: Integer | Float | Text | Octets) -> frozenset[Check]:
-    return frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING
-
-
-def _count_checks(extent: Extent) -> frozenset[Check]:
-    return frozenset({Check.COUNT}) if isinstance(extent, Counted) else _NOTHING
-
-
-def _is_number_refusable(field: Field, type_: Integer) -> bool:
-    """True if the machine number that holds the value can have one that is not allowed."""
-    if type_.is_closed:
-        return True
-    if type_.role == "bool" and not field.ranged:
-        return False
-    least, greatest = _bounds(field, type_)
-    machine_greatest = (1 << (type_.width - type_.signed)) - 1
-    machine_least = -machine_greatest - 1 if type_.signed else 0
-    return least > machine_least or greatest < machine_greatest
-
-
-def _bounds(field: Field, type_: Integer) -> tuple[int, int]:
+def allowed(field: Field, type_: Integer) -> tuple[int, int]:
+    """The least and the greatest integer that an encoder allows, special values aside."""
     if not field.ranged:
         return type_.least, type_.greatest
     least = type_.least if field.least is None else ceil(field.least)

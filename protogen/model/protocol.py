@@ -8,10 +8,11 @@ from fractions import Fraction
 from protogen.model.frame import Frame
 from protogen.model.frame_plan import FramePlan
 from protogen.model.framing import Framing
+from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
 from protogen.model.reserved import NOTHING_RESERVED, Reserved
-from protogen.model.types import Enum, Flags, Struct
+from protogen.model.types import Struct
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,61 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections import ChainMap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from protogen.model.types import (
-    Array,
-    Extent,
-    Field,
-    Fill,
-    Fixed,
-    Flags,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
+from protogen.model.meanings import Flags
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    FloatStep,
+    IntegerStep,
+    PayloadPlan,
+    RecordStep,
+    RepeatStep,
 )
-
-Scope = ChainMap[str, Any]
-"""The values of the fields in front, which choose the cases of switches."""
+from protogen.model.types import Field, Integer, Text
 
 _MOST_ELEMENTS = 16
 """Elements of a list that are shown."""
 _MOST_DIGITS = 12
 """A physical value with more decimals than this is rounded to six digits."""
-
-
-def type_name(type: Type) -> str:
-    """The type in the words of the schema language, such as `uint16 big` or `sint14[3]`."""
-    match type:
-        case Integer() | Float():
-            order = "" if type.size == 1 else f" {type.byte_order}"
-            return f"{_number_name(type)}{order}"
-        case Text(extent=extent) | Octets(extent=extent):
-            return f"{'ascii' if isinstance(type, Text) else 'bytes'}[{extent_name(extent)}]"
-        case Array(element=element, extent=extent):
-            return f"{type_name(element)}[{extent_name(extent)}]"
-        case Struct(name=name):
-            return name
-        case Switch(selector=selector):
-            return f"switch({selector})"
-
-
-def extent_name(extent: Extent) -> str:
-    """How many, in the words of the schema language: a number, a field's name or `fill`."""
-    match extent:
-        case Fixed(count=count):
-            return str(count)
-        case Fill():
-            return "fill"
-        case _:
-            return extent.field
 
 
 def decimal(value: Fraction) -> str:
@@ -80,57 +47,61 @@ def physical(field: Field, raw: int | float, gap: str = "") -> str:
     return f"{decimal(Fraction(raw) * field.scale + field.offset)}{unit}"
 
 
-def readings(
-    fields: Iterable[Field], values: Mapping[str, Any], around: Scope | None = None
-) -> Iterator[tuple[str, str]]:
+def readings(plan: PayloadPlan, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the name of each field and its value in one short text without line breaks.
 
     The values are those of a JSON line: raw numbers, texts, bytes as hex digits, lists, mappings.
     The text of a single value is also what `protogen encode` takes for it.
     """
-    scope = ChainMap({}, *(around.maps if around is not None else ()))
-    for field in fields:
-        scope[field.name] = values[field.name]
-        yield field.name, _reading(field, field.type, values[field.name], scope)
+    return _members(plan.steps, values, ())
 
 
-def _reading(field: Field, type: Type, value: Any, scope: Scope) -> str:
-    match type:
-        case Struct(fields=fields):
-            return _members(fields, value, scope)
-        case Array():
-            return _elements(field, type, value, scope)
-        case Switch():
-            return _case(type, value, scope)
-        case Integer():
-            return integer_reading(field, type, value)
-        case _:
-            return _other(field, type, value)
+_Records = tuple[Mapping[str, Any], ...]
+"""The values of the records around, whose numbers choose cases."""
 
 
-def _other(field: Field, type: Float | Text | Octets, value: Any) -> str:
-    if isinstance(type, Float):
-        return physical(field, float(value))
-    return quoted(value) if isinstance(type, Text) else f"hex:{value}"
+def _members(
+    steps: Sequence[AnyStep], values: Mapping[str, Any], around: _Records
+) -> Iterator[tuple[str, str]]:
+    for step in steps:
+        yield step.name, _reading(step, values[step.name], (*around, values))
 
 
-def _members(fields: Iterable[Field], values: Mapping[str, Any], scope: Scope) -> str:
-    members = (f"{name}={text}" for name, text in readings(fields, values, scope))
+def _record(steps: Sequence[AnyStep], values: Mapping[str, Any], around: _Records) -> str:
+    members = (f"{name}={text}" for name, text in _members(steps, values, around))
     return "{" + ", ".join(members) + "}"
 
 
-def _elements(field: Field, type: Array, values: Sequence[Any], scope: Scope) -> str:
-    shown = [_reading(field, type.element, value, scope) for value in values[:_MOST_ELEMENTS]]
+def _reading(step: AnyStep, value: Any, records: _Records) -> str:
+    match step:
+        case RecordStep():
+            return _record(step.steps, value, records)
+        case RepeatStep():
+            return _elements(step, value, records)
+        case ChooseStep():
+            return _case(step, value, records)
+        case IntegerStep():
+            return integer_reading(step.field, step.type, value)
+        case FloatStep():
+            return physical(step.field, float(value))
+        case BytesStep():
+            return quoted(value) if isinstance(step.type, Text) else f"hex:{value}"
+        case ConstantStep():
+            return _reading(step.value, value, records)
+
+
+def _elements(step: RepeatStep, values: Sequence[Any], records: _Records) -> str:
+    shown = [_reading(step.element, value, records) for value in values[:_MOST_ELEMENTS]]
     if len(values) > _MOST_ELEMENTS:
         shown.append(f"... {len(values)} in all")
     return "[" + ", ".join(shown) + "]"
 
 
-def _case(type: Switch, value: Any, scope: Scope) -> str:
-    chosen = scope[type.selector]
-    for case in type.cases:
-        if case.value == chosen and isinstance(case.type, Struct):
-            return _members(case.type.fields, value or {}, scope)
+def _case(step: ChooseStep, value: Any, records: _Records) -> str:
+    by = step.selector
+    chosen = step.case(by if isinstance(by, int) else records[by.level][by.name])
+    if isinstance(chosen, RecordStep):
+        return _record(chosen.steps, value or {}, records)
     return f"hex:{value}"
 
 
@@ -181,12 +152,6 @@ def integer_reading(field: Field, type: Integer, value: int, gap: str = "") -> s
 def character(value: int) -> str:
     """The character of that code in quotes, or the number where it can't be printed."""
     return f"'{chr(value)}'" if 0x20 <= value < 0x7F else str(value)
-
-
-def _number_name(type: Integer | Float) -> str:
-    if isinstance(type, Float):
-        return f"float{type.bits}"
-    return f"{'s' if type.signed else 'u'}int{type.bits}" if type.role == "number" else type.role
 
 
 def _shifted(value: Fraction, digits: int) -> str:

@@ -11,6 +11,7 @@ from dataclasses import field as dataclass_field
 from fractions import Fraction
 from typing import ClassVar, Literal
 
+from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.names import free_name
 from protogen.model.origin import NOTHING, About
 from protogen.model.sizes import SizeSet
@@ -34,60 +35,6 @@ def counting_bits(greatest: int) -> int:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NamedValue:
-    """A name for a raw value."""
-
-    name: str
-    value: int
-    about: About = NOTHING
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Enum:
-    """Names of raw values. Unknown values are kept unless the enum is closed."""
-
-    name: str
-    """Snake-case name, unique in the protocol."""
-    values: tuple[NamedValue, ...]
-    closed: bool = False
-    about: About = NOTHING
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NamedBit:
-    """A name for one bit, counted from the least significant bit 0."""
-
-    name: str
-    bit: int
-    about: About = NOTHING
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Flags:
-    """Names of single bits of one integer. Unknown bits are kept."""
-
-    name: str
-    bits: tuple[NamedBit, ...]
-    about: About = NOTHING
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BitField:
-    """A named run of bits, `low` to `high`, both included."""
-
-    name: str
-    low: int
-    high: int
-    enum: Enum | None = None
-    about: About = NOTHING
-
-    @property
-    def mask(self) -> int:
-        """The bits of this run, in place."""
-        return ((1 << (self.high - self.low + 1)) - 1) << self.low
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Integer:
     """An integer of `bits` bits in `size` wire bytes of `byte_bits` bits each.
 
@@ -106,6 +53,17 @@ class Integer:
     extent: ClassVar[None] = None
     holds_values: ClassVar[bool] = True
     needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def name(self) -> str:
+        """The name in the schema language, such as `sint14` or `char`."""
+        kind = "sint" if self.signed else "uint"
+        return f"{kind}{self.bits}" if self.role == "number" else self.role
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language, such as `uint16 big`."""
+        return self.name if self.size == 1 else f"{self.name} {self.byte_order}"
 
     @property
     def width(self) -> int:
@@ -154,6 +112,16 @@ class Float:
     needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property
+    def name(self) -> str:
+        """The name in the schema language."""
+        return f"float{self.bits}"
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"{self.name} {self.byte_order}"
+
+    @property
     def pattern(self) -> Integer:
         """The unsigned integer with the same bits."""
         return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
@@ -180,6 +148,11 @@ class Fixed:
     def room(self) -> int:
         """The greatest number of elements or bytes."""
         return self.count
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return str(self.count)
 
     @property
     def counts(self) -> SizeSet:
@@ -209,6 +182,11 @@ class Counted:
         return frozenset({self.field})
 
     @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return self.field
+
+    @property
     def counts(self) -> SizeSet:
         """Possible numbers of elements."""
         return SizeSet.between(self.least, self.greatest)
@@ -228,6 +206,11 @@ class Fill:
     def room(self) -> int:
         """The greatest number of elements or bytes."""
         return self.greatest
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return "fill"
 
     @property
     def counts(self) -> SizeSet:
@@ -252,6 +235,11 @@ class Text:
         return self.extent.needs
 
     @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"ascii[{self.extent.label}]"
+
+    @property
     def sizes(self) -> SizeSet:
         """Wire bytes."""
         return self.extent.counts
@@ -269,6 +257,11 @@ class Octets:
     def needs(self) -> frozenset[str]:
         """The name of the field that counts, if one does."""
         return self.extent.needs
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"bytes[{self.extent.label}]"
 
     @property
     def sizes(self) -> SizeSet:
@@ -292,6 +285,11 @@ class Struct:
     """Names of fields in front of the struct that count or select something inside of it."""
     extent: ClassVar[None] = None
 
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return self.name
+
     def __post_init__(self) -> None:
         stored = any(field.is_stored or field.fills for field in self.fields)
         object.__setattr__(self, "sizes", total(self.fields))
@@ -305,6 +303,11 @@ class Array:
 
     element: Type
     extent: Extent
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language, such as `sint14[3]`."""
+        return f"{self.element.label}[{self.extent.label}]"
 
     @property
     def holds_values(self) -> bool:
@@ -348,6 +351,11 @@ class Switch:
     extent: ClassVar[None] = None
 
     @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"switch({self.selector})"
+
+    @property
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
         return self.rest is not None or any(case.type.holds_values for case in self.cases)
@@ -375,6 +383,8 @@ class Switch:
         return sizes if self.rest is None else sizes | SizeSet.between(0, self.rest)
 
 
+NumberType = Integer | Float
+"""A type of numbers."""
 Scalar = Integer | Float | Text | Octets
 """A type of single values."""
 Type = Scalar | Struct | Array | Switch
@@ -415,6 +425,20 @@ class Field:
     def size(self) -> int | None:
         """Wire bytes, where they do not vary."""
         return self.type.sizes.fixed
+
+    @property
+    def element(self) -> Type:
+        """The type of single values: of an array that of its elements."""
+        type_ = self.type
+        while isinstance(type_, Array):
+            type_ = type_.element
+        return type_
+
+    @property
+    def integer(self) -> Integer | None:
+        """The integer that the field holds, or of which it is an array."""
+        element = self.element
+        return element if isinstance(element, Integer) else None
 
     @property
     def is_stored(self) -> bool:

@@ -13,9 +13,10 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
+from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Enum, Flags, Struct
+from protogen.model.types import Struct
 
 _LEFT_OUT = frozenset(
     {

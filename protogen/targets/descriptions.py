@@ -8,7 +8,7 @@ from __future__ import annotations
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Field, Integer, Type
+from protogen.model.types import Array, Field
 from protogen.targets.escape import paragraphs
 
 
@@ -76,15 +76,11 @@ def specials_of(item: Field) -> list[str]:
     return [f"{value.value} = {value.name}" for value in item.special]
 
 
-def element_of(type_: Type) -> Type:
-    """The type of an array's elements, or the type itself."""
-    return element_of(type_.element) if isinstance(type_, Array) else type_
-
-
-def names_values(type_: Type) -> bool:
-    """Whether the values of a number, or its bits, have names that say what they are."""
-    return isinstance(type_, Integer) and bool(
-        type_.enum or type_.flags or type_.bit_fields or type_.role == "bool"
+def names_values(item: Field) -> bool:
+    """True if the values of a field, or its bits, have names that say what they are."""
+    integer = item.integer
+    return integer is not None and bool(
+        integer.enum or integer.flags or integer.bit_fields or integer.role == "bool"
     )
 
 

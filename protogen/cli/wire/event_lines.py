@@ -31,12 +31,12 @@ class EventLines:
     """Writes events as readable lines of text."""
 
     def __init__(self, protocol: Protocol, *, show_sender: bool) -> None:
-        self._fields = {message.name: message.fields for message in protocol.messages}
+        self._plans = {message.name: message.plan for message in protocol.messages}
         self._caller_parts = {
             sender.name: [part.name for part in sender.frame.caller_parts]
             for sender in protocol.senders
         }
-        names = [*self._fields, "unknown", "invalid"]
+        names = [*self._plans, "unknown", "invalid"]
         self._name_width = max(map(len, names))
         self._sender_width = max(map(len, self._caller_parts)) if show_sender else 0
 
@@ -62,7 +62,7 @@ class EventLines:
         yield self._name(name, "bold cyan")
         for part in self._caller_parts[event.sender]:
             yield from _value(f"@{part}", str(getattr(event.parts, part)))
-        for field, text in readings(self._fields[name], event.message.to_dict()):
+        for field, text in readings(self._plans[name], event.message.to_dict()):
             yield from _value(field, text)
 
     def _unknown(self, event: Any) -> Iterator[Segment]:

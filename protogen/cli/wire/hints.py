@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.cli.wire.scalars import allowed
-from protogen.model.readings import type_name
 from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
@@ -50,9 +49,9 @@ def _hint(
         case Struct(fields=fields) if fields:
             return f"give {members(fields, path)}"
         case Integer():
-            return f"`{path}` is {type_name(type)}: {allowed(field, type)}"
+            return f"`{path}` is {type.label}: {allowed(field, type)}"
         case _:
-            return f"`{path}` is {type_name(type)}"
+            return f"`{path}` is {type.label}"
 
 
 def _case(type: Switch, scope: Scope) -> Type | None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.types import Array, Constant, Field, Float, Integer, NamedValue, Type
+from protogen.model.meanings import NamedValue
+from protogen.model.types import Array, Constant, Field, Float, Integer, Type
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective

@@ -8,17 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from protogen.model.types import (
-    Array,
-    Enum,
-    Field,
-    Flags,
-    Float,
-    Integer,
-    Struct,
-    Switch,
-    Type,
-)
+from protogen.model.meanings import Enum, Flags
+from protogen.model.types import Array, Field, Float, Integer, Struct, Switch, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import VALUE_NAMES, Effective
 from protogen.passes.types.joining import joined_struct

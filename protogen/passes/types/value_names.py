@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from protogen.model.types import BitField, Enum, Flags, Integer, NamedBit, NamedValue
+from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
+from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.types.declared import Effective
 from protogen.schema.syntax.fields import NamedBits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 
 from protogen.model.protocol import Protocol
-from protogen.model.types import Field, Float, Integer
+from protogen.model.types import Field, Float
 from protogen.targets import descriptions
 from protogen.targets.c.lines import WIDTH
 from protogen.targets.escape import c_comment
@@ -29,18 +29,16 @@ def _wrapped(text: str, room: int) -> list[str]:
 
 
 def of_field(item: Field) -> list[str]:
-    """What a field means, with its unit and bounds."""
-    element = descriptions.element_of(item.type)
+    """Meaning of a field, with its unit and bounds."""
     facts = [descriptions.step_of(item)]
-    if (isinstance(element, Integer) and not descriptions.names_values(element)) or (
-        isinstance(element, Float) and item.ranged
-    ):
+    is_number = item.integer is not None or (isinstance(item.element, Float) and item.ranged)
+    if is_number and not descriptions.names_values(item):
         facts.append(f"{item.least}..{item.greatest}")
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     return descriptions.of_field(item, facts)
 
 
 def of_protocol(protocol: Protocol) -> list[str]:
-    """What the protocol is, and the settings of its line."""
+    """Title of the protocol, and the settings of its line."""
     line = descriptions.of_link(protocol.link)
     return [*descriptions.of_protocol(protocol), *([f"{line}."] if line else [])]

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
-from protogen.model.payload_plan import IntegerStep, RecordStep, every_step, plan_of
+from protogen.model.payload_builder import plan_of
+from protogen.model.payload_plan import IntegerStep, RecordStep, every_step
 from protogen.model.protocol import Protocol
-from protogen.model.types import Enum, Flags, Struct
+from protogen.model.types import Struct
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.named import (

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.origin import About
-from protogen.model.types import BitField, Enum, Field, Flags, Float, Integer
+from protogen.model.types import Field, Float
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT
@@ -96,13 +97,13 @@ class BitsView:
 
 def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
     """The runs of bits of a field's integer."""
-    type_ = descriptions.element_of(field.type)
-    if not isinstance(type_, Integer):
+    if field.integer is None:
         return ()
-    return tuple(_bits(record, field, type_, item, names) for item in type_.bit_fields)
+    kind = unsigned_type(field.integer.bits)
+    return tuple(_bits(record, field, kind, item, names) for item in field.integer.bit_fields)
 
 
-def _bits(record: str, field: Field, type_: Integer, item: BitField, names: Names) -> BitsView:
+def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) -> BitsView:
     words = (record, field.name, item.name)
     first = next(iter(paragraphs(item.about.doc)), descriptions.words(item.name))
     run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
@@ -110,7 +111,7 @@ def _bits(record: str, field: Field, type_: Integer, item: BitField, names: Name
         comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
         Macro(names.claim_macro(*words, "mask"), hexadecimal(item.mask)),
         Macro(names.claim_macro(*words, "shift"), f"{item.low}u"),
-        unsigned_type(type_.bits),
+        kind,
         names.claim(*words, "get"),
         names.claim(*words, "set"),
     )
@@ -134,14 +135,14 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield from _fraction(macro, "offset", field.offset)
     if field.unit:
         yield macro("unit", string(field.unit))
-    type_ = descriptions.element_of(field.type)
-    if isinstance(type_, Integer):
+    if field.integer is not None:
         for item in field.special:
-            yield macro(item.name, constant(item.value, type_), _remark(item.about))
+            yield macro(item.name, constant(item.value, field.integer), _remark(item.about))
         if isinstance(field.default, int):
-            yield macro("default", constant(int(field.default), type_))
-    elif isinstance(type_, Float) and isinstance(field.default, int | float):
-        yield macro("default", repr(float(field.default)) + ("f" if type_.bits == 32 else ""))
+            yield macro("default", constant(int(field.default), field.integer))
+    elif isinstance(field.element, Float) and isinstance(field.default, int | float):
+        suffix = "f" if field.element.bits == 32 else ""
+        yield macro("default", repr(float(field.default)) + suffix)
 
 
 def _fraction(macro: object, word: str, value: Fraction) -> Iterable[Macro]:

@@ -10,7 +10,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Integer
 from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
-from protogen.targets.markdown.walk import type_users
+from protogen.targets.markdown.walk import named_fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Context:
     @classmethod
     def of(cls, protocol: Protocol) -> Context:
         """Look everything up once."""
-        users = type_users(protocol.messages)
+        users = _users(protocol.messages)
         shared = frozenset(name for name, integers in users.items() if len(integers) > 1)
         framings = {
             (sender.name, framing.message): framing
@@ -46,6 +46,18 @@ class Context:
         """Return the bytes of a message's struct in C: on 32-bit machines, and on an AVR."""
         natural, small = self.structs
         return natural.of(message.plan.steps), small.of(message.plan.steps)
+
+
+def _users(messages: Iterable[Message]) -> dict[str, list[Integer]]:
+    """The integers of the fields that use each enum and flags, by its name."""
+    users: dict[str, list[Integer]] = {}
+    for message in messages:
+        for _, field in named_fields(message.plan.steps):
+            integer = field.integer
+            named = integer and (integer.enum or integer.flags)
+            if integer and named:
+                users.setdefault(named.name, []).append(integer)
+    return users
 
 
 def by_frame(senders: Iterable[Sender]) -> list[list[Sender]]:

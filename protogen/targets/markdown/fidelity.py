@@ -51,7 +51,7 @@ class FidelityView:
 def count(protocol: Protocol) -> Counts:
     """Count what a protocol says."""
     specified = [message for message in protocol.messages if not message.unspecified]
-    named = [field for message in specified for _, field in named_fields(message.fields)]
+    named = [field for message in specified for _, field in named_fields(message.plan.steps)]
     examples = [example for _, example in _examples(protocol)]
     contradicting = sum(example.contradicts is not None for example in examples)
     return Counts(

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from protogen.model.types import BitField, Enum, Field, Flags, Integer, NamedValue
+from protogen.model.meanings import BitField, Enum, Flags, NamedValue
+from protogen.model.types import Field, Integer
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.path import Path
 from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.types import integer_of
 from protogen.targets.markdown.values import Anchors, character, tells_more, values_text
 from protogen.targets.markdown.words import bounds, code, hex_number
 
@@ -27,7 +27,7 @@ class Legend:
 
 def legends(field: Field, path: Path, anchors: Anchors) -> Iterable[Legend]:
     """Yield the tables of a field's own values that `range_text` links to."""
-    integer = integer_of(field.type)
+    integer = field.integer
     if integer is None:
         return
     anchor = anchors.of_type(path, integer)

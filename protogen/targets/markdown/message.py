@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from protogen.model.frame import Frame
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message, Overload
+from protogen.model.payload_plan import AnyStep
 from protogen.model.protocol import Sender
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Field
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.anchors import decision_link, message_anchor, message_link
 from protogen.targets.markdown.context import Context, by_frame
@@ -74,7 +74,7 @@ def message_view(context: Context, message: Message) -> MessageView:
         facts=tuple(_facts(context, message)),
         notes=(*_notes(senders, message), *prose(message.about.doc)),
         layouts=tuple(_layouts(senders, message, anchors)),
-        legends=tuple(_legends(message.fields, anchors)),
+        legends=tuple(_legends(message.plan.steps, anchors)),
         examples=tuple(examples),
     )
 
@@ -153,6 +153,6 @@ def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> I
         )
 
 
-def _legends(fields: Iterable[Field], anchors: Anchors) -> Iterator[Legend]:
-    for path, field in named_fields(fields):
+def _legends(steps: Iterable[AnyStep], anchors: Anchors) -> Iterator[Legend]:
+    for path, field in named_fields(steps):
         yield from legends(field, path, anchors)

@@ -19,7 +19,7 @@ def message_table(frame: Frame, message: Message, anchors: Anchors) -> Table:
     rows: list[tuple[str, ...]] = []
     for slot in slots(frame, message.sizes):
         if isinstance(slot.part, PayloadPart):
-            rows += (_field_cells(row, slot) for row in field_rows(message.fields, anchors))
+            rows += (_field_cells(row, slot) for row in field_rows(message.plan.steps, anchors))
         else:
             rows.append(_part_cells(slot, frame, message))
     return table(_HEADER, rows)

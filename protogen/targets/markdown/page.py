@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from protogen.model.meanings import Enum, Flags
 from protogen.model.protocol import Protocol
-from protogen.model.types import Enum, Flags
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.context import Context
 from protogen.targets.markdown.framing import FrameView, frame_views

@@ -30,7 +30,7 @@ from protogen.targets.markdown.anchors import decision_link
 from protogen.targets.markdown.layout import CodePart, Slot, length_values, part_title, slots
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.types import type_text
+from protogen.targets.markdown.types import number_text
 from protogen.targets.markdown.values import character, raw_text
 from protogen.targets.markdown.words import code, hex_bytes, hex_number, listed, size_text
 
@@ -51,7 +51,7 @@ def _frame_row(frame: Frame, slot: Slot) -> tuple[str, ...]:
 
 def part_type(part: Part) -> str:
     """Return a part's type; empty for bytes."""
-    return type_text(part.type) if isinstance(part, NumberPart | ChecksumPart) else ""
+    return number_text(part.type) if isinstance(part, NumberPart | ChecksumPart) else ""
 
 
 def part_value(part: Part) -> str:

@@ -115,7 +115,7 @@ def _unknown_rows(message: Message) -> Iterator[tuple[str, ...]]:
         known = f"{plural(message.sizes, 'byte')} of payload"
         yield message_link(message.name), "all", known, place(message.about.source)
         return
-    for path, field in named_fields(message.fields):
+    for path, field in named_fields(message.plan.steps):
         if field.unknown:
             known = sentences(plural(field.type.sizes, "byte"), markdown(field.about.doc))
             yield message_link(message.name), code(path.shown), known, place(field.about.source)

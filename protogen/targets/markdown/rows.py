@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from protogen.model.payload_plan import (
+    AnyStep,
+    CaseStep,
+    ChooseStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    without_constant,
+)
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Array, Case, Field, Integer, Struct, Switch, Type
 from protogen.targets.markdown.layout import Place, behind, element
 from protogen.targets.markdown.origin import about_line
 from protogen.targets.markdown.path import ROOT, Path
@@ -33,26 +41,28 @@ class Row:
     meaning: str = ""
 
 
-def field_rows(fields: tuple[Field, ...], anchors: Anchors) -> Iterator[Row]:
+def field_rows(steps: Sequence[AnyStep], anchors: Anchors) -> Iterator[Row]:
     """Yield the rows of a message's fields."""
-    return _struct_rows(fields, Place(), ROOT, anchors)
+    return _record_rows(steps, Place(), ROOT, anchors)
 
 
-def _struct_rows(
-    fields: tuple[Field, ...], place: Place, path: Path, anchors: Anchors
+def _record_rows(
+    steps: Sequence[AnyStep], place: Place, path: Path, anchors: Anchors
 ) -> Iterator[Row]:
-    for field in fields:
-        inner = path.field(field.name)
-        yield _field_row(field, place, inner, anchors)
-        yield from _inner_rows(field.type, place, inner, anchors)
-        place = behind(inner.shown) if field.size is None else place.plus(field.size)
+    for step in steps:
+        inner = path.field(step.name)
+        yield _field_row(step, place, inner, anchors)
+        yield from _inner_rows(step, place, inner, anchors)
+        size = step.sizes.fixed
+        place = behind(inner.shown) if size is None else place.plus(size)
 
 
-def _field_row(field: Field, place: Place, path: Path, anchors: Anchors) -> Row:
+def _field_row(step: AnyStep, place: Place, path: Path, anchors: Anchors) -> Row:
+    field = step.field
     return Row(
         place=place,
-        sizes=field.type.sizes,
-        type=type_text(field.type),
+        sizes=step.sizes,
+        type=type_text(step),
         name=code(path.shown),
         unit=unit_text(field),
         range=range_text(field, path, anchors),
@@ -60,79 +70,76 @@ def _field_row(field: Field, place: Place, path: Path, anchors: Anchors) -> Row:
     )
 
 
-def _inner_rows(kind: Type, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
+def _inner_rows(step: AnyStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
     """Yield the rows of what a field is made of."""
-    match kind:
-        case Struct():
-            yield from _struct_rows(kind.fields, place, path, anchors)
-        case Array():
-            yield from _element_rows(kind, place, path.element(), anchors)
-        case Switch():
-            yield from _switch_rows(kind, place, path, anchors)
+    match without_constant(step):
+        case RecordStep(steps=steps):
+            yield from _record_rows(steps, place, path, anchors)
+        case RepeatStep() as repeat:
+            yield from _element_rows(repeat, place, path.element(), anchors)
+        case ChooseStep() as choice:
+            yield from _choice_rows(choice, place, path, anchors)
 
 
-def _element_rows(array: Array, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
-    first = element(place, array.element.sizes.fixed, path.shown)
-    if not isinstance(array.element, Struct):
-        yield Row(
-            place=first,
-            sizes=array.element.sizes,
-            type=type_text(array.element),
-            name=code(path.shown),
-        )
-    yield from _inner_rows(array.element, first, path, anchors)
+def _element_rows(step: RepeatStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
+    inner = step.element
+    first = element(place, inner.sizes.fixed, path.shown)
+    if not isinstance(inner, RecordStep):
+        yield Row(place=first, sizes=inner.sizes, type=type_text(inner), name=code(path.shown))
+    yield from _inner_rows(inner, first, path, anchors)
 
 
-def _switch_rows(switch: Switch, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
-    for case in switch.cases:
-        yield from _case_rows(switch, case, place, path, anchors)
-    otherwise = "invalid"
-    if switch.rest is not None:
-        otherwise = f"raw bytes to the end, at most {plural(switch.rest, 'byte')}"
-    rest = SizeSet.between(0, switch.rest or 0)
+def _choice_rows(step: ChooseStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
+    for case in step.cases:
+        yield from _case_rows(step, case, place, path, anchors)
+    otherwise, rest = "invalid", SizeSet.exactly(0)
+    if step.rest is not None:
+        most = plural(step.rest.greatest, "byte")
+        otherwise, rest = f"raw bytes to the end, at most {most}", step.rest.sizes
     yield Row(place=place, sizes=rest, type=otherwise, name=f"{code(path.shown)} otherwise")
 
 
 def _case_rows(
-    switch: Switch, case: Case, place: Place, path: Path, anchors: Anchors
+    choice: ChooseStep, case: CaseStep, place: Place, path: Path, anchors: Anchors
 ) -> Iterator[Row]:
-    whole = _case_row(switch, case, place, path)
+    whole = _case_row(choice, case, place, path)
     inner = path.case(case.name)
-    alone = _only_value(case.type)
+    alone = _only_value(case.step)
     if alone is None:
         yield whole
-        yield from _inner_rows(case.type, place, inner, anchors)
+        yield from _inner_rows(case.step, place, inner, anchors)
         return
     # The schema gave the case a type and no name; the model makes it a struct of one field.
     inner = Path(path.shown, inner.field(alone.name).anchor)
     yield replace(_field_row(alone, place, inner, anchors), name=whole.name)
-    yield from _inner_rows(alone.type, place, inner, anchors)
+    yield from _inner_rows(alone, place, inner, anchors)
 
 
-def _only_value(kind: Type) -> Field | None:
+def _only_value(step: AnyStep) -> AnyStep | None:
     """Return the field of a case that is a single type."""
-    if isinstance(kind, Struct) and [field.name for field in kind.fields] == [_UNNAMED]:
-        return kind.fields[0]
+    if isinstance(step, RecordStep) and [inner.name for inner in step.steps] == [_UNNAMED]:
+        return step.steps[0]
     return None
 
 
-def _case_row(switch: Switch, case: Case, place: Place, path: Path) -> Row:
+def _case_row(choice: ChooseStep, case: CaseStep, place: Place, path: Path) -> Row:
+    step = case.step
     return Row(
         place=place,
-        sizes=case.type.sizes,
-        type=type_text(case.type) if case.type.sizes.greatest else "nothing",
-        name=f"{code(path.shown)} if {code(switch.selector)} is {_case_value(case)}",
-        range=_case_range(case.type),
-        meaning=about_line(case.type.about) if isinstance(case.type, Struct) else "",
+        sizes=step.sizes,
+        type=type_text(step) if step.sizes.greatest else "nothing",
+        name=f"{code(path.shown)} if {code(choice.selector_name)} is {_case_value(case)}",
+        range=_case_range(step),
+        meaning=about_line(step.type.about) if isinstance(step, RecordStep) else "",
     )
 
 
-def _case_value(case: Case) -> str:
+def _case_value(case: CaseStep) -> str:
     value = code(short_number(case.value))
     return value if case.name == f"case_{case.value}" else f"{value} {case.name}"
 
 
-def _case_range(kind: Type) -> str:
-    if not isinstance(kind, Integer):
+def _case_range(step: AnyStep) -> str:
+    if not isinstance(step, IntegerStep):
         return ""
-    return bounds(Fraction(kind.least), Fraction(kind.greatest))
+    return bounds(Fraction(step.type.least), Fraction(step.type.greatest))

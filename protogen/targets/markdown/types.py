@@ -2,68 +2,48 @@
 
 from __future__ import annotations
 
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Fill,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    NumberStep,
+    RecordStep,
+    RepeatStep,
 )
+from protogen.model.types import NumberType, Text
 from protogen.targets.markdown.words import code, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
 
 
-def integer_of(kind: Type) -> Integer | None:
-    """Return the integer that a field holds, or of which it is an array."""
-    while isinstance(kind, Array):
-        kind = kind.element
-    return kind if isinstance(kind, Integer) else None
-
-
-def type_text(kind: Type) -> str:
+def type_text(step: AnyStep) -> str:
     """Print a type with its byte order: ``uint16 LE``."""
-    match kind:
-        case Integer() | Float():
-            return _number_text(kind)
-        case Text():
-            return _extended(code("ascii"), kind.extent, "byte")
-        case Octets():
-            return _extended(code("bytes"), kind.extent, "byte")
-        case Array():
-            return _extended(type_text(kind.element), kind.extent, "element")
-        case Switch():
-            return f"depends on {code(kind.selector)}"
-        case Struct():
+    match step:
+        case NumberStep():
+            return number_text(step.type)
+        case BytesStep():
+            name = "ascii" if isinstance(step.type, Text) else "bytes"
+            return _extended(code(name), step.count, "byte")
+        case RepeatStep():
+            return _extended(type_text(step.element), step.count, "element")
+        case ConstantStep():
+            return type_text(step.value)
+        case ChooseStep():
+            return f"depends on {code(step.selector_name)}"
+        case RecordStep():
             return "struct"
 
 
-def number_name(kind: Integer | Float) -> str:
-    """Return the name that a schema gives to a number's type."""
-    if isinstance(kind, Float):
-        return f"float{kind.bits}"
-    if kind.role != "number":
-        return kind.role
-    return f"{'sint' if kind.signed else 'uint'}{kind.bits}"
+def number_text(kind: NumberType) -> str:
+    """Print a number's type with its byte order."""
+    return f"{code(kind.name)} {_ORDERS[kind.byte_order]}" if kind.size > 1 else code(kind.name)
 
 
-def _number_text(kind: Integer | Float) -> str:
-    name = code(number_name(kind))
-    return f"{name} {_ORDERS[kind.byte_order]}" if kind.size > 1 else name
-
-
-def _extended(element: str, extent: Extent, noun: str) -> str:
-    match extent:
-        case Fixed():
-            return element if noun == "byte" else f"{element} x {extent.count}"
-        case Counted():
-            return f"{element} x {code(extent.field)}"
-        case Fill():
-            return f"{element} to the end, at most {plural(extent.greatest, noun)}"
+def _extended(element: str, count: Count, noun: str) -> str:
+    if count.fills:
+        return f"{element} to the end, at most {plural(count.greatest, noun)}"
+    if count.field:
+        return f"{element} x {code(count.field)}"
+    return element if noun == "byte" else f"{element} x {count.known}"

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
-from protogen.model.types import Constant, Enum, Field, Flags, Integer, NamedBit, NamedValue
+from protogen.model.types import Constant, Field, Integer
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.path import Path
-from protogen.targets.markdown.types import integer_of
 from protogen.targets.markdown.words import (
     bounds,
     code,
@@ -94,17 +94,17 @@ def name_of(value: int, enum: Enum | None) -> str:
 def _constant_text(field: Field) -> str:
     if field.const is None:
         return ""
-    return f"always {constant(field.const, integer_of(field.type))}"
+    return f"always {constant(field.const, field.integer)}"
 
 
 def _default_text(field: Field) -> str:
     if field.default is None:
         return ""
-    return f"default {constant(field.default, integer_of(field.type))}"
+    return f"default {constant(field.default, field.integer)}"
 
 
 def _named_text(field: Field, path: Path, anchors: Anchors) -> str:
-    integer = integer_of(field.type)
+    integer = field.integer
     if integer is None:
         return ""
     anchor = anchors.of_type(path, integer)
@@ -138,7 +138,7 @@ def _linked(names: Sequence[str], noun: str, anchor: str) -> str:
 
 def _bounds_text(field: Field) -> str:
     """Print the range, unless names or a constant say more than the type's own bounds."""
-    integer = integer_of(field.type)
+    integer = field.integer
     named = integer and (integer.enum or integer.flags or integer.bit_fields)
     if field.least is None and field.greatest is None:
         return ""

@@ -6,22 +6,10 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
-from protogen.model.types import (
-    Array,
-    BitField,
-    Enum,
-    Field,
-    Flags,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
-)
+from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty

@@ -5,7 +5,7 @@ from __future__ import annotations
 from protogen.model.messages import Message
 from protogen.model.origin import About
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Field, Integer
+from protogen.model.types import Field
 from protogen.targets import descriptions
 from protogen.targets.escape import python_docstring
 
@@ -27,9 +27,8 @@ def named(name: str, item: About) -> list[str]:
 
 def field(item: Field) -> list[str]:
     """What a field means, with its unit and bounds."""
-    element = descriptions.element_of(item.type)
     facts = [descriptions.step_of(item)]
-    if isinstance(element, Integer) and not descriptions.names_values(element):
+    if item.integer is not None and not descriptions.names_values(item):
         facts.append(f"{item.least}..{item.greatest}")
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     if item.const is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
     AnyStep,
     FloatStep,
@@ -9,7 +10,6 @@ from protogen.model.payload_plan import (
     NumberStep,
     RecordStep,
     RepeatStep,
-    plan_of,
 )
 from protogen.model.types import Integer
 from protogen.targets.c.comments import comment

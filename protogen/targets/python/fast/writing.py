@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from protogen.model.messages import Message
+from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -17,7 +18,6 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
     RestStep,
-    plan_of,
     without_constant,
 )
 from protogen.model.types import Field, Integer, Struct, Text
