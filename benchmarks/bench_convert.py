@@ -24,8 +24,8 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 from bench_columns import CASES, Case, frames, write_page  # noqa: E402
 
 import protogen  # noqa: E402
-from protogen.convert.kinds import OutputFormat  # noqa: E402
-from protogen.convert.run import Job, convert, plan  # noqa: E402
+from protogen.convert.formats import OutputFormat  # noqa: E402
+from protogen.convert.runs.conversion import Job, convert, plan  # noqa: E402
 
 OUT = Path(__file__).with_name("convert.md")
 FORMATS = (OutputFormat.PARQUET, OutputFormat.ARROW, OutputFormat.JSONL, OutputFormat.CSV)

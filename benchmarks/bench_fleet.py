@@ -29,8 +29,8 @@ from bench_columns import CASES, Case, frames, write_page  # noqa: E402
 from bench_convert import DIFFERENT, add_folder, kind_of  # noqa: E402
 
 import protogen  # noqa: E402
-from protogen.convert.kinds import OutputFormat  # noqa: E402
-from protogen.convert.run import Fleet, Job, plan  # noqa: E402
+from protogen.convert.formats import OutputFormat  # noqa: E402
+from protogen.convert.runs.conversion import Fleet, Job, plan  # noqa: E402
 
 OUT = Path(__file__).with_name("fleet.md")
 NUMBERS = (1, 2)
@@ -49,7 +49,7 @@ class Found:
 
 def converted(case: Case, capture: Path, client: Any, part_size: int, folder: Path) -> Found:
     """Have the workers of a cluster convert a capture into a new folder."""
-    from protogen.convert.fleet import convert_fleet
+    from protogen.convert.runs.fleet import convert_fleet
 
     protocol = protogen.load(ROOT / case.schema)
     runtime = protogen.module_of(protocol).PROTOCOL
@@ -118,7 +118,7 @@ processor, which is what [the page on conversions](convert.md) has of the comman
 def _rows(options: argparse.Namespace, folder: Path) -> Iterator[str]:
     import distributed
 
-    from protogen.convert.fleet import LOCAL_CLUSTER
+    from protogen.convert.runs.fleet import LOCAL_CLUSTER
 
     size, part_size = options.megabytes * 1_000_000, options.part_size * 1_000_000
     with ExitStack() as opened:

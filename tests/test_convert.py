@@ -15,11 +15,11 @@ from compiled import DOCUMENTS, module_at, name_of, protocol_of
 from test_json_lines import capture_of
 
 from protogen.convert import errors
+from protogen.convert.columns.python_values import json_of_each
+from protogen.convert.columns.tables import tables_of
 from protogen.convert.errors import ConvertError, needed
-from protogen.convert.mcap_writer import McapWriter, json_schema
-from protogen.convert.outputs import Pending
-from protogen.convert.tables import tables_of
-from protogen.convert.values import json_of_each
+from protogen.convert.writers.mcap_writer import McapWriter, json_schema
+from protogen.convert.writers.pending_files import Pending
 
 pytest.importorskip("pyarrow")
 mcap_reader = pytest.importorskip("mcap.reader")

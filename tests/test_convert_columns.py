@@ -21,16 +21,24 @@ np = pytest.importorskip("numpy")
 pa = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 
-from protogen.convert.arrays import Lists, Numbers  # noqa: E402
-from protogen.convert.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
-from protogen.convert.batches import Batch, Tally  # noqa: E402
-from protogen.convert.chunks import Chunk  # noqa: E402
-from protogen.convert.composed import Scattered, Structs  # noqa: E402
-from protogen.convert.decoding import open_decoder  # noqa: E402
-from protogen.convert.kinds import OutputFormat  # noqa: E402
-from protogen.convert.meanings import NameFinder, physical  # noqa: E402
-from protogen.convert.tables import FLOAT64, Listed, Naming, Physical, Record, Scalar, tables_of  # noqa: E402
-from protogen.convert.values import as_list  # noqa: E402
+from protogen.convert.columns.arrays import Lists, Numbers  # noqa: E402
+from protogen.convert.columns.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
+from protogen.convert.columns.batches import Batch, Tally  # noqa: E402
+from protogen.convert.columns.composite_arrays import Scattered, Structs  # noqa: E402
+from protogen.convert.columns.decoders import open_decoder  # noqa: E402
+from protogen.convert.columns.physical_values import NameFinder, physical  # noqa: E402
+from protogen.convert.columns.python_values import as_list  # noqa: E402
+from protogen.convert.columns.tables import (  # noqa: E402
+    FLOAT64,
+    Listed,
+    Naming,
+    Physical,
+    Record,
+    Scalar,
+    tables_of,
+)
+from protogen.convert.formats import OutputFormat  # noqa: E402
+from protogen.convert.inputs.chunks import Chunk  # noqa: E402
 
 ENGINES = ["python", None]
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))

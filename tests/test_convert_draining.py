@@ -10,8 +10,8 @@ from random import Random
 
 import pytest
 
-from protogen.convert import draining
-from protogen.convert.draining import DrainedFile
+from protogen.convert.writers import drained_file as draining
+from protogen.convert.writers.drained_file import DrainedFile
 
 
 def test_all_that_was_written_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

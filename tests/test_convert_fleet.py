@@ -28,20 +28,13 @@ pytest.importorskip("numpy")
 parquet = pytest.importorskip("pyarrow.parquet")
 dataset = pytest.importorskip("pyarrow.dataset")
 
-from protogen.convert.batches import Tally  # noqa: E402
-from protogen.convert.begun import MARKERS, marker_of  # noqa: E402
-from protogen.convert.decoding import column_decoders  # noqa: E402
+from protogen.convert.columns.batches import Tally  # noqa: E402
+from protogen.convert.columns.decoders import column_decoders  # noqa: E402
+from protogen.convert.columns.python_values import as_list  # noqa: E402
+from protogen.convert.columns.tables import tables_of  # noqa: E402
 from protogen.convert.errors import ConvertError  # noqa: E402
-from protogen.convert.fleet import LOCAL_CLUSTER, convert_fleet  # noqa: E402
-from protogen.convert.inputs import Source  # noqa: E402
-from protogen.convert.parts import (  # noqa: E402
-    Part,
-    PartDone,
-    Work,
-    convert_part,
-    read_marker,
-)
-from protogen.convert.ranges import (  # noqa: E402
+from protogen.convert.inputs.sources import Source  # noqa: E402
+from protogen.convert.runs.byte_ranges import (  # noqa: E402
     END,
     GREATEST,
     START,
@@ -49,11 +42,18 @@ from protogen.convert.ranges import (  # noqa: E402
     RangeDecoder,
     guess_entry,
 )
-from protogen.convert.run import Fleet, Job, convert, plan  # noqa: E402
-from protogen.convert.state import RECORD  # noqa: E402
-from protogen.convert.tables import tables_of  # noqa: E402
-from protogen.convert.values import as_list  # noqa: E402
-from protogen.convert.writers import OutputFormat  # noqa: E402
+from protogen.convert.runs.capture_parts import (  # noqa: E402
+    Part,
+    PartDone,
+    Work,
+    convert_part,
+    read_marker,
+)
+from protogen.convert.runs.conversion import Fleet, Job, convert, plan  # noqa: E402
+from protogen.convert.runs.fleet import LOCAL_CLUSTER, convert_fleet  # noqa: E402
+from protogen.convert.runs.journal import MARKERS, marker_of  # noqa: E402
+from protogen.convert.runs.run_record import RECORD  # noqa: E402
+from protogen.convert.writers.format_writers import OutputFormat  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -175,7 +175,7 @@ def test_ranges_meet_terabytes_behind_the_start() -> None:
 
 
 def test_a_capture_is_as_large_as_parts_can_be_told_to_fit(tmp_path: Path) -> None:
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     (tmp_path / "run.bin").write_bytes(bytes(10))
     job = job_of(RN1, "brain", tmp_path / "out")
@@ -211,7 +211,7 @@ def test_a_full_disk_is_told_by_the_name_of_the_folder(tmp_path: Path, monkeypat
 
     capture = tmp_path / "run.bin"
     capture.write_bytes(bytes(50))
-    monkeypatch.setattr("protogen.convert.parts.write_all", fill)
+    monkeypatch.setattr("protogen.convert.runs.capture_parts.write_all", fill)
     work = Work(protocol_of(RN1), "brain", str(tmp_path / "out"))
     for span in ((0, 50), None):
         with pytest.raises(OSError, match="no space") as found:
@@ -221,7 +221,7 @@ def test_a_full_disk_is_told_by_the_name_of_the_folder(tmp_path: Path, monkeypat
 
 def test_parts_that_fit_are_not_looked_at_again() -> None:
     """Else captures of thousands of parts would take time that grows with their square."""
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     class Counted(dict[int, PartDone]):
         looks = 0
@@ -244,7 +244,7 @@ def test_parts_that_fit_are_not_looked_at_again() -> None:
 
 def test_a_lost_scheduler_is_no_bug() -> None:
     distributed = pytest.importorskip("distributed")
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     # Older versions have but the class that theirs is made of.
     error = getattr(distributed.client, "FutureCancelledError", CancelledError)
@@ -329,7 +329,7 @@ def test_a_fleet_gives_the_rows_of_one_machine(captures: Path, whole: Path, tmp_
 
 def test_workers_on_this_machine_leave_ctrl_c_to_the_command() -> None:
     pytest.importorskip("distributed")
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     with fleet._client(Fleet(workers=1), pytest.fail) as client:
         (handler,) = client.run(lambda: signal.getsignal(signal.SIGINT)).values()
@@ -351,7 +351,7 @@ def test_what_settings_have_workers_run_at_their_start_goes_in_front(
 ) -> None:
     dask = pytest.importorskip("dask")
     preloading = pytest.importorskip("distributed.preloading")
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     monkeypatch.setattr(preloading, "_import_module", lambda name, folder: None)
     theirs = ["preloaded.py"] if config["preload"] else []
@@ -363,7 +363,7 @@ def test_what_settings_have_workers_run_at_their_start_goes_in_front(
 
 _DYING = """
 import os, signal, threading
-from protogen.convert import parts
+from protogen.convert.runs import capture_parts as parts
 
 def is_first(name):
     try:
@@ -452,7 +452,7 @@ def test_a_fleet_goes_on_where_another_was_ended(
 
 def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) -> None:
     distributed = pytest.importorskip("distributed")
-    from protogen.convert import parts
+    from protogen.convert.runs import capture_parts as parts
 
     path, data = frames_in_frames()
     (tmp_path / "run.bin").write_bytes(data)
@@ -475,7 +475,7 @@ def test_what_a_fleet_did_not_finish_is_not_left_beside_it(
     tmp_path: Path, monkeypatch: Any, second: int | None, ended: str
 ) -> None:
     distributed = pytest.importorskip("distributed")
-    from protogen.convert import fleet
+    from protogen.convert.runs import fleet
 
     path, data = frames_in_frames()
     (tmp_path / "run.bin").write_bytes(data)
@@ -701,8 +701,7 @@ def test_a_marker_holds_only_for_what_it_was_made_of(tmp_path: Path) -> None:
 
 def test_a_worker_can_begin_with_any_module() -> None:
     """It gets a function by the name of its module, and imports nothing else before."""
-    for path in sorted((ROOT / "protogen" / "convert").glob("[a-z]*.py")):
-        module = f"protogen.convert.{path.stem}"
-        if path.stem in ("parts", "inputs", "fleet"):
-            done = subprocess.run([sys.executable, "-c", f"import {module}"], cwd=ROOT, check=False)
-            assert done.returncode == 0, module
+    for name in ("inputs.sources", "runs.capture_parts", "runs.fleet"):
+        module = f"protogen.convert.{name}"
+        done = subprocess.run([sys.executable, "-c", f"import {module}"], cwd=ROOT, check=False)
+        assert done.returncode == 0, module

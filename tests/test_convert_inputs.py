@@ -21,14 +21,21 @@ from cli_support import ROOT, SINK, run, start
 
 from protogen.api import load
 from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
-from protogen.convert.capture_names import names_of
-from protogen.convert.chunks import Chunk, Clock, joined
 from protogen.convert.errors import ConvertError
-from protogen.convert.inputs import Packing, Source, expanded, format_of, open_stream, opened
-from protogen.convert.kinds import InputKind
-from protogen.convert.recorded import record_pieces
-from protogen.convert.textlog import log_pieces
-from protogen.convert.texts import decoded, lines_of
+from protogen.convert.formats import InputKind
+from protogen.convert.inputs.chunks import Chunk, Clock, joined
+from protogen.convert.inputs.recordings import record_pieces
+from protogen.convert.inputs.sources import (
+    Packing,
+    Source,
+    expanded,
+    format_of,
+    open_stream,
+    opened,
+)
+from protogen.convert.inputs.text_lines import decoded, lines_of
+from protogen.convert.inputs.text_logs import log_pieces
+from protogen.convert.runs.table_names import names_of
 
 FRAME = bytes.fromhex("1B 02 45 00 00 45 1B 03")  # `empty` with number 0
 SECOND = bytes.fromhex("1B 02 45 01 00 44 1B 03")
@@ -595,7 +602,7 @@ def test_what_a_storage_says_while_it_is_read_is_no_bug(
 ) -> None:
     """As where credentials expire: by one machine, and by a part that a worker makes."""
     memory = pytest.importorskip("fsspec.implementations.memory")
-    parts = pytest.importorskip("protogen.convert.parts")
+    parts = pytest.importorskip("protogen.convert.runs.capture_parts")
 
     class ClientError(Exception):
         pass

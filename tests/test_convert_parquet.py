@@ -15,10 +15,10 @@ np = pytest.importorskip("numpy")
 pa = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 
-from protogen.convert import arrow_writers  # noqa: E402
-from protogen.convert.arrow_tables import batch_of, schema_of  # noqa: E402
-from protogen.convert.outputs import Pending, continuation, sweep  # noqa: E402
-from protogen.convert.parquet_encodings import spelling_of  # noqa: E402
+from protogen.convert.columns.arrow_tables import batch_of, schema_of  # noqa: E402
+from protogen.convert.writers import arrow_writers  # noqa: E402
+from protogen.convert.writers.parquet_encodings import spelling_of  # noqa: E402
+from protogen.convert.writers.pending_files import Pending, continuation, sweep  # noqa: E402
 
 COUNT = 5000
 DICE = Random(3)

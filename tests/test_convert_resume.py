@@ -19,15 +19,15 @@ from click.testing import Result
 from test_json_lines import capture_of
 
 import protogen
-from protogen.convert import locking
-from protogen.convert.batches import Tally
+from protogen.convert.columns.batches import Tally
+from protogen.convert.columns.tables import tables_of
 from protogen.convert.errors import ConvertError
-from protogen.convert.kinds import OutputFormat
-from protogen.convert.locking import alone
-from protogen.convert.outputs import Pending, forget_torn, write_whole
-from protogen.convert.state import RECORD, Done, State
-from protogen.convert.tables import tables_of
-from protogen.convert.writers import first_files
+from protogen.convert.formats import OutputFormat
+from protogen.convert.runs import folder_locks
+from protogen.convert.runs.folder_locks import alone
+from protogen.convert.runs.run_record import RECORD, Done, State
+from protogen.convert.writers.format_writers import first_files
+from protogen.convert.writers.pending_files import Pending, forget_torn, write_whole
 
 pytest.importorskip("pyarrow")
 
@@ -138,8 +138,8 @@ _KILLED_EVERYWHERE = """
 import os, shutil, sys
 from pathlib import Path
 import protogen
-from protogen.convert.kinds import OutputFormat
-from protogen.convert.run import Job, convert, plan
+from protogen.convert.formats import OutputFormat
+from protogen.convert.runs.conversion import Job, convert, plan
 
 schema, folder, to = Path(sys.argv[1]), Path(sys.argv[2]), OutputFormat(sys.argv[3])
 protocol = protogen.load(schema)
@@ -326,8 +326,8 @@ class TestLocks:
             late.append(descriptor)
             return lock(descriptor, wait=wait)
 
-        lock, late = locking._lock, list[int]()
-        monkeypatch.setattr(locking, "_lock", lock_late)
+        lock, late = folder_locks._lock, list[int]()
+        monkeypatch.setattr(folder_locks, "_lock", lock_late)
         with alone(tmp_path, "a"):
             assert len(late) == 2
             with pytest.raises(ConvertError), alone(tmp_path, "a"):

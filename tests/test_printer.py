@@ -20,13 +20,13 @@ from tooling import require_tool
 
 np = pytest.importorskip("numpy")
 
-from protogen.convert.batches import Tally  # noqa: E402
-from protogen.convert.csv_text import quoted_characters  # noqa: E402
-from protogen.convert.csv_writer import CsvWriter  # noqa: E402
-from protogen.convert.decoding import _PRINTERS  # noqa: E402
-from protogen.convert.kinds import OutputFormat  # noqa: E402
-from protogen.convert.outputs import Pending  # noqa: E402
-from protogen.convert.writers import write_all  # noqa: E402
+from protogen.convert.columns.batches import Tally  # noqa: E402
+from protogen.convert.columns.csv_text import quoted_characters  # noqa: E402
+from protogen.convert.columns.decoders import _PRINTERS  # noqa: E402
+from protogen.convert.formats import OutputFormat  # noqa: E402
+from protogen.convert.writers.csv_writer import CsvWriter  # noqa: E402
+from protogen.convert.writers.format_writers import write_all  # noqa: E402
+from protogen.convert.writers.pending_files import Pending  # noqa: E402
 from protogen.native.print_source import UnprintableError, source_of  # noqa: E402
 from protogen.native.print_steps import (  # noqa: E402
     IN_CELLS,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.convert.kinds import OutputFormat
+from protogen.convert.formats import OutputFormat
 
 if TYPE_CHECKING:
-    from protogen.convert.tables import Tables
+    from protogen.convert.columns.tables import Tables
 
 BUILD_EXAMPLE = "Example: protogen native build schemas"
 PATH_EXAMPLE = "Example: du -sh $(protogen native path)"
@@ -31,7 +31,7 @@ def build(
     again.
     """
     from protogen.cli.schemas import open_protocol, schema_files
-    from protogen.convert.tables import tables_of
+    from protogen.convert.columns.tables import tables_of
     from protogen.live.rows import driver_of
     from protogen.native.build import build as build_library
     from protogen.native.errors import NativeError
@@ -51,7 +51,7 @@ def build(
 
 def _build_printers(name: str, tables: Tables) -> None:
     """Compile what prints rows as text."""
-    from protogen.convert.text_library import built_printer
+    from protogen.convert.writers.printer_library import built_printer
     from protogen.native.print_source import UnprintableError
 
     for format in (OutputFormat.JSONL, OutputFormat.CSV):

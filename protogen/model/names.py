@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
+
+_UNIT_WORDS = {"%": "percent", "/": " per ", "^": " ", "°": " deg ", "µ": "u", "Ω": " ohm "}
 
 
 def free_name(name: str, taken: Collection[str]) -> str:
@@ -11,3 +14,12 @@ def free_name(name: str, taken: Collection[str]) -> str:
     while found in taken:
         found, number = f"{name}_{number}", number + 1
     return found
+
+
+def unit_suffix(unit: str | None) -> str:
+    """The name of a unit: `mm_per_s` for `mm/s`, `scaled` for what has no letters."""
+    text = unit or ""
+    for sign, word in _UNIT_WORDS.items():
+        text = text.replace(sign, word)
+    words = re.findall(r"[A-Za-z0-9]+", text)
+    return "_".join(words).lower() or "scaled"

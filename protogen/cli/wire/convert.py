@@ -14,11 +14,11 @@ import typer
 from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
-from protogen.convert.kinds import InputKind, OutputFormat
+from protogen.convert.formats import InputKind, OutputFormat
 
 if TYPE_CHECKING:
-    from protogen.convert.inputs import Source
-    from protogen.convert.run import Fleet, Job, Result
+    from protogen.convert.inputs.sources import Source
+    from protogen.convert.runs.conversion import Fleet, Job, Result
 
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
 
@@ -83,7 +83,7 @@ def convert(  # noqa: PLR0913 - each option is one argument
     are lost.
     """
     from protogen.cli.wire.codec import open_codec
-    from protogen.convert.run import Job
+    from protogen.convert.runs.conversion import Job
 
     codec = open_codec(schema)
     name = codec.sender_of_bytes(sender)
@@ -141,7 +141,7 @@ def _fleet(
             if given is not None:
                 raise UsageError(f"{option} is for --dask", "add --dask, or leave it out")
         return None
-    from protogen.convert.run import PART_SIZE, Fleet
+    from protogen.convert.runs.conversion import PART_SIZE, Fleet
 
     if to is not OutputFormat.PARQUET:
         raise UsageError("--dask makes Parquet", "give --to parquet")
@@ -157,7 +157,7 @@ def _run(
     from protogen.capture.errors import CaptureError
     from protogen.cli.progress import progress
     from protogen.convert.errors import ConvertError
-    from protogen.convert.run import convert, plan
+    from protogen.convert.runs.conversion import convert, plan
 
     try:
         named = plan(job, captures)
@@ -165,7 +165,7 @@ def _run(
         with _plain_warnings(), progress("converting", total, in_bytes=True) as advance:
             if fleet is None:
                 return list(convert(job, named, complaints.add, advance))
-            from protogen.convert.fleet import convert_fleet
+            from protogen.convert.runs.fleet import convert_fleet
 
             return list(convert_fleet(job, named, fleet, complaints.add, advance))
     except ConvertError as error:

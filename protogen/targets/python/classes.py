@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
+from protogen.model.names import unit_suffix
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets.escape import paragraphs, python_comment
@@ -15,7 +16,7 @@ from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.rules import field_rule
-from protogen.targets.python.spelling import class_name, member_name, unit_suffix
+from protogen.targets.python.spelling import class_name, member_name
 from protogen.targets.python.wrapping import WIDTH, docstring, method, remark, union, wrapped
 
 _INDENT = 4

@@ -1,0 +1,1 @@
+"""Tables of captures: which columns there are, and their values."""

@@ -1,0 +1,202 @@
+"""Bytes of the line made into batches of rows."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from protogen.convert.columns.csv_text import csv_of
+from protogen.convert.columns.event_values import plain_fields, reached
+from protogen.convert.columns.rows import Rows
+from protogen.convert.columns.tables import Column, Table, Tables
+from protogen.convert.inputs.chunks import Chunk, Clock
+from protogen.runtime.decoder import Decoder
+from protogen.runtime.sender import SenderSpec
+
+_ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
+
+
+@dataclass(slots=True)
+class Tally:
+    """What was in a capture, for people."""
+
+    bytes: int = 0
+    """Bytes of the line."""
+    messages: Counter[str] = field(default_factory=Counter)
+    """Frames of each message."""
+    unknown: int = 0
+    """Frames of unknown identity."""
+    invalid: Counter[str] = field(default_factory=Counter)
+    """Bytes that are no frame, by reason."""
+
+    def add(self, other: Tally) -> None:
+        """Add what was in another part."""
+        self.bytes += other.bytes
+        self.messages += other.messages
+        self.unknown += other.unknown
+        self.invalid += other.invalid
+
+    def as_json(self) -> dict[str, Any]:
+        """The numbers for JSON."""
+        return {
+            "bytes": self.bytes,
+            "messages": dict(sorted(self.messages.items())),
+            "unknown": self.unknown,
+            "invalid": dict(sorted(self.invalid.items())),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Tally:
+        """The tally of what `as_json` gave."""
+        return cls(
+            data["bytes"], Counter(data["messages"]), data["unknown"], Counter(data["invalid"])
+        )
+
+
+class Batch(Protocol):
+    """What some bytes of a capture were."""
+
+    @property
+    def tally(self) -> Tally:
+        """How much of what is in it."""
+
+    def rows(self) -> Iterable[Rows]:
+        """The rows of each table that has some, in the order of the capture."""
+
+    def lines(self) -> Iterable[bytes]:
+        """The events as lines of JSON, in the order of the capture: one or more in each text."""
+
+    def csv(self) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
+
+
+class BatchDecoder(Protocol):
+    """Decodes a capture."""
+
+    def feed(self, chunk: Chunk) -> Iterator[Batch]:
+        """Take the next bytes of the capture; what is certain now."""
+
+    def flush(self) -> Iterator[Batch]:
+        """Take the end of the capture; what remains."""
+
+
+def batches_of(decoder: BatchDecoder, chunks: Iterable[Chunk]) -> Iterator[Batch]:
+    """All batches of a capture, its end included."""
+    for chunk in chunks:
+        yield from decoder.feed(chunk)
+    yield from decoder.flush()
+
+
+# --- by events ------------------------------------------------------------------------------------
+
+
+class EventDecoder:
+    """Decodes with the generated Python, an object for each event. It needs no other package."""
+
+    def __init__(self, tables: Tables, spec: SenderSpec[Any, Any], start: int = 0) -> None:
+        """`start` is the offset of the first byte that will be fed."""
+        self._tables = tables
+        self._decoder = Decoder(spec)
+        self._clock = Clock()
+        self._start = start
+
+    def feed(self, chunk: Chunk) -> Iterator[EventBatch]:
+        """Take the next bytes of the capture; what is certain now."""
+        self._clock.take(chunk)
+        yield self._batch(self._decoder.feed(chunk.data))
+
+    def flush(self) -> Iterator[EventBatch]:
+        """Take the end of the capture; what remains."""
+        yield self._batch(self._decoder.flush())
+
+    def _batch(self, events: Sequence[Any]) -> EventBatch:
+        times = self._clock.at([event.offset + event.size - 1 for event in events])
+        if events:
+            self._clock.forget(events[-1].offset + events[-1].size)
+        return EventBatch(self._tables, events, times, self._start)
+
+
+@dataclass(frozen=True, slots=True)
+class EventBatch:
+    """Events, each with the time of its last byte."""
+
+    tables: Tables
+    events: Sequence[Any]
+    times: Sequence[int | None]
+    start: int = 0
+    """What is to be added to the offsets of the events."""
+
+    @property
+    def tally(self) -> Tally:
+        """How much of what is in it."""
+        tally = Tally()
+        for event in self.events:
+            tally.bytes += event.size
+            if event.kind == "message":
+                tally.messages[event.message.NAME] += 1
+            elif event.kind == "unknown":
+                tally.unknown += 1
+            else:
+                tally.invalid[event.reason] += event.size
+        return tally
+
+    def rows(self) -> Iterator[Rows]:
+        """The rows of each table that has some."""
+        rows: dict[str, list[list[Any]]] = {}
+        for event, when in zip(self.events, self.times, strict=True):
+            table = self._table_of(event)
+            rows.setdefault(table.name, []).append(self._row(table, event, when))
+        for table in self.tables.all_tables:
+            if table.name in rows:
+                yield Rows(table, list(zip(*rows[table.name], strict=True)))
+
+    def _table_of(self, event: Any) -> Table:
+        if event.kind == "message":
+            return self.tables.messages[event.message.NAME]
+        return self.tables.unknown if event.kind == "unknown" else self.tables.invalid
+
+    def _row(self, table: Table, event: Any, when: int | None) -> list[Any]:
+        if event.kind == "message":
+            assert table.message is not None
+            values = plain_fields(table.message.fields, event.message.to_dict())
+        elif event.kind == "unknown":
+            values = {"payload": event.payload}
+        else:
+            values = {"reason": event.reason, "raw": event.raw}
+        frame = {"offset": self.start + event.offset, "size": event.size, "t_ns": when}
+        return [
+            *(_frame_value(column, frame, event) for column in table.frame_columns),
+            *(value_in(column, values) for column in table.columns),
+        ]
+
+    def lines(self) -> Iterator[bytes]:
+        """The events as lines of JSON."""
+        for pair in zip(self.events, self.times, strict=True):
+            yield self._line(*pair).encode("utf-8", "surrogatepass")
+
+    def csv(self) -> Iterator[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
+        for rows in self.rows():
+            yield rows.table, [csv_of(rows)]
+
+    def _line(self, event: Any, when: int | None) -> str:
+        line = event.as_json()
+        line["offset"] += self.start
+        ordered = {key: line.pop(key) for key in _ORDER if key in line}
+        timed = {} if when is None else {"t_ns": when}
+        return json.dumps({**ordered, **line, **timed}, ensure_ascii=False) + "\n"
+
+
+def _frame_value(column: Column, frame: Mapping[str, Any], event: Any) -> Any:
+    if column.path[0] == "@":
+        return getattr(event.parts, column.path[1])
+    return frame[column.path[0]]
+
+
+def value_in(column: Column, values: Mapping[str, Any]) -> Any:
+    """What a column has of the values of a message."""
+    raw = reached(values, column.path)
+    return raw if column.derived is None else column.derived.of(raw)

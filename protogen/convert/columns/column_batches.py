@@ -1,0 +1,362 @@
+"""Batches from NumPy tables: whole columns at once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from protogen.capture.engines import Engine
+from protogen.capture.schema import CaptureSchema, InvalidReason, Record, TableSchema
+from protogen.capture.schema import Column as Held
+from protogen.capture.schema import Number as NumberShape
+from protogen.capture.schema import Text as TextShape
+from protogen.capture.tables import Tables as Filled
+from protogen.convert.columns.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
+from protogen.convert.columns.batches import Tally
+from protogen.convert.columns.composite_arrays import Same, Scattered
+from protogen.convert.columns.nested_columns import nested
+from protogen.convert.columns.physical_values import NameFinder, physical
+from protogen.convert.columns.python_values import Values
+from protogen.convert.columns.rows import Rows
+from protogen.convert.columns.tables import REASONS, Column, Naming, Physical, Table, Tables
+from protogen.convert.inputs.chunks import Chunk
+from protogen.model.types import Field, Fixed
+from protogen.model.types import Octets as OctetsType
+from protogen.model.types import Struct as StructType
+from protogen.model.types import Text as TextType
+
+
+class BatchPrinter(Protocol):
+    """Printer of batches as text."""
+
+    def lines(self, batch: ColumnBatch) -> Iterable[bytes]:
+        """The rows of all tables in the order of the capture."""
+
+    def table_lines(self, batch: ColumnBatch) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some."""
+
+
+Reader = Callable[[Any], Values]
+"""Takes a column out of rows."""
+
+_REASON_CODES = np.array(
+    [-1, *(REASONS.index(InvalidReason(number).word) for number in range(1, 9))], "i2"
+)
+"""The place in `REASONS` of each number of a reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """How rows of a message become columns."""
+
+    table: Table
+    held: TableSchema
+    frame: tuple[Reader, ...]
+    fields: tuple[Reader, ...]
+
+
+class Readings:
+    """How each table of a sender is read."""
+
+    def __init__(self, tables: Tables, schema: CaptureSchema) -> None:
+        self.tables = tables
+        self.schema = schema
+        self.messages = {
+            name: _reading(tables.messages[name], held) for name, held in schema.messages.items()
+        }
+        self.unknown = tuple(_frame_readers(tables.unknown, schema.unknown))
+        self.invalid = tuple(_frame_readers(tables.invalid, schema.invalid))
+
+
+def _reading(table: Table, held: TableSchema) -> Reading:
+    frame = tuple(_frame_readers(table, held))
+    fields = tuple(_field_reader(column, held) for column in table.columns)
+    return Reading(table, held, frame, fields)
+
+
+def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
+    """Readers of `offset`, `size` and the parts; the time is not in the rows."""
+    for column in table.frame_columns:
+        role = column.path[0]
+        if role == "t_ns":
+            continue
+        source = column.path[-1]
+        name = next(
+            item.name
+            for item in held.columns
+            if (item.role, item.source) == (("part", source) if role == "@" else (role, source))
+        )
+        yield _number_reader(name)
+
+
+def _number_reader(name: str) -> Reader:
+    return lambda rows: Numbers(np.ascontiguousarray(rows[name]))
+
+
+# --- the columns of fields ------------------------------------------------------------------------
+
+
+def _field_reader(column: Column, held: TableSchema) -> Reader:
+    """How a column is taken out of rows."""
+    raw = _flat_reader(column, held) or _nested_reader(column, held)
+    match column.derived:
+        case Physical() as meaning:
+            return lambda rows: _derived(raw(rows), meaning, partial(physical, meaning))
+        case Naming() as naming:
+            finder = NameFinder(naming)
+            return lambda rows: _derived(raw(rows), naming, finder.find)
+    return raw
+
+
+def _derived(raw: Values, meaning: Physical | Naming, derive: Callable[[Any], Values]) -> Values:
+    match raw:
+        case Scattered(values=values, places=places):
+            return Scattered(_derived(values, meaning, derive), places)
+        case Same(value=value, count=count):
+            return Same(meaning.of(value), count)
+    return derive(raw)
+
+
+def _flat_reader(column: Column, held: TableSchema) -> Reader | None:
+    """The raw values of a column that is there in every row; None for others."""
+    assert held.message is not None
+    return _raw_reader(column.path, held.message.fields, [held.row])
+
+
+def _nested_reader(column: Column, held: TableSchema) -> Reader:
+    return lambda rows: nested(column.path, held, rows)
+
+
+def _raw_reader(
+    path: Sequence[str], fields: Sequence[Field], records: Sequence[Record]
+) -> Reader | None:
+    """`records` are those on the way, the innermost one last; each but the first is a member."""
+    item = next(item for item in fields if item.name == path[0])
+    inner = records[-1]
+    column = next((c for c in inner.columns if c.role == "field" and c.source == path[0]), None)
+    if column is None or (column.dimensions and len(records) > 1):
+        return None
+    if len(path) == 1:
+        return _leaf_reader(item, column)
+    if not isinstance(column.shape, Record) or not isinstance(item.type, StructType):
+        return None
+    deeper = _raw_reader(path[1:], item.type.fields, [*records, column.shape])
+    name = column.name
+    return None if deeper is None else lambda rows: deeper(rows[name])
+
+
+def _leaf_reader(item: Field, column: Held) -> Reader | None:
+    name = column.name
+    if not column.dimensions:
+        if not isinstance(column.shape, NumberShape):
+            return None
+        return _number_reader(name)
+    counted_by = column.dimensions[0].counted_by
+    if len(column.dimensions) > 1:
+        return None
+    if isinstance(item.type, TextType):
+        return _text_reader(column, item.type, counted_by)
+    if not isinstance(column.shape, NumberShape):
+        return None
+    size = _fixed_count(item)
+    if isinstance(item.type, OctetsType):
+        return lambda rows: Octets(rows[name][:, :size], _counts(rows, counted_by))
+    return lambda rows: Lists(np.ascontiguousarray(rows[name][:, :size]), _counts(rows, counted_by))
+
+
+def _fixed_count(item: Field) -> int | None:
+    extent = getattr(item.type, "extent", None)
+    return extent.count if isinstance(extent, Fixed) else None
+
+
+def _counts(rows: Any, counted_by: str | None) -> Array | None:
+    return None if counted_by is None else np.ascontiguousarray(rows[counted_by]).astype("i4")
+
+
+def _text_reader(column: Held, type: TextType, counted_by: str | None) -> Reader:
+    assert isinstance(column.shape, TextShape)
+    name = column.name
+
+    def read(rows: Any) -> Values:
+        padded = np.ascontiguousarray(rows[name])
+        if isinstance(type.extent, Fixed):
+            return [text.decode("latin-1") for text in padded.tolist()]
+        counts = _counts(rows, counted_by)
+        if counts is None:
+            counts = np.full(len(padded), padded.dtype.itemsize)
+        pairs = zip(padded.tolist(), counts.tolist(), strict=True)
+        return [text.decode("latin-1").ljust(count, "\0") for text, count in pairs]
+
+    return read
+
+
+# --- batches --------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Times:
+    """When the bytes of a capture came: runs of bytes, each with its end and its time."""
+
+    ends: Array
+    times: Array
+
+    def of(self, rows: Any) -> Values:
+        """When the last byte of each row came."""
+        if not len(self.ends):
+            return Nothing(len(rows))
+        lasts = rows["offset"] + rows["size"] - np.uint64(1)
+        places = np.searchsorted(self.ends, lasts, side="right")
+        missing = places >= len(self.ends)
+        found = self.times[np.minimum(places, len(self.ends) - 1)]
+        return Numbers(found, missing if missing.any() else None)
+
+
+@dataclass(slots=True)
+class ColumnBatch:
+    """Rows of a stretch of a capture, in NumPy tables."""
+
+    readings: Readings
+    filled: Filled
+    data: bytes
+    """The bytes of the line that the rows cover, and maybe more behind them."""
+    times: Times
+    printer: BatchPrinter | None = None
+    start: int = 0
+    """What is to be added to the offsets of the rows."""
+
+    @property
+    def tally(self) -> Tally:
+        """How much of what is in it."""
+        filled = self.filled
+        counts = {name: len(rows) for name, rows in filled.messages.items() if len(rows)}
+        sizes = np.bincount(filled.invalid["reason"], filled.invalid["size"], 9)
+        invalid: Counter[str] = Counter()
+        for reason in InvalidReason:
+            if sizes[reason]:
+                invalid[reason.word] = int(sizes[reason])
+        return Tally(filled.size, Counter(counts), len(filled.unknown), invalid)
+
+    def rows(self) -> Iterator[Rows]:
+        """The rows of each table that has some."""
+        for name, rows in self.filled.messages.items():
+            if len(rows):
+                yield self._message_rows(self.readings.messages[name], rows)
+        if len(self.filled.unknown):
+            yield self._unknown_rows()
+        if len(self.filled.invalid):
+            yield self._invalid_rows()
+
+    def lines(self) -> Iterable[bytes]:
+        """The events as lines of JSON."""
+        assert self.printer is not None, "decoded for a format that has no lines"
+        return self.printer.lines(self)
+
+    def csv(self) -> Iterable[tuple[Table, Iterable[bytes]]]:
+        """The rows of each table that has some, as lines of CSV."""
+        assert self.printer is not None, "decoded for a format that has no lines"
+        return self.printer.table_lines(self)
+
+    def with_rows(self, filled: Filled) -> ColumnBatch:
+        """The same batch with only these of its rows."""
+        return ColumnBatch(self.readings, filled, self.data, self.times, self.printer, self.start)
+
+    def raw(self, offset: int, size: int) -> bytes:
+        """The bytes on the wire of an event."""
+        place = offset - self.filled.offset
+        return self.data[place : place + size]
+
+    def times_of(self, rows: Any) -> Values:
+        """When the last byte of each row came."""
+        return self.times.of(rows)
+
+    def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
+        offset, *rest = (reader(rows) for reader in readers)
+        moved = Numbers(offset.values + np.uint64(self.start)) if self.start else offset
+        size, *parts = rest
+        return [moved, size, self.times_of(rows), *parts]
+
+    def _message_rows(self, reading: Reading, rows: Any) -> Rows:
+        frame = self._frame(reading.frame, rows)
+        return Rows(reading.table, [*frame, *(reader(rows) for reader in reading.fields)])
+
+    def _unknown_rows(self) -> Rows:
+        rows = self.filled.unknown
+        places = payload_places(self.readings.schema.unknown)
+        starts = rows[places["payload_offset"]].astype("i8")
+        payload = Spans(
+            self.filled.payloads.tobytes(), starts, starts + rows[places["payload_size"]]
+        )
+        return Rows(
+            self.readings.tables.unknown, [*self._frame(self.readings.unknown, rows), payload]
+        )
+
+    def _invalid_rows(self) -> Rows:
+        rows = self.filled.invalid
+        starts = (rows["offset"] - np.uint64(self.filled.offset)).astype("i8")
+        raw = Spans(self.data, starts, starts + rows["size"])
+        reason = Codes(_REASON_CODES[rows["reason"]], REASONS)
+        return Rows(
+            self.readings.tables.invalid, [*self._frame(self.readings.invalid, rows), reason, raw]
+        )
+
+
+def payload_places(held: TableSchema) -> Mapping[str, str]:
+    """The columns that say where the payload of an unknown frame is."""
+    return {item.source: item.name for item in held.columns if item.role == "payload"}
+
+
+# --- decoding -------------------------------------------------------------------------------------
+
+
+class ColumnDecoder:
+    """Decodes with an engine that fills NumPy tables."""
+
+    def __init__(
+        self,
+        readings: Readings,
+        engine: Engine,
+        start: int = 0,
+        printer: BatchPrinter | None = None,
+    ) -> None:
+        """`start` is the offset of the first byte that will be fed."""
+        self._readings = readings
+        self._engine = engine
+        self._printer = printer
+        self._start = start
+        self._data = b""
+        self._offset = 0
+        self._fed = 0
+        self._ends: Array = np.zeros(0, "u8")
+        self._times: Array = np.zeros(0, "i8")
+
+    def feed(self, chunk: Chunk) -> Iterator[ColumnBatch]:
+        """Take the next bytes of the capture; what is certain now."""
+        self._data += chunk.data
+        if len(chunk.ends):
+            moved = np.array(chunk.ends, "u8") + np.uint64(self._fed)
+            self._ends = np.concatenate([self._ends, moved])
+            self._times = np.concatenate([self._times, np.array(chunk.times, "i8")])
+        self._fed += len(chunk.data)
+        for filled in self._engine.feed(chunk.data):
+            yield self._batch(filled)
+
+    def flush(self) -> Iterator[ColumnBatch]:
+        """Take the end of the capture; what remains."""
+        for filled in self._engine.flush():
+            yield self._batch(filled)
+
+    def _batch(self, filled: Filled) -> ColumnBatch:
+        times = Times(self._ends, self._times)
+        data = self._data[filled.offset - self._offset :]
+        batch = ColumnBatch(self._readings, filled, data, times, self._printer, self._start)
+        covered = filled.offset + filled.size
+        self._data = self._data[covered - self._offset :]
+        self._offset = covered
+        known = np.searchsorted(self._ends, covered, side="right")
+        self._ends, self._times = self._ends[known:], self._times[known:]
+        return batch

@@ -1,0 +1,20 @@
+"""Rows of a table, column by column."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from protogen.convert.columns.tables import Table
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Rows of one table, column by column, in the order of `table.all_columns`."""
+
+    table: Table
+    columns: Sequence[Any]
+
+    def __len__(self) -> int:
+        return len(self.columns[0])

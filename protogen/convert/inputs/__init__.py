@@ -1,0 +1,1 @@
+"""Captures as bytes of the line, whatever they are written in."""

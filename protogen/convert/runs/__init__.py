@@ -1,0 +1,1 @@
+"""Whole conversions: interrupted ones that go on, and fleets of workers."""

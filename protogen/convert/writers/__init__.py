@@ -1,0 +1,1 @@
+"""Tables as files: JSON lines, CSV, Parquet, Arrow and MCAP."""

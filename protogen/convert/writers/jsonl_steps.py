@@ -1,0 +1,136 @@
+"""Steps that print rows as lines of JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from protogen.capture.schema import CaptureSchema, Column, InvalidReason, Number, TableSchema
+from protogen.convert.writers.value_steps import Spot, ValueSteps
+from protogen.model.types import Array, Octets, Type
+from protogen.native.print_steps import (
+    IN_LINES,
+    Condition,
+    HexOf,
+    Integer,
+    Literal,
+    Name,
+    Place,
+    Source,
+    Spelling,
+    Step,
+    Steps,
+    Time,
+    When,
+    number,
+)
+
+
+def line_steps(schema: CaptureSchema) -> list[Steps]:
+    """Steps for the rows of each message, then those of invalid bytes and unknown frames."""
+    sender = schema.sender
+    tables = [list(_message(name, table, sender)) for name, table in schema.messages.items()]
+    return [*tables, list(_invalid(schema.invalid, sender)), list(_unknown(schema.unknown, sender))]
+
+
+def _message(name: str, table: TableSchema, sender: str) -> Iterator[Step]:
+    assert table.message is not None
+    places = places_of(table.columns)
+    yield from _start(places, {"event": "message", "message": name, "sender": sender})
+    yield from _parts(places)
+    yield Literal(', "fields": ')
+    yield from _LineValues().members(table.message.fields, table.columns, Spot.row())
+    yield When(Condition.DIFFERS, list(_raw(places)))
+    yield from _end()
+
+
+def _invalid(table: TableSchema, sender: str) -> Iterator[Step]:
+    places = places_of(table.columns)
+    yield from _start(places, {"event": "invalid", "sender": sender})
+    yield Literal(', "reason": "')
+    yield Name(places["reason"], {it.value: it.word for it in InvalidReason})
+    yield Literal('"')
+    yield from _raw(places)
+    yield from _end()
+
+
+def _unknown(table: TableSchema, sender: str) -> Iterator[Step]:
+    places = places_of(table.columns)
+    yield from _start(places, {"event": "unknown", "sender": sender})
+    yield from _parts(places)
+    yield Literal(', "payload": "')
+    yield HexOf(Source.PAYLOADS, places["payload_offset"], places["payload_size"])
+    yield Literal('"')
+    yield When(Condition.DIFFERS, list(_raw(places)))
+    yield from _end()
+
+
+def places_of(columns: Sequence[Column]) -> dict[str, Place]:
+    """The numbers of an event: by what they are, parts of the frame with `@` in front."""
+    return {
+        f"@{item.source}" if item.role == "part" else item.source: Place(
+            0, item.shape.code, item.position
+        )
+        for item in columns
+        if isinstance(item.shape, Number) and item.role not in ("field", "count")
+    }
+
+
+def _start(places: Mapping[str, Place], words: Mapping[str, str]) -> Iterator[Step]:
+    yield Literal('{"offset": ')
+    yield Integer(places["offset"], from_start=True)
+    yield Literal(', "size": ')
+    yield Integer(places["size"])
+    for name, value in words.items():
+        yield Literal(f', "{name}": {json.dumps(value, ensure_ascii=False)}')
+
+
+def _parts(places: Mapping[str, Place]) -> Iterator[Step]:
+    yield Literal(', "parts": {')
+    parts = [(name, place) for name, place in places.items() if name.startswith("@")]
+    for order, (name, place) in enumerate(parts):
+        yield Literal(f"{', ' if order else ''}{json.dumps(name[1:])}: ")
+        yield number(place, IN_LINES)
+    yield Literal("}")
+
+
+def _raw(places: Mapping[str, Place]) -> Iterator[Step]:
+    yield Literal(', "raw": "')
+    yield HexOf(Source.LINE, places["offset"], places["size"])
+    yield Literal('"')
+
+
+def _end() -> Iterator[Step]:
+    yield When(Condition.TIMED, [Literal(', "t_ns": '), Time()])
+    yield Literal("}\n")
+
+
+class _LineValues(ValueSteps):
+    """Values as the lines of events have them: strict JSON, the chosen case without its name."""
+
+    others = IN_LINES
+    spelling = Spelling.JSON
+
+    def name(self, name: str) -> str:
+        return json.dumps(name, ensure_ascii=False)
+
+    def constant(self, type: Type, value: Any) -> str:
+        return json.dumps(_shown(type, value), ensure_ascii=False)
+
+    def case(self, name: str, body: Iterator[Step]) -> Iterator[Step]:
+        return body
+
+    def nothing(self) -> str:
+        return "null"
+
+
+def _shown(type: Type, value: Any) -> Any:
+    """A constant as JSON lines show it."""
+    match type:
+        case Octets():
+            return value.hex()
+        case Array(element=element):
+            return [_shown(element, item) for item in value]
+        case _:
+            return str(value) if isinstance(value, float) and value - value != 0 else value
