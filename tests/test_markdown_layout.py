@@ -31,7 +31,7 @@ from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transpa
 from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Case, Counted, Fill, Fixed, Octets, Struct, Switch, Text
-from protogen.targets.markdown.layout import has_further_codes
+from protogen.targets.markdown.frames.layout import has_further_codes
 
 
 def test_message_table_counts_bytes_of_the_frame_and_of_the_payload():

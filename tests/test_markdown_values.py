@@ -38,7 +38,7 @@ from protogen.model.types import (
     Switch,
     Text,
 )
-from protogen.targets.markdown.words import (
+from protogen.targets.markdown.text.words import (
     bounds,
     hex_number,
     listed,

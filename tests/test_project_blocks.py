@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from protogen.problems import Problems, SourceMap, Span
 from protogen.project.blocks import Page, fill_page, write_page
 from protogen.project.contents import fill_pages
-from protogen.targets.markdown.sections import moved, section_names, sections
+from protogen.targets.markdown.pages.sections import moved, section_names, sections
 
 END = "<!-- /protogen -->"
 _PLACE = re.compile(r"\bA \d+:\d+")

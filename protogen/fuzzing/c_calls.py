@@ -44,7 +44,7 @@ class Call(Generic[T]):
 
 @dataclass(frozen=True, slots=True)
 class Encoded:
-    """What came of encoding."""
+    """Result of encoding."""
 
     result: int
     data: bytes
@@ -56,7 +56,7 @@ class Encoded:
 
 @dataclass(frozen=True, slots=True)
 class Sent:
-    """What came of sending byte by byte."""
+    """Result of sending byte by byte."""
 
     result: int
     data: bytes
@@ -64,7 +64,7 @@ class Sent:
 
 @dataclass(frozen=True, slots=True)
 class Decoded:
-    """What came of decoding; `intact`: where it failed, the struct was left alone."""
+    """Result of decoding; `intact`: where it failed, the struct was left alone."""
 
     result: int
     values: Values | None
@@ -83,11 +83,11 @@ class CEvent:
     parts: Values | None = None
     payload: bytes | None = None
     values: Values | None = None
-    """What the message's handler was given."""
+    """Values that the message's handler was given."""
 
 
 Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush"]]
-"""What is done with a decoder."""
+"""A step that is done with a decoder."""
 _STEPS = {"feed": 1, "push": 2, "flush": 3}
 
 
@@ -137,7 +137,7 @@ class Calls:
         return Call(head + self._content(frame.parts, message, values, parts), _read_encoded)
 
     def sends(self, sender: str, message: str) -> bool:
-        """Whether the message can be sent byte by byte."""
+        """True if the message can be sent byte by byte."""
         return bool(self._driver.frame(sender, message).send)
 
     def send(

@@ -34,7 +34,7 @@ class Unfit(Exception):  # noqa: N818 - a verdict, not a failure
 
 
 class Answers:
-    """What a driver answered, read from the front."""
+    """A driver's answers, read from the front."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
@@ -70,7 +70,7 @@ class _Walk:
         self._records: list[Mapping[str, Any]] = []
 
     def _count(self, count: Count, filled: int) -> int:
-        """How many elements or bytes there are; `filled` if they fill the payload."""
+        """Number of elements or bytes; `filled` if they fill the payload."""
         if count.by is not None:
             return int(self._records[count.by.level][count.by.name])
         return filled if count.known is None else count.known

@@ -1,4 +1,4 @@
-"""What a single value may be: its boundaries, and how to draw any of the others."""
+"""Choices for single values: the boundaries, and draws of any other value."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ _ANY = 1 << 64
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What a value may be: the boundaries, and a function that draws any of the others."""
+    """Boundaries of a value, and a function that draws any other."""
 
     boundaries: Sequence[Any]
     draw: Callable[[Random], Any]
 
 
 def part_choices(part: CounterPart | ValuePart) -> Choices:
-    """What the caller may give for a part of the frame."""
+    """Choices for a part of the frame that the caller gives."""
     least, greatest = part.least, part.greatest
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
 
@@ -65,7 +65,7 @@ def unspecified_choices(message: Message) -> Choices:
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """What a number has to be because it counts something, or selects one of several cases."""
+    """Bounds of a number because it counts something, or selects one of several cases."""
 
     least: int
     greatest: int
@@ -74,7 +74,7 @@ class Need:
     """True if it may be none of the cases."""
 
     def also(self, other: Need) -> Need:
-        """What it has to be for both reasons."""
+        """Both needs together."""
         return Need(
             max(self.least, other.least),
             min(self.greatest, other.greatest),
@@ -88,7 +88,7 @@ Needs = dict[tuple[int, str], Need]
 
 
 def needs_of(steps: Sequence[AnyStep], level: int) -> Needs:
-    """What the steps of a record at some level need of its numbers and of those around it."""
+    """Needs of the steps of a record at some level, of its numbers and of those around it."""
     needs: Needs = {}
     for step in steps:
         for number, need in _needs(step, level):
@@ -131,7 +131,7 @@ Lengths = tuple[int, int]
 def scalar_choices(
     step: IntegerStep | FloatStep | BytesStep, lengths: Lengths, need: Need | None
 ) -> Choices:
-    """What a single value may be; `need` is what others need of it."""
+    """Choices for a single value; `need` comes from the steps that it counts or selects."""
     match step:
         case IntegerStep():
             return _integer_choices(step, need)
@@ -277,7 +277,7 @@ def _any_bytes(random: Random, length: int, highest: int) -> str:
 
 
 def count_choices(lengths: Lengths) -> Choices:
-    """How many elements there may be."""
+    """Choices for a number of elements."""
     least, greatest = lengths
     values = _distinct((least, max(least, min(1, greatest)), greatest))
     return Choices(values, lambda random: _any_length(least, greatest, random))

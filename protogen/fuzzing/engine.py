@@ -1,4 +1,4 @@
-"""What the fuzzer asks of a codec under test."""
+"""Interface of a codec under test."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Refused(Exception):  # noqa: N818 - an answer, not an error of the program
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What a decoder made of a frame; `kind` is the event's, the rest is a message's."""
+    """Event of a decoder; all but `kind` and `size` is a message's."""
 
     kind: str
     size: int
@@ -30,7 +30,7 @@ class Engine(Protocol):
 
     @property
     def name(self) -> str:
-        """What reports call it."""
+        """Name in reports."""
 
     def payload(self, message: str, values: Values) -> bytes:
         """Encode the fields alone. Raises Refused."""

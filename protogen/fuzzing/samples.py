@@ -98,7 +98,7 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
 
 
 def boundary_rounds(message: Message, frame: Frame) -> int:
-    """How many samples it takes to have each boundary once."""
+    """Number of samples that have each boundary once."""
     parts = [len(part_choices(part).boundaries) for part in frame.caller_parts]
     if message.unspecified:
         return max([len(unspecified_choices(message).boundaries), *parts])

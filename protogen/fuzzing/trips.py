@@ -27,13 +27,13 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a case: fine where there is neither a problem nor a refusal."""
+    """Outcome of a case: fine where there is neither a problem nor a refusal."""
 
     case: Case
     problem: str = ""
-    """What did not come back as it went in."""
+    """Description of what did not come back as it went in."""
     refused: str = ""
-    """Why the encoder did not send it, where it may refuse."""
+    """Reason of an encoder that did not send it, where it may refuse."""
     frame: bytes = b""
 
 
@@ -50,7 +50,7 @@ def cases(protocol: Protocol, count: int, seed: int, only: str | None = None) ->
 
 
 def case_count(protocol: Protocol, count: int, only: str | None = None) -> int:
-    """How many cases there will be."""
+    """Number of cases."""
     return sum(
         max(count, boundary_rounds(message, sender.frame))
         for sender, message in _messages(protocol, only)
@@ -123,7 +123,7 @@ def _wrong_with_events(
 
 
 def same_events(left: Sequence[Seen], right: Sequence[Seen]) -> bool:
-    """Whether two lists of events are equal."""
+    """True if two lists of events are equal."""
     return len(left) == len(right) and all(
         replace(one, values=None) == replace(other, values=None) and same(one.values, other.values)
         for one, other in zip(left, right, strict=True)
@@ -131,7 +131,7 @@ def same_events(left: Sequence[Seen], right: Sequence[Seen]) -> bool:
 
 
 def same(left: Any, right: Any) -> bool:
-    """Whether values are equal; 0.0 and -0.0 are not, and `true` is 1."""
+    """True if values are equal; 0.0 and -0.0 are not, and `true` is 1."""
     if isinstance(left, dict) and isinstance(right, dict):
         return left.keys() == right.keys() and all(same(left[key], right[key]) for key in left)
     if isinstance(left, list) and isinstance(right, list):

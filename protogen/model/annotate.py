@@ -126,7 +126,7 @@ class _Frame:
 
     @property
     def _ended(self) -> bool:
-        """Whether the bytes ended inside of a part, so that there is nothing for those behind."""
+        """True if the bytes ended inside of a part, so that there is nothing for those behind."""
         if self._cursor.left:
             return False
         return bool(self._wire.rest) or any(row.cut for row in self._rows[-1:])
@@ -207,7 +207,7 @@ class _Frame:
         return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
 
     def _size_without_length(self, behind: Sequence[Part]) -> int:
-        """What the parts behind the payload leave; the message's size if the frame is not whole."""
+        """Bytes that the parts behind leave; the message's size if the frame is not whole."""
         message = self._given or next(iter(self._candidates()), None)
         if message is not None and behind and not self._is_closed(behind[-1]):
             fixed = message.sizes.fixed
@@ -216,7 +216,7 @@ class _Frame:
         return max(0, self._cursor.left - sum(part.size for part in behind))
 
     def _is_closed(self, last: Part) -> bool:
-        """Whether the bytes end as a frame does, as far as that can be told."""
+        """True if the bytes end as a frame does, as far as that can be told."""
         return not isinstance(last, LiteralPart) or self._cursor.ends_with(last.bytes)
 
     def _message(self, size: int) -> Message | None:

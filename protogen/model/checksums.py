@@ -37,7 +37,7 @@ class ChecksumSpec:
 
     @property
     def modulus(self) -> int:
-        """What Fletcher's two sums are taken modulo of."""
+        """Modulus of Fletcher's two sums."""
         # No field: it would be in the spec hash of every schema, and the name says it already.
         return 256 if self.name == FLETCHER_256 else 255
 

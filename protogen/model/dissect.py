@@ -58,7 +58,7 @@ class Row:
     meaning: str = ""
     """A name of the value, its physical value, or what the part is good for."""
     fault: str = ""
-    """Why these bytes can't stand here; empty where they can."""
+    """Reason that these bytes can't stand here; empty where they can."""
     cut: bool = False
     """True if more bytes belong here, but the frame has no more."""
     subject: Part | Field | None = None
@@ -122,7 +122,7 @@ class Cursor:
 
     @property
     def left(self) -> int:
-        """How many units are left."""
+        """Number of units that are left."""
         return len(self._units) - self.position
 
     def take(self, count: int) -> Piece:
@@ -220,7 +220,7 @@ def _element(field: Field, index: int) -> Field:
 
 
 def _count(count: Count, scope: Scope) -> int | None:
-    """How many, as the bytes in front say; None: as many as there are."""
+    """The number that the bytes in front say; None: as many as there are."""
     return scope.get(count.field, 0) if count.field else count.known
 
 

@@ -147,7 +147,7 @@ Encoding = Substitution | Escape | Base16 | Cobs
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transparency:
-    """What keeps delimiters out of the parts `first` to `last`."""
+    """Encoding that keeps delimiters out of the parts `first` to `last`."""
 
     first: str
     last: str

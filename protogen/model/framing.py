@@ -1,4 +1,4 @@
-"""What the compiler works out about a sender's frames: how a receiver cuts them."""
+"""Analysis of a sender's frames: how a receiver cuts them."""
 
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ class Framing:
     overhead: SizeSet
     """Wire bytes that are not payload, before any stuffing."""
     seven_bit: bool
-    """Whether every payload byte has its most significant bit clear."""
+    """True if every payload byte has its most significant bit clear."""
     cut_ambiguous: bool
-    """Whether an encoder has to check that a decoder cuts its frame where it ends."""
+    """True if an encoder has to check that a decoder cuts its frame where it ends."""
     self_synchronising: bool
     why_synchronising: str
     finds_start: str

@@ -16,7 +16,7 @@ from protogen.problems.span import Span
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contradiction:
-    """How an example differs from the schema."""
+    """Difference of an example from the schema."""
 
     fails: str
     why: str

@@ -1,4 +1,4 @@
-"""Where something of the model was written."""
+"""Sources and docs of parts of the model."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Source:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class About:
-    """What people read about a thing: its meaning, and where that is written down."""
+    """Doc of a thing, and where it is written down."""
 
     doc: str = ""
     source: Source | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
-    """Where it stands in a schema. Two things that differ in nothing else are equal."""
+    """Place in a schema. Two things that differ in nothing else are equal."""
 
 
 NOTHING = About()

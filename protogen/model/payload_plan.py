@@ -4,6 +4,8 @@ A step knows what a walk over it needs: where its number of elements comes from,
 with its bytes, whether an encoder refuses some of its values, whether anything follows it. Names
 of fields that count and select are resolved here: a constant one is a number, any other says which
 of the records around it holds it. Targets print steps and decide nothing.
+
+Nobody compares steps, and every command makes their classes, so these have no comparisons.
 """
 
 from __future__ import annotations
@@ -60,9 +62,9 @@ class Reference:
     """None for a number around the plan."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Count:
-    """How many elements or bytes there are."""
+    """Number of elements or bytes."""
 
     field: str = ""
     """Name of the earlier field that says it, if one does."""
@@ -85,7 +87,7 @@ class Count:
         return not self.field and not self.fills
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Step:
     """Step of a payload plan."""
 
@@ -97,7 +99,7 @@ class Step:
     sizes: SizeSet
     """Wire bytes."""
     checks: frozenset[Check]
-    """What can be wrong with the right number of bytes."""
+    """Faults that the right number of bytes can have."""
     is_refusable: bool
     """True if an encoder refuses some values that a record can hold."""
     holds_values: bool = True
@@ -121,21 +123,21 @@ class Step:
         return bool(self.checks - {Check.SEVEN_BIT})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class NumberStep(Step):
     """An integer or a float."""
 
     type: Integer | Float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class FloatStep(NumberStep):
     """A float."""
 
     type: Float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class IntegerStep(NumberStep):
     """An integer."""
 
@@ -149,7 +151,7 @@ class IntegerStep(NumberStep):
         return allowed(self.field, self.type)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class BytesStep(Step):
     """A text, or bytes that nobody interprets."""
 
@@ -162,7 +164,7 @@ class BytesStep(Step):
         return self.count.fills
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ConstantStep(Step):
     """Bytes that are always the same."""
 
@@ -175,7 +177,7 @@ class ConstantStep(Step):
         return constant_bytes(self.field)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RecordStep(Step):
     """A struct: its own steps one after another."""
 
@@ -183,7 +185,7 @@ class RecordStep(Step):
     steps: tuple[AnyStep, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RepeatStep(Step):
     """Elements one after another."""
 
@@ -196,7 +198,7 @@ class RepeatStep(Step):
         return self.count.fills
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RestStep(Step):
     """The bytes that are left of the payload, where no case has the value of the selector."""
 
@@ -204,7 +206,7 @@ class RestStep(Step):
     seven_bit: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CaseStep:
     """The step for one value of a selector."""
 
@@ -218,7 +220,7 @@ class CaseStep:
         return isinstance(self.step, RecordStep) and not self.step.steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ChooseStep(Step):
     """One of several steps, chosen by an earlier number."""
 
@@ -248,7 +250,7 @@ class PayloadPlan:
 
     @cached_property
     def checks(self) -> frozenset[Check]:
-        """What can be wrong with the right number of bytes."""
+        """Faults that the right number of bytes can have."""
         return _NO_CHECKS.union(*(step.checks for step in self.steps))
 
     @property

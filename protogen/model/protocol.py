@@ -43,7 +43,7 @@ class Endpoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decision:
-    """What was chosen where the document does not say, or says two things."""
+    """A choice where the document does not say, or says two things."""
 
     name: str
     question: str

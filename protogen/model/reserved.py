@@ -1,4 +1,4 @@
-"""What once was used and may not come back with another meaning."""
+"""Names and numbers that may not come back with another meaning."""
 
 from __future__ import annotations
 

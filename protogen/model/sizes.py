@@ -59,13 +59,13 @@ class SizeSet:
         return SizeSet.between(least, greatest, 1)
 
     def holds(self, other: SizeSet) -> bool:
-        """Whether every size of the other set is in this one."""
+        """True if every size of the other set is in this one."""
         if other.least not in self or other.greatest not in self:
             return False
         return self.step == 0 or other.step % self.step == 0
 
     def meets(self, other: SizeSet) -> bool:
-        """Whether some size is in both sets."""
+        """True if some size is in both sets."""
         step, stride = self.step or 1, other.step or 1
         common = gcd(step, stride)
         apart = other.least - self.least

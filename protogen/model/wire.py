@@ -35,13 +35,13 @@ class Wire:
 
     units: tuple[Unit, ...]
     code: bytes = b""
-    """What the encoding puts in front of its region: the first code byte of COBS."""
+    """Bytes that the encoding puts in front of its region: the first code byte of COBS."""
     rest: bytes = b""
-    """What is behind the units and stands for no byte."""
+    """Bytes behind the units that stand for no byte."""
     fault: str = ""
-    """Why the rest could not be unstuffed."""
+    """Reason that the rest could not be unstuffed."""
     behind: tuple[Unit, ...] = ()
-    """What follows that."""
+    """Units that follow that."""
 
 
 def code_size(frame: Frame) -> int:

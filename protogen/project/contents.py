@@ -11,7 +11,7 @@ from pathlib import Path
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems, SourceMap, Span, hint_for
 from protogen.project.blocks import Page, fill_page
-from protogen.targets.markdown.sections import moved, section_names, sections
+from protogen.targets.markdown.pages.sections import moved, section_names, sections
 
 _PROTOCOL = re.compile(r"[^.#]*")
 

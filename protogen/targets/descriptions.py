@@ -1,4 +1,4 @@
-"""What the schema says of a thing, and where that is written, as plain paragraphs.
+"""Docs and sources of things, as plain paragraphs.
 
 Each language makes its comments or docstrings of them.
 """
@@ -23,19 +23,19 @@ def words(name: str) -> str:
 
 
 def of_message(item: Message) -> list[str]:
-    """What a message is."""
+    """Summary and doc of a message."""
     first, *rest = paragraphs(item.summary or item.title or item.name) or ("",)
     return [_placed(first, item.about), *rest, *paragraphs(item.about.doc)]
 
 
 def of_named(name: str, item: About) -> list[str]:
-    """What an enum, a set of flags or a struct is."""
+    """Doc of an enum, a set of flags or a struct."""
     first, *rest = paragraphs(item.doc) or (words(name),)
     return [_placed(first, item), *rest]
 
 
 def of_field(item: Field, facts: list[str]) -> list[str]:
-    """What a field means, with facts such as its unit and bounds; empty ones are left out."""
+    """Doc of a field, with facts such as its unit and bounds; empty ones are left out."""
     plain = "Not said by the document" if item.unknown else words(item.name)
     first, *rest = paragraphs(item.about.doc) or (plain,)
     lead = ", ".join(fact for fact in (sentence(first).rstrip("."), *facts) if fact)
@@ -43,7 +43,7 @@ def of_field(item: Field, facts: list[str]) -> list[str]:
 
 
 def of_protocol(protocol: Protocol) -> list[str]:
-    """What the protocol is."""
+    """Title and doc of the protocol."""
     title = sentence(paragraphs(protocol.title)[0] if protocol.title else protocol.name)
     return [title, *paragraphs(protocol.about.doc)]
 
@@ -67,7 +67,7 @@ def step_of(item: Field) -> str:
 
 
 def extent_of(item: Field) -> list[str]:
-    """How many elements an array has."""
+    """Number of elements of an array."""
     return [f"{item.type.extent.counts} elements"] if isinstance(item.type, Array) else []
 
 
@@ -89,7 +89,7 @@ def _placed(first: str, item: About) -> str:
 
 
 def _place(source: Source | None) -> str:
-    """Where something is written, as ` (line 18)`; nothing where the schema does not say."""
+    """Source of a thing, as ` (line 18)`; nothing where the schema does not say."""
     if source is None:
         return ""
     said = [source.document or "", _lines(source.lines), source.section or ""]

@@ -25,7 +25,7 @@ from protogen.targets.output import File
 from protogen.targets.printing import environment
 
 _BAUD = 115200
-"""What a sketch uses where the schema does not say."""
+"""Baud rate of a sketch where the schema does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def emit(protocols: Sequence[Protocol], options: COptions = COptions()) -> tuple
 
 
 def unit_of(protocol: Protocol, options: COptions) -> Unit:
-    """What is printed of the chosen part of a protocol."""
+    """Views of the chosen part of a protocol."""
     chosen = select(protocol, options.only, options.senders)
     module = view(chosen, options)
     return Unit(chosen, module, framing_view(chosen, module.messages, module.sinks, options))

@@ -35,7 +35,7 @@ class Lines:
 
     @contextmanager
     def block(self, head: str) -> Iterator[None]:
-        """What stands between braces."""
+        """Lines between braces."""
         self.add(*self._broken(f"{head} {{"))
         self._depth += 1
         yield

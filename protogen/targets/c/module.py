@@ -59,7 +59,7 @@ class Module:
     """Functions that the codecs share."""
     public_helpers: tuple[str, ...]
     has_vectors: bool
-    """Whether some of these have a way for SSE2."""
+    """True if some of these have a way for SSE2."""
     """Those of them that inline functions of the header call."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""

@@ -78,7 +78,7 @@ def flags_view(item: Flags, names: Names) -> EnumView:
 
 
 def _remark(item: About, indent: int = 0) -> tuple[str, ...]:
-    """What is said of a name; nothing where nothing is."""
+    """Comment of a name; nothing where it has no doc."""
     texts = list(paragraphs(item.doc))
     return comments.comment([descriptions.sentence(texts[0]), *texts[1:]], indent) if texts else ()
 

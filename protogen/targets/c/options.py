@@ -1,4 +1,4 @@
-"""What the C target can be asked for."""
+"""Options of the C target."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EVENTS: tuple[Events, ...] = get_args(Events)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class COptions:
-    """How and what to print. None stands for all of them."""
+    """Parts and style of what is printed. None stands for all of them."""
 
     style: Style = "split"
     """A header and a source, or one header that holds both."""
@@ -27,7 +27,7 @@ class COptions:
     senders: tuple[str, ...] | None = None
     """The endpoints whose messages are printed."""
     stubs: bool = False
-    """Whether to make a source with an empty body for each handler, where there is none."""
+    """True to make a source with an empty body for each handler, where there is none."""
 
     def chosen(self, protocol: Protocol) -> tuple[Message, ...]:
         """The messages to print, in the schema's order."""

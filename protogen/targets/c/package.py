@@ -1,4 +1,4 @@
-"""What makes the output folder a package: for CMake, PlatformIO, Arduino and Zephyr at once."""
+"""Files that make the output folder a package for CMake, PlatformIO, Arduino and Zephyr."""
 
 from __future__ import annotations
 

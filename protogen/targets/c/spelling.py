@@ -1,4 +1,4 @@
-"""How the schema's names and numbers are spelled in C."""
+"""Spelling of the schema's names and numbers in C."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Names:
         self.writer = writer
         """The parameters of functions that send byte by byte."""
         self.writing = writing
-        """What these hand on."""
+        """Arguments with which these hand the writer on."""
         self._taken: set[str] = set()
 
     def claim(self, *words: str) -> str:

@@ -1,4 +1,4 @@
-"""What payloads are written to byte by byte, where a frame is sent without a buffer."""
+"""Writers that take payloads byte by byte, where a frame is sent without a buffer."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from protogen.model.protocol import Protocol
 
 
 def is_stateless(protocol: Protocol) -> bool:
-    """Whether what is sent goes out as it is: nothing is summed or stuffed on the way."""
+    """True if what is sent goes out as it is: nothing is summed or stuffed on the way."""
     return not any(s.frame.checksums or s.frame.transparency for s in protocol.senders)
 
 
 def writer_parameter(protocol: Protocol) -> str:
-    """How functions take a writer.
+    """Parameters for a writer.
 
     One without a state is the function and what it is given: compilers see through two parameters
     where they would not look into a struct, and can put the function in where it is called.
@@ -22,5 +22,5 @@ def writer_parameter(protocol: Protocol) -> str:
 
 
 def writer_argument(protocol: Protocol) -> str:
-    """How functions that were given a writer hand it on."""
+    """Arguments with which functions hand on the writer that they were given."""
     return "put, user" if is_stateless(protocol) else "writer"

@@ -8,10 +8,10 @@ from pathlib import PurePosixPath
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
-from protogen.targets.markdown.anchors import decision_link
-from protogen.targets.markdown.fidelity import fidelity_view
-from protogen.targets.markdown.index import index_view
-from protogen.targets.markdown.page import page_view
+from protogen.targets.markdown.pages.fidelity import fidelity_view
+from protogen.targets.markdown.pages.index import index_view
+from protogen.targets.markdown.pages.page import page_view
+from protogen.targets.markdown.text.anchors import decision_link
 from protogen.targets.output import File
 from protogen.targets.printing import environment
 

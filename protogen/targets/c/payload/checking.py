@@ -81,7 +81,7 @@ class Checker(SecuredWalk):
         return self._numbers[number.level, number.name]
 
     def count(self, count: Count) -> int | str:
-        """How many elements or bytes there are."""
+        """Number of elements or bytes."""
         if count.by is not None:
             self._bounded(count, count.by)
         return super().count(count)

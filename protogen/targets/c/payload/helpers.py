@@ -36,7 +36,7 @@ class Helpers:
         self.floats: set[int] = set()
         """Bits of the floats that were asked for."""
         self.has_vectors = False
-        """Whether some function has a way for SSE2."""
+        """True if some function has a way for SSE2."""
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -57,7 +57,7 @@ class Helpers:
 
     @contextmanager
     def public(self) -> Iterator[None]:
-        """What is asked for meanwhile, an inline function of the header calls."""
+        """Helpers asked for meanwhile are called by inline functions of the header."""
         self._is_public = True
         yield
         self._is_public = False
@@ -97,7 +97,7 @@ class Helpers:
         return name
 
     def loads_runs(self, type_: Integer) -> bool:
-        """Whether an array of such numbers is read by a function of its own."""
+        """True if an array of such numbers is read by a function of its own."""
         if type_.signed or self._is_public:
             return False
         is_pair = (type_.byte_bits, type_.bits, type_.size) == (7, 14, 2)
@@ -386,7 +386,7 @@ def _label(value: int, type_: Integer) -> str:
 
 
 def is_plain(type_: Integer) -> bool:
-    """Whether the number is a byte as it is."""
+    """True if the number is a byte as it is."""
     return type_.size == 1 and (type_.bits == 8 or not type_.signed)
 
 
@@ -411,7 +411,7 @@ def _cut(type_: Integer) -> Integer:
 
 
 def is_whole(type_: Integer) -> bool:
-    """Whether the number has just as many bits as its C type, so that a cast changes its sign."""
+    """True if the number has just as many bits as its C type, so that a cast changes its sign."""
     return type_.bits in (8, 16, 32, 64)
 
 
@@ -475,7 +475,7 @@ def _shifted(type_: Integer, value: str, shift: int) -> str:
 
 
 def _mask(type_: Integer, place: int) -> str | None:
-    """What cuts off the bits that do not belong to a byte; None where a cast does."""
+    """Mask of the bits that belong to a byte; None where a cast cuts off the others."""
     left = type_.bits - type_.byte_bits * place
     bits = min(type_.byte_bits, left)
     if bits == 8 or (bits < type_.byte_bits and not type_.signed):

@@ -31,7 +31,7 @@ from protogen.targets.c.spelling import Names, hexadecimal
 _PARAMETERS = ("message", "payload", "size", "need", "writer", "put", "user")
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
 _OTHERS = ("frame", "send")
-"""What else is called after a message."""
+"""Other functions that are called after a message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +43,9 @@ class MessageView:
     struct: str
     """`struct rn1_gyro`."""
     prefix: str
-    """What its functions begin with: `rn1_gyro`."""
+    """Prefix of its functions: `rn1_gyro`."""
     upper: str
-    """What its macros begin with: `RN1_GYRO`."""
+    """Prefix of its macros: `RN1_GYRO`."""
     constant: str
     """Its value of `enum rn1_message`."""
     fixed: int | None
@@ -54,13 +54,13 @@ class MessageView:
     greatest: int
     """`RN1_GYRO_PAYLOAD_MIN` and `..._MAX` name these bounds."""
     checks: bool
-    """Whether there is a function `check`; without it, only the fixed size matters."""
+    """True if there is a function `check`; without it, only the fixed size matters."""
     checks_values: bool
-    """Whether anything but a byte of more than 7 bits can be wrong, beside the size."""
+    """True if anything but a byte of more than 7 bits can be wrong, beside the size."""
     needs: bool
-    """Whether `check` uses `need`, because the payload may tell its own size."""
+    """True if `check` uses `need`, because the payload may tell its own size."""
     validates: bool
-    """Whether there is a function `validate`; without it, every struct can be sent."""
+    """True if there is a function `validate`; without it, every struct can be sent."""
     check: str
     """(const uint8_t *payload, size_t size, size_t *need): enum rn1_result; `need` may be NULL."""
     load: str
@@ -183,11 +183,11 @@ class MessagePrinter:
 
     @property
     def prefix(self) -> str:
-        """What all names begin with."""
+        """Prefix of all names."""
         return self._names.prefix
 
     def delimited(self, item: Message) -> bool:
-        """Whether every frame of the message says where the payload ends."""
+        """True if every frame of the message says where the payload ends."""
         return all(is_delimited(sender.frame) for sender in self._senders_of(item))
 
     def _senders_of(self, item: Message) -> list[Sender]:
@@ -372,7 +372,7 @@ class _Codec:
         return f"enum {self._prefix}_result {self._names['decode']}", arguments
 
     def prototypes(self) -> tuple[str, ...]:
-        """What the header declares."""
+        """Declarations for the header."""
         heads = (self._encode_head, self._decode_head, self._load_head)
         return tuple(prototype(*head) for head in heads)
 

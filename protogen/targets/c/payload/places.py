@@ -1,4 +1,4 @@
-"""Where in a payload the next value lies, while statements are printed for one after another."""
+"""Place of the next value in a payload, while statements are printed for one after another."""
 
 from __future__ import annotations
 

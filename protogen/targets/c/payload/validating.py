@@ -93,7 +93,7 @@ class Validate(Walk):
             self._refuse(f"!({' && '.join(tests)})")
 
     def constant(self, step: ConstantStep) -> None:
-        """What counts it has to say how long it is."""
+        """Refuse a count that is not the constant's size."""
         value = step.value
         if isinstance(value, NumberStep) or value.count.by is None:
             return
@@ -107,7 +107,7 @@ class Validate(Walk):
             self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
 
     def count(self, count: Count) -> int | str:
-        """How many elements or bytes there are, which a struct has to have room for."""
+        """Number of elements or bytes, which a struct has to have room for."""
         if count.fills:
             self._fitting(self.filled(count), count.greatest)
         elif count.by is not None:

@@ -76,7 +76,7 @@ class Walk:
     # --- numbers that count and select ----------------------------------------------------------
 
     def count(self, count: Count) -> int | str:
-        """How many elements or bytes there are."""
+        """Number of elements or bytes."""
         if count.known is not None:
             return count.known
         if count.by is None:

@@ -1,4 +1,4 @@
-"""How values of a fixed size lie in bytes, as codes of Python's `struct`."""
+"""Codes of Python's `struct` for values of a fixed size."""
 
 from __future__ import annotations
 

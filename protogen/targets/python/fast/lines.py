@@ -31,7 +31,7 @@ class Constants:
         return self.named("NUMBER", f"_rt.Number({arguments})")
 
     def use(self, name: str) -> bool:
-        """Whether some constant so far is made by something of that name."""
+        """True if some constant so far is made by something of that name."""
         return any(expression.startswith(name) for expression in self._names)
 
     @property
@@ -54,7 +54,7 @@ class Lines:
 
     @property
     def is_nested(self) -> bool:
-        """Whether statements are inside of a compound one."""
+        """True if statements are inside of a compound one."""
         return self._depth > 0
 
     def add(self, line: str) -> None:

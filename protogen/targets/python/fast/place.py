@@ -1,4 +1,4 @@
-"""Where a printed function stands in the bytes that it reads."""
+"""Place of a printed function in the bytes that it reads."""
 
 from __future__ import annotations
 

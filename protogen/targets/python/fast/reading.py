@@ -111,7 +111,7 @@ class _Reader(Converter):
         self.is_at_end = False
         """True once a field of the message itself has taken all that was left."""
         self.whole: tuple[int, int] | None = None
-        """What is around the message, where one `struct` reads it and checks its size."""
+        """Bytes around the message, where one `struct` reads it and checks its size."""
         self.raw: dict[str, str] = {}
         """Raw values of the fields in front, by name."""
         self._run = _Run()

@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 
 from protogen.model.protocol import Protocol
-from protogen.targets.markdown.anchors import message_anchor
 from protogen.targets.markdown.emit import page_text
+from protogen.targets.markdown.text.anchors import message_anchor
 
 _HEADING = re.compile(r'^(##|###) <a id="([^"]+)"></a>', re.MULTILINE)
 _ANCHOR = re.compile(r'<a id="([^"]+)">')

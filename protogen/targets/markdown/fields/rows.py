@@ -16,12 +16,12 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.targets.markdown.layout import Place, behind, element
-from protogen.targets.markdown.origin import about_line
-from protogen.targets.markdown.path import ROOT, Path
-from protogen.targets.markdown.types import type_text
-from protogen.targets.markdown.values import Anchors, range_text, unit_text
-from protogen.targets.markdown.words import bounds, code, plural, short_number
+from protogen.targets.markdown.fields.types import type_text
+from protogen.targets.markdown.fields.values import Anchors, range_text, unit_text
+from protogen.targets.markdown.frames.layout import Place, behind, element
+from protogen.targets.markdown.text.origin import about_line
+from protogen.targets.markdown.text.path import ROOT, Path
+from protogen.targets.markdown.text.words import bounds, code, plural, short_number
 
 _UNNAMED = "value"
 """The field of a case that is one type."""

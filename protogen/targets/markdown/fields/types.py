@@ -13,7 +13,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
 )
 from protogen.model.types import NumberType, Text
-from protogen.targets.markdown.words import code, plural
+from protogen.targets.markdown.text.words import code, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
 

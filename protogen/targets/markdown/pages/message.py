@@ -12,18 +12,18 @@ from protogen.model.payload_plan import AnyStep
 from protogen.model.protocol import Sender
 from protogen.model.sizes import SizeSet
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.anchors import decision_link, message_anchor, message_link
-from protogen.targets.markdown.context import Context, by_frame
-from protogen.targets.markdown.example import ExampleView, example_view
-from protogen.targets.markdown.legends import Legend, legends
-from protogen.targets.markdown.message_table import message_table
-from protogen.targets.markdown.origin import about_line, place, prose
-from protogen.targets.markdown.packet import message_diagram
-from protogen.targets.markdown.parts import identity_value
-from protogen.targets.markdown.table import Table
-from protogen.targets.markdown.values import Anchors
-from protogen.targets.markdown.walk import named_fields
-from protogen.targets.markdown.words import (
+from protogen.targets.markdown.fields.legends import Legend, legends
+from protogen.targets.markdown.fields.message_table import message_table
+from protogen.targets.markdown.fields.values import Anchors
+from protogen.targets.markdown.fields.walk import named_fields
+from protogen.targets.markdown.frames.packet import message_diagram
+from protogen.targets.markdown.frames.parts import identity_value
+from protogen.targets.markdown.pages.context import Context, by_frame
+from protogen.targets.markdown.pages.example import ExampleView, example_view
+from protogen.targets.markdown.text.anchors import decision_link, message_anchor, message_link
+from protogen.targets.markdown.text.origin import about_line, place, prose
+from protogen.targets.markdown.text.table import Table
+from protogen.targets.markdown.text.words import (
     code,
     listed,
     plural,

@@ -10,8 +10,8 @@ from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
 from protogen.model.types import Constant, Field, Integer
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.path import Path
-from protogen.targets.markdown.words import (
+from protogen.targets.markdown.text.path import Path
+from protogen.targets.markdown.text.words import (
     bounds,
     code,
     hex_bytes,
@@ -26,7 +26,7 @@ _FEW = 4
 
 @dataclass(frozen=True, slots=True)
 class Anchors:
-    """Where the tables of values stand: with their message, or once for all that share them."""
+    """Anchors of the tables of values: with their message, or once for all that share them."""
 
     prefix: str
     shared: frozenset[str] = frozenset()
@@ -183,7 +183,7 @@ def _formula(field: Field) -> str:
 
 
 def tells_more(items: Sequence[NamedValue] | Sequence[NamedBit]) -> bool:
-    """Say whether a table has more to show than a list in a cell."""
+    """True if a table has more to show than a list in a cell."""
     return len(items) > _FEW or any(item.about != About() for item in items)
 
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.anchors import example_anchor
-from protogen.targets.markdown.example_bytes import bytes_table
-from protogen.targets.markdown.origin import about_line
-from protogen.targets.markdown.table import Table
-from protogen.targets.markdown.words import code, hex_bytes, sentence
+from protogen.targets.markdown.pages.example_bytes import bytes_table
+from protogen.targets.markdown.text.anchors import example_anchor
+from protogen.targets.markdown.text.origin import about_line
+from protogen.targets.markdown.text.table import Table
+from protogen.targets.markdown.text.words import code, hex_bytes, sentence
 
 _LINE = 16
 _FAILURES = {

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.fidelity import page_link
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.words import code, listed
+from protogen.targets.markdown.pages.fidelity import page_link
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import code, listed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

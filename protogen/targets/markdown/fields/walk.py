@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from protogen.model.payload_plan import AnyStep, ChooseStep, RecordStep, RepeatStep
 from protogen.model.types import Field
-from protogen.targets.markdown.path import ROOT, Path
+from protogen.targets.markdown.text.path import ROOT, Path
 
 
 def named_fields(steps: Iterable[AnyStep], path: Path = ROOT) -> Iterator[tuple[Path, Field]]:

@@ -1,4 +1,4 @@
-"""What a schema says about a thing, and where that is written down, as Markdown."""
+"""Docs and sources of things, as Markdown."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from protogen.model.origin import About, Source
 from protogen.targets.escape import markdown, paragraphs
-from protogen.targets.markdown.words import capital, sentence, sentences
+from protogen.targets.markdown.text.words import capital, sentence, sentences
 
 _PLAIN_URL = re.compile(r"https?://[A-Za-z0-9./_~%?=&#:@+,;-]+")
 
@@ -14,7 +14,7 @@ _COMMIT = re.compile(r"\b[0-9a-f]{40}\b")
 _DIGITS = 10
 """Digits of a commit that are shown beside a field; the page's top has all of them."""
 _WORDS = ("line", "lines", "section", "revision")
-"""How a source starts that names no document."""
+"""First words of a source that names no document."""
 
 
 def prose(text: str) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""What a page records of the document: exchanges, decisions, and what it does not say."""
+"""Records of the document: exchanges, decisions, and what it does not say."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol
 from protogen.model.reserved import ReservedIdentity
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.anchors import example_anchor, message_link
-from protogen.targets.markdown.origin import about_line, place
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.walk import named_fields
-from protogen.targets.markdown.words import code, hex_bytes, plural, sentence, sentences
+from protogen.targets.markdown.fields.walk import named_fields
+from protogen.targets.markdown.text.anchors import example_anchor, message_link
+from protogen.targets.markdown.text.origin import about_line, place
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import code, hex_bytes, plural, sentence, sentences
 
 _MOST_BYTES = 24
 """Bytes of an exchange's step that are printed."""

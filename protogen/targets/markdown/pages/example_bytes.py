@@ -12,10 +12,17 @@ from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Field, Float, Integer
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.parts import identity_value, role
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.values import raw_text, value_meaning
-from protogen.targets.markdown.words import capital, code, hex_bytes, hex_number, sentence, span
+from protogen.targets.markdown.fields.values import raw_text, value_meaning
+from protogen.targets.markdown.frames.parts import identity_value, role
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import (
+    capital,
+    code,
+    hex_bytes,
+    hex_number,
+    sentence,
+    span,
+)
 
 _HEADER = ("Byte", "Bytes", "Decoded", "Name", "Value", "Meaning")
 _MOST_BYTES = 16

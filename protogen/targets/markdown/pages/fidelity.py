@@ -1,4 +1,4 @@
-"""How much of each document a schema says, in counts."""
+"""Counts of what each schema says of its document."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass, fields
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.anchors import example_anchor
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.walk import named_fields
-from protogen.targets.markdown.words import sentence
+from protogen.targets.markdown.fields.walk import named_fields
+from protogen.targets.markdown.text.anchors import example_anchor
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import sentence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """What is counted, for one protocol or all."""
+    """Counts for one protocol or all."""
 
     messages: int
     unspecified: int

@@ -10,13 +10,13 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
 from protogen.model.wire import FULL_GROUP
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.anchors import message_link
-from protogen.targets.markdown.context import Context
-from protogen.targets.markdown.framing import sender_title
-from protogen.targets.markdown.layout import has_further_codes, is_stuffed, wire_scale
-from protogen.targets.markdown.message import identity_text, overload_text
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.words import code, rate, size_text
+from protogen.targets.markdown.frames.framing import sender_title
+from protogen.targets.markdown.frames.layout import has_further_codes, is_stuffed, wire_scale
+from protogen.targets.markdown.pages.context import Context
+from protogen.targets.markdown.pages.message import identity_text, overload_text
+from protogen.targets.markdown.text.anchors import message_link
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import code, rate, size_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

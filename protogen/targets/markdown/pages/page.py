@@ -8,13 +8,19 @@ from dataclasses import dataclass
 from protogen.model.meanings import Enum, Flags
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.context import Context
-from protogen.targets.markdown.framing import FrameView, frame_views
-from protogen.targets.markdown.legends import Legend, type_legends
-from protogen.targets.markdown.listing import ListingView, counting, listing, ordered, overloads
-from protogen.targets.markdown.message import MessageView, message_view
-from protogen.targets.markdown.origin import prose
-from protogen.targets.markdown.record import (
+from protogen.targets.markdown.fields.legends import Legend, type_legends
+from protogen.targets.markdown.fields.values import type_anchor
+from protogen.targets.markdown.frames.framing import FrameView, frame_views
+from protogen.targets.markdown.pages.context import Context
+from protogen.targets.markdown.pages.listing import (
+    ListingView,
+    counting,
+    listing,
+    ordered,
+    overloads,
+)
+from protogen.targets.markdown.pages.message import MessageView, message_view
+from protogen.targets.markdown.pages.record import (
     DecisionView,
     ExchangeView,
     decision_view,
@@ -22,10 +28,10 @@ from protogen.targets.markdown.record import (
     reserved,
     unknowns,
 )
-from protogen.targets.markdown.table import Table
-from protogen.targets.markdown.top import facts, link_lines
-from protogen.targets.markdown.values import type_anchor
-from protogen.targets.markdown.words import code
+from protogen.targets.markdown.pages.top import facts, link_lines
+from protogen.targets.markdown.text.origin import prose
+from protogen.targets.markdown.text.table import Table
+from protogen.targets.markdown.text.words import code
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

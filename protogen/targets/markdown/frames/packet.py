@@ -13,8 +13,8 @@ from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
-from protogen.targets.markdown.layout import Slot, slots
-from protogen.targets.markdown.words import hex_bytes, size_text, span
+from protogen.targets.markdown.frames.layout import Slot, slots
+from protogen.targets.markdown.text.words import hex_bytes, size_text, span
 
 _ROW = 8
 _NARROW = 2

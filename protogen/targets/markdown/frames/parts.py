@@ -26,13 +26,13 @@ from protogen.model.frame import (
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Integer
 from protogen.model.wire import FULL_GROUP
-from protogen.targets.markdown.anchors import decision_link
-from protogen.targets.markdown.layout import CodePart, Slot, length_values, part_title, slots
-from protogen.targets.markdown.origin import about_line
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.types import number_text
-from protogen.targets.markdown.values import character, raw_text
-from protogen.targets.markdown.words import code, hex_bytes, hex_number, listed, size_text
+from protogen.targets.markdown.fields.types import number_text
+from protogen.targets.markdown.fields.values import character, raw_text
+from protogen.targets.markdown.frames.layout import CodePart, Slot, length_values, part_title, slots
+from protogen.targets.markdown.text.anchors import decision_link
+from protogen.targets.markdown.text.origin import about_line
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import code, hex_bytes, hex_number, listed, size_text
 
 _HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
 

@@ -10,11 +10,15 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
 from protogen.model.wire import code_size
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.context import by_frame
-from protogen.targets.markdown.packet import frame_diagram
-from protogen.targets.markdown.parts import frame_table, transparency_table, transparency_text
-from protogen.targets.markdown.table import Table
-from protogen.targets.markdown.words import capital, code, listed, plural, sentence
+from protogen.targets.markdown.frames.packet import frame_diagram
+from protogen.targets.markdown.frames.parts import (
+    frame_table,
+    transparency_table,
+    transparency_text,
+)
+from protogen.targets.markdown.pages.context import by_frame
+from protogen.targets.markdown.text.table import Table
+from protogen.targets.markdown.text.words import capital, code, listed, plural, sentence
 
 Property = tuple[str, str]
 """A label and a text."""
@@ -29,7 +33,7 @@ _AMBIGUITY = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameView:
-    """What a page shows of the frames of one or several senders."""
+    """View of the frames of one or several senders."""
 
     title: str
     table: Table

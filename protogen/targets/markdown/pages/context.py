@@ -1,4 +1,4 @@
-"""What the sections of a page need to know of the whole."""
+"""Facts of the whole protocol that the sections of a page share."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Integer
 from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
-from protogen.targets.markdown.walk import named_fields
+from protogen.targets.markdown.fields.walk import named_fields
 
 
 @dataclass(frozen=True, slots=True)

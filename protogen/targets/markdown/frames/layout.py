@@ -1,4 +1,4 @@
-"""Where things lie: parts in a frame, and payload bytes in the frame around them.
+"""Places of parts in a frame, and of payload bytes in the frame around them.
 
 Positions are bytes as a logic analyser counts them, from 0, wherever the wire allows it: with
 Base16 each byte of the payload takes two, and the code byte of COBS is a part. Where stuffing can
@@ -23,7 +23,7 @@ from protogen.model.frame import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.wire import FULL_GROUP, code_size
-from protogen.targets.markdown.words import code, span
+from protogen.targets.markdown.text.words import code, span
 
 INDICES = "ijkl"
 """Names of the indices of nested arrays, outermost first."""
@@ -33,7 +33,7 @@ _NOTHING = SizeSet.exactly(0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodePart(Part):
-    """What an encoding puts in front of its region. It is in no schema."""
+    """A part that an encoding puts in front of its region. It is in no schema."""
 
     size: int
     name: str = "COBS code"
@@ -91,7 +91,7 @@ def element(place: Place, stride: int | None, name: str) -> Place:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slot:
-    """Where a part lies in frames whose payload has certain sizes."""
+    """Place of a part in frames whose payload has certain sizes."""
 
     part: Part
     sizes: SizeSet
@@ -202,12 +202,12 @@ def _region(frame: Frame) -> tuple[Part, ...]:
 
 
 def is_stuffed(frame: Frame) -> bool:
-    """Say whether bytes on the wire can lie further on than positions say, by any number."""
+    """True if bytes on the wire can lie further on than positions say, by any number."""
     encoding = None if frame.transparency is None else frame.transparency.encoding
     return encoding is not None and not isinstance(encoding, Base16 | Cobs)
 
 
 def has_further_codes(frame: Frame, payload: SizeSet) -> bool:
-    """Say whether a region can be so long that COBS puts a second code byte into it."""
+    """True if a region can be so long that COBS puts a second code byte into it."""
     region = sum((part_sizes(part, payload) for part in _region(frame)), start=_NOTHING)
     return bool(code_size(frame)) and region.greatest > FULL_GROUP

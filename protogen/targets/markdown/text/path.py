@@ -1,4 +1,4 @@
-"""Where a field is inside its message."""
+"""Path of a field inside its message."""
 
 from __future__ import annotations
 

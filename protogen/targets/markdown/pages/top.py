@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from protogen.model.protocol import Link, Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.origin import about_line, link
-from protogen.targets.markdown.words import code, number, plural, rate
+from protogen.targets.markdown.text.origin import about_line, link
+from protogen.targets.markdown.text.words import code, number, plural, rate
 
 
 def facts(protocol: Protocol) -> Iterator[tuple[str, str]]:

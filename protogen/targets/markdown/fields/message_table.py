@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from protogen.model.frame import Frame, PayloadPart
 from protogen.model.messages import Message
-from protogen.targets.markdown.layout import Slot, part_title, slots
-from protogen.targets.markdown.parts import part_type, role, value_in
-from protogen.targets.markdown.rows import Row, field_rows
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.values import Anchors
-from protogen.targets.markdown.words import size_text
+from protogen.targets.markdown.fields.rows import Row, field_rows
+from protogen.targets.markdown.fields.values import Anchors
+from protogen.targets.markdown.frames.layout import Slot, part_title, slots
+from protogen.targets.markdown.frames.parts import part_type, role, value_in
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import size_text
 
 _HEADER = ("Frame byte", "Payload byte", "Size", "Type", "Name", "Unit", "Range", "Meaning")
 

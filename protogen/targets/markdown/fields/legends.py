@@ -8,11 +8,11 @@ from fractions import Fraction
 
 from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.types import Field, Integer
-from protogen.targets.markdown.origin import about_line
-from protogen.targets.markdown.path import Path
-from protogen.targets.markdown.table import Table, table
-from protogen.targets.markdown.values import Anchors, character, tells_more, values_text
-from protogen.targets.markdown.words import bounds, code, hex_number
+from protogen.targets.markdown.fields.values import Anchors, character, tells_more, values_text
+from protogen.targets.markdown.text.origin import about_line
+from protogen.targets.markdown.text.path import Path
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import bounds, code, hex_number
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,1 @@
+"""Tables of fields, and of what their values mean."""
