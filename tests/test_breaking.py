@@ -1,9 +1,9 @@
 """Each rule has a folder in `breaking/`: two small schemas and what the step between them must do.
 
 `old.yaml` and `new.yaml` are whole schemas; without a `new.yaml` the schema is gone. A line of
-`expected.txt` is a finding: the rule, the place, who is hurt, and how. There may be these findings
-and no others. The frames that show a finding are read here with both versions' generated Python,
-past everything in `protogen.evolution`.
+`expected.txt` is a finding: the rule, the place, who is affected, and how. There may be these
+findings and no others. The frames that show a finding are read here with both versions' generated
+Python, past everything in `protogen.evolution`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ STEPS = [name for name in NAMES if (FOLDER / name / "new.yaml").exists()]
 class Expected(NamedTuple):
     rule: str
     place: str
-    hurt: str
+    affected: str
     harm: str
 
 
@@ -64,7 +64,7 @@ def test_each_rule_has_a_folder() -> None:
 class TestRule:
     def test_finds_exactly_this(self, name: str) -> None:
         seen = [
-            Expected(item.rule.name, item.change.place, item.hurt, item.harm)
+            Expected(item.rule.name, item.change.place, item.affected, item.harm)
             for item in found(name)
         ]
         assert sorted(seen) == sorted(expected(name))
@@ -106,7 +106,7 @@ class TestRule:
 def test_a_schema_that_is_gone() -> None:
     old = protocol("schema-deleted", "old")
     comparison, (item,) = gone(old, "demo.yaml")
-    seen = Expected(item.rule.name, item.change.place, item.hurt, item.harm)
+    seen = Expected(item.rule.name, item.change.place, item.affected, item.harm)
     assert [seen] == expected("schema-deleted")
     assert item.change.text == "demo had reading, text"
     (witness,) = item.witnesses

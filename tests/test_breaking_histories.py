@@ -51,7 +51,7 @@ def loaded(name: str) -> Any:
 def check_rejected(old: Protocol, new: Protocol, item: Finding, reason: str) -> None:
     """Check that each side takes its own frame, and the other refuses it for that reason."""
     modules = {True: module_of(old), False: module_of(new)}
-    assert (item.hurt, item.harm) == ("both", "rejected")
+    assert (item.affected, item.harm) == ("both", "rejected")
     for witness in both_ways(item):
         assert witness.harm is Harm.REJECTED
         sender: Any = witness.sender
@@ -116,7 +116,7 @@ def test_uherobots_leds_change_places(is_first_in_old: bool, tmp_path: Path) -> 
     assert {(f.rule.name, f.change.path) for f in found} == {("field-moved", n) for n in names}
     assert {protocol.message("motors_servos_leds").sizes.least for protocol in (old, new)} == {21}
     for item in found:
-        assert (item.hurt, item.harm) == ("both", "misread")
+        assert (item.affected, item.harm) == ("both", "misread")
     modules = {True: module_of(old), False: module_of(new)}
     for witness in both_ways(of(found, "field-moved", "motors_servos_leds.leds")):
         sent = modules[witness.old_sends].decode(witness.frame, "daemon")
@@ -137,7 +137,7 @@ def test_the_firmware_of_rn1_has_the_high_bits_first() -> None:
     ]
     modules = {True: module_of(old), False: module_of(new)}
     for item in turned:
-        assert (item.hurt, item.harm) == ("both", "misread")
+        assert (item.affected, item.harm) == ("both", "misread")
         for witness in both_ways(item):
             frame = witness.frame
             sent = modules[witness.old_sends].decode(frame, "host")
@@ -170,7 +170,7 @@ def test_dagnys_terminator(tmp_path: Path) -> None:
     modules = {True: module_of(old), False: module_of(new)}
     for item in found:
         assert item.change.text == "from 0A to 0D"
-        assert item.hurt == "both"
+        assert item.affected == "both"
         for witness in both_ways(item):
             sender: Any = witness.sender
             assert witness.frame[-1] == (0x0A if witness.old_sends else 0x0D)

@@ -88,9 +88,9 @@ class TestDiff:
             "  WIRE [message-deleted] ping: a message is gone: identity 0x03 is free for another"
             " meaning",
             "    at old.yaml:14 (old)",
-            "    hurts new receiver of old frames: rejected",
+            "    affects new receiver of old frames: rejected",
             "    old board sends ping AA 03 00 68 2A; new finds no message in it: unknown",
-            "    mend: reserve its identity",
+            "    fix: reserve its identity",
         ]
 
     def test_nothing_changed(self, folder: Path) -> None:
@@ -126,7 +126,7 @@ class TestDiff:
         assert (order["rule"], order["category"]) == ("field-byte-order", "WIRE")
         assert (unit["rule"], unit["category"]) == ("field-unit", "VALUE")
         assert (order["message"], order["place"]) == ("reading", "reading.value")
-        assert (order["hurt"], order["harm"]) == ("both", "misread")
+        assert (order["affects"], order["harm"]) == ("both", "misread")
         old, new = order["witnesses"]
         assert (old["sends"], new["sends"]) == ("old", "new")
         payload = bytes.fromhex(old["frame"].replace("ab8a", "aa").replace("ab8b", "ab"))[2:4]
@@ -140,8 +140,8 @@ class TestDiff:
     def test_what_hurts_nobody_is_a_change(self, folder: Path) -> None:
         output = answer(folder, "diff", "old.yaml", "reserved.yaml", code=1)
         assert "NONE [message-reserved] ping" in output
-        assert "hurts" not in output
-        assert "mend" not in output
+        assert "affects" not in output
+        assert "fix" not in output
 
 
 class TestBreaking:
@@ -244,9 +244,9 @@ class TestFolders:
         assert lines == [
             "demo",
             "  WIRE [schema-deleted] first.yaml: a schema is gone: demo had reading, ping",
-            "    hurts new receiver of old frames: rejected",
+            "    affects new receiver of old frames: rejected",
             "    old board sends ping AA 03 00 68 2A; new finds no message in it: nobody listens",
-            "    mend: keep it until nobody speaks it any more",
+            "    fix: keep it until nobody speaks it any more",
         ]
         output = answer(folder, "breaking", "was", "is", "--format", "github", code=1)
         assert output.startswith("::error title=schema-deleted::first.yaml: ")
@@ -550,4 +550,4 @@ def test_places_are_those_of_what_changed(
     (tmp_path / "new.yaml").write_text(PLACES.replace(old, new), encoding="utf-8")
     lines = answer(tmp_path, "diff", "old.yaml", "new.yaml", code=1).splitlines()
     at = next(number for number, line in enumerate(lines) if f"[{rule}]" in line)
-    assert lines[at + 1].startswith(f"    at {place}" if place else "    mend: "), lines
+    assert lines[at + 1].startswith(f"    at {place}" if place else "    fix: "), lines

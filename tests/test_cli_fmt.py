@@ -40,9 +40,7 @@ def test_check_lists_files_and_writes_nothing(folder: Path) -> None:
     (folder / "good.yaml").write_text(formatting.format_text(SINK))
     done = run("fmt", ".", "--check")
     assert done.exit_code == 1
-    assert (
-        done.output == "wide.yaml: would be laid out anew; mend it with: protogen fmt wide.yaml\n"
-    )
+    assert done.output == "wide.yaml: would be laid out anew; fix it with: protogen fmt wide.yaml\n"
     assert (folder / "wide.yaml").read_text() == WIDE
     assert run("fmt", "good.yaml", "--check").exit_code == 0
 

@@ -201,4 +201,4 @@ def test_stale_and_missing_files_are_found(tmp_path: Path) -> None:
     file.write_text("{}")
     code, output = run("--check", "-o", str(file))
     assert code == 1
-    assert "is not current; mend it with: protogen schema-json -o" in output
+    assert "is not current; fix it with: protogen schema-json -o" in output

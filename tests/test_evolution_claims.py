@@ -1,4 +1,4 @@
-"""What findings say of who is hurt and how, held against what codecs do with the frames."""
+"""What findings say of who is affected and how, held against what codecs do with the frames."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def after(tmp_path: Path, *edits: tuple[str, str]) -> tuple[Protocol, Protocol, 
 
 
 def said(found: list[Finding]) -> list[tuple[str, str, str, str]]:
-    return [(f.category.value, f.rule.name, f.hurt, f.harm) for f in found]
+    return [(f.category.value, f.rule.name, f.affected, f.harm) for f in found]
 
 
 class TestNames:
@@ -98,12 +98,12 @@ class TestNames:
         ]
         for edit in edits:
             _, _, (item,) = after(tmp_path, edit)
-            assert (item.hurt, item.harm) == ("new receiver of old frames", "lost")
+            assert (item.affected, item.harm) == ("new receiver of old frames", "lost")
 
     def test_a_number_that_another_name_takes_over_misleads(self, tmp_path: Path) -> None:
         _, _, found = after(tmp_path, ("stop: 2, wait: 3", "wait: 2"))
         gone = next(item for item in found if item.rule.name == "enum-value-deleted")
-        assert (gone.hurt, gone.harm) == ("both", "misread")
+        assert (gone.affected, gone.harm) == ("both", "misread")
         assert "reads mode 2 (wait) where 2 (stop) was meant" in gone.witnesses[0].words
 
     def test_a_run_of_bits_is_looked_at_by_its_own_values(self, tmp_path: Path) -> None:
@@ -160,7 +160,7 @@ class TestQuantities:
 
     def test_special_values_have_no_quantity(self, tmp_path: Path) -> None:
         _, _, (item,) = after(tmp_path, ("unseen: 0xFFFF", "unseen: 0xFFFE"))
-        assert (item.hurt, item.harm) == ("both", "misread")
+        assert (item.affected, item.harm) == ("both", "misread")
         old, new = item.witnesses
         assert "where 65535 (unseen) was meant" in old.words
         assert "where 65534 (unseen) was meant" in new.words
@@ -263,7 +263,7 @@ class TestFrames:
         _, _, found = after(tmp_path, *edits)
         for item in found:
             if item.rule.name == "frame-checksum-algorithm":
-                assert (item.hurt, item.harm) == ("both", "rejected")
+                assert (item.affected, item.harm) == ("both", "rejected")
                 assert {witness.received.why for witness in item.witnesses} == {"checksum"}
 
 

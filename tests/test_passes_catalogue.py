@@ -1,4 +1,4 @@
-"""The catalogue of problems: each example shows its problem, and each mend mends it."""
+"""The catalogue of problems: each example shows its problem, and each fix fixes it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_bad_example_has_this_problem_alone_and_its_mend_has_none(
     code: Code, tmp_path: Path
 ) -> None:
     assert reported(code.bad_example, tmp_path / "bad") == {code.code}
-    assert reported(code.mended_example, tmp_path / "mended") == set()
+    assert reported(code.fixed_example, tmp_path / "mended") == set()
 
 
 @pytest.mark.parametrize("code", SCHEMA_CODES, ids=lambda code: code.code)
@@ -39,7 +39,7 @@ def test_an_entry_is_short_and_complete(code: Code) -> None:
     assert not code.title.endswith(".")
     assert code.explanation.endswith(".\n")
     assert len(code.explanation) <= GREATEST_PARAGRAPH
-    assert code.bad_example != code.mended_example
+    assert code.bad_example != code.fixed_example
 
 
 def test_names_are_words_with_dashes() -> None:

@@ -330,7 +330,7 @@ class TestCatalogue:
     )
     def test_examples_show_the_problem_and_the_mend(self, code: Code, tmp_path: Path) -> None:
         assert front_end_codes(code.bad_example, tmp_path) == {code.code}
-        assert front_end_codes(code.mended_example, tmp_path) == set()
+        assert front_end_codes(code.fixed_example, tmp_path) == set()
 
     def test_codes_have_the_documented_form(self) -> None:
         assert all(code.code == key for key, code in CODES.items())
@@ -350,7 +350,7 @@ class TestCatalogue:
             assert f"{code.code}: {code.title}" in page
             assert code.explanation.strip() in page
             assert code.bad_example.rstrip() in page
-            assert code.mended_example.rstrip() in page
+            assert code.fixed_example.rstrip() in page
 
     def test_the_page_fences_examples_that_hold_fences(self) -> None:
         code = Code("PG900", "name", "a | b", "Why.", "doc: ```x\n", "a: 2\n")

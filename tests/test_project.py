@@ -305,7 +305,7 @@ class TestCatalogue:
         (folder / "rover.yaml").write_text(ROVER)
         (folder / "readme.md").touch()
         entry = CODES[code.code]  # type: ignore[attr-defined]
-        for example, expected in ((entry.bad_example, True), (entry.mended_example, False)):
+        for example, expected in ((entry.bad_example, True), (entry.fixed_example, False)):
             (text,) = files_of(example).values()
             is_page = text.startswith("<!--")
             settings = 'schemas = ["rover.yaml"]\nblocks = ["readme.md"]\n' if is_page else text

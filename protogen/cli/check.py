@@ -20,7 +20,7 @@ EXAMPLE = "Example: protogen check schemas"
 
 
 class ProblemFormat(StrEnum):
-    """How problems are printed."""
+    """Format in which problems are printed."""
 
     TEXT = "text"
     JSON = "json"
@@ -38,7 +38,7 @@ def check(
 ) -> int:
     """Report problems, verify examples, analyse framing.
 
-    Every problem of every schema is reported. Exits with 0 if there is nothing to mend, 1 if there
+    Every problem of every schema is reported. Exits with 0 if there is nothing to fix, 1 if there
     is.
     """
     compilations = _compile(schema_files(schemas))

@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperCommand
 
 _VALIDATOR = "Value error, "
-"""What the library behind typer puts in front of its messages; it tells a user nothing."""
+"""Prefix of the messages of the library behind typer; it tells a user nothing."""
 _CHOICE = re.compile(r"(?P<given>'[^']*') is not one of (?P<choices>.*)\.")
 
 

@@ -1,4 +1,4 @@
-"""Where a command prints: colour where a terminal takes it, plain text everywhere else.
+"""Console of a command: colour where a terminal takes it, plain text everywhere else.
 
 Lines are never wrapped, so that a line of output is one line in a pipe as well.
 """

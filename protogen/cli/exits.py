@@ -31,7 +31,7 @@ Arguments = ParamSpec("Arguments")
 
 
 class UsageError(Exception):
-    """A mistake in the call; the message is for the user, `hint` says how to mend it."""
+    """A mistake in the call; the message is for the user, `hint` says how to fix it."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)

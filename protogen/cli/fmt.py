@@ -68,7 +68,7 @@ def _change(file: Path) -> tuple[str, str] | None:
 
 def _finish(file: Path, text: str, *, check: bool, quiet: bool) -> None:
     if check:
-        typer.echo(f"{file}: would be laid out anew; mend it with: protogen fmt {file}")
+        typer.echo(f"{file}: would be laid out anew; fix it with: protogen fmt {file}")
         return
     file.write_bytes(text.encode("utf-8"))
     if not quiet:

@@ -55,7 +55,7 @@ def fuzz(
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Which samples are taken."""
+    """Selection of samples."""
 
     examples: int
     seed: int

@@ -47,7 +47,7 @@ def schema_json(
 def _check(file: Path, text: str) -> int:
     if _read(file) == text:
         return CLEAN
-    typer.echo(f"{file} is not current; mend it with: protogen schema-json -o {file}")
+    typer.echo(f"{file} is not current; fix it with: protogen schema-json -o {file}")
     return FINDINGS
 
 

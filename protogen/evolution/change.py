@@ -13,7 +13,7 @@ class Mark:
     bits: int
 
     def on(self, raw: int) -> bool:
-        """Whether the raw value has these bits."""
+        """True if the raw value has these bits."""
         return raw & self.mask == self.bits
 
     def put(self, raw: int) -> int:
@@ -28,9 +28,9 @@ class Change:
     rule: str
     """The name in `protogen.evolution.rules`."""
     place: str
-    """Where it is: `gyro.int_x`, `frame.checksum`, `enum axis`."""
+    """Place of the change: `gyro.int_x`, `frame.checksum`, `enum axis`."""
     text: str
-    """What changed, in words: `from uint16 little to uint16 big`."""
+    """The change in words: `from uint16 little to uint16 big`."""
     message: str | None = None
     """The message, by its name in OLD where it has one; None for what concerns all."""
     sender: str | None = None
@@ -44,11 +44,11 @@ class Change:
     names: tuple[str | None, str | None] = (None, None)
     """A value or a flag by its names in OLD and NEW; None where it has none."""
     marks: tuple[Mark | None, Mark | None] = (None, None)
-    """What the field holds in frames of OLD and of NEW that show the change; None for anything."""
+    """Content of the field in frames of OLD and of NEW that show the change; None for anything."""
     selector: str | None = None
     """The field, beside or around this one, that holds what the marks are of."""
     is_lost: bool = False
-    """Whether what has the marks is only not known by its name any more."""
+    """True if the thing with the marks is only not known by its name any more."""
     part: str | None = None
     """The part of the frame, by its name in OLD where it has one."""
     old_part: str | None = None

@@ -216,7 +216,7 @@ def _is_wire(change: Change) -> bool:
 
 
 def _is_unbumped(old: Protocol, new: Protocol, found: Iterable[Change]) -> bool:
-    """Whether two meanings have one version."""
+    """True if two meanings have one version."""
     if new.version is None or new.version != old.version:
         return False
     grave = (Category.WIRE, Category.VALUE)

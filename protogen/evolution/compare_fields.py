@@ -1,4 +1,4 @@
-"""What changed between the fields of two messages or structs."""
+"""Changes between the fields of two messages or structs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CHANGES = {
     "enum-value-deleted": ", is gone",
     "enum-value-renamed": "",
 }
-"""What is said of a special value that changed."""
+"""Words about a special value that changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class FieldComparison:
 
 
 def _above(one: Fraction | None, other: Fraction | None, *, up: bool = False) -> bool:
-    """Whether a bound is tighter than another; `up` compares greatest values, in swapped order."""
+    """True if a bound is tighter than another; `up` compares greatest values, in swapped order."""
     if up:
         return other is not None and (one is None or other < one)
     return one is not None and (other is None or one > other)

@@ -1,4 +1,4 @@
-"""What changed between the frames of one sender."""
+"""Changes between the frames of one sender."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def _renamed(old: Frame, new: Frame) -> dict[str, str]:
 
 
 def _fits(sender: Sender, receiver: Sender) -> bool:
-    """Whether the receiver's length can say the sizes of the messages that both have."""
+    """True if the receiver's length can say the sizes of the messages that both have."""
     taken = payload_range(receiver.frame)
     names = {message.name for message in receiver.messages}
     sizes = [message.sizes for message in sender.messages if message.name in names]
@@ -161,7 +161,7 @@ def _default(part: Part) -> int | None:
 
 
 def _layout(type: Integer) -> tuple[object, ...]:
-    """What its bytes say; how the number is shown does not count."""
+    """Layout of its bytes; how the number is shown does not count."""
     return type.bits, type.signed, type.byte_bits, type.byte_order
 
 

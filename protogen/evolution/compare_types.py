@@ -1,4 +1,4 @@
-"""What changed in a field's type."""
+"""Changes in a field's type."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ def _marks(values: Mapping[str, int]) -> set[Mark]:
 def named_values(
     report: Report, old: Mapping[str, int], new: Mapping[str, int], path: str
 ) -> Iterator[Change]:
-    """What changed between the names of a number's values."""
+    """Changes between the names of a number's values."""
     names = {value: name for name, value in new.items()}
     for name, value in old.items():
         mark = Mark(-1, value)
@@ -232,7 +232,7 @@ def _runs(fields: Sequence[BitField]) -> str:
 
 
 def _bytes(kind: Type) -> tuple[Extent, int] | None:
-    """How many bytes of how many bits a value is, if it is nothing but bytes."""
+    """Number and width of the bytes of a value, if it is nothing but bytes."""
     match kind:
         case Text() | Octets():
             return kind.extent, kind.byte_bits

@@ -1,4 +1,4 @@
-"""Changes with what they mean: a rule, who is hurt, how, and a frame that shows it."""
+"""Changes with what they mean: a rule, who is affected, how, and a frame that shows it."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class Finding:
     witnesses: tuple[Witness, ...] = ()
 
     @property
-    def hurt(self) -> str:
-        """Who is hurt."""
+    def affected(self) -> str:
+        """Sides that are affected."""
         if self.category is Category.NONE:
             return "nobody"
         old_sends = any(item.old_sends for item in self.witnesses)
@@ -45,7 +45,7 @@ class Finding:
 
     @property
     def harm(self) -> str:
-        """How, the worst first."""
+        """Harm that is done, the worst first."""
         if self.category is Category.NONE:
             return "nothing"
         order = ["misread", "rejected", "lost"]
@@ -55,7 +55,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """Which rules count: names or categories to use, rules to except, places to ignore."""
+    """Selection of rules: names or categories to use, rules to except, places to ignore."""
 
     use: tuple[str, ...] = ("WIRE", "VALUE")
     except_: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ class Gate:
         return [name for name in (*self.use, *self.except_, *self.ignore) if name not in known]
 
     def stops(self, change: Change) -> bool:
-        """Whether a change may not pass."""
+        """True if a change may not pass."""
         rule = BY_NAME[change.rule]
         if rule.category is Category.NONE or rule.name in self.except_:
             return False
@@ -95,7 +95,7 @@ def findings(
 
 
 def gone(old: Protocol, place: str, gate: Gate | None = None) -> tuple[Comparison, list[Finding]]:
-    """What becomes of a protocol whose schema is gone: nobody reads its frames any more.
+    """Changes of a protocol whose schema is gone: nobody reads its frames any more.
 
     `place` is the path of the schema.
     """

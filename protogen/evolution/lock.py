@@ -47,7 +47,7 @@ _LEFT_OUT: Mapping[str, Any] = {
     "decisions": (),
     "plan": None,
 }
-"""Texts for people, and what follows from the rest, with what stands for it in a lock."""
+"""Keys of text for readers and of derived facts, with what stands for them in a lock."""
 _MODULES = (
     checksums,
     frame,

@@ -1,4 +1,4 @@
-"""What a receiver makes of a frame: which message it sees, and what each field means."""
+"""Observation of a frame by a receiver: which message it sees, and what each field means."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from protogen.runtime.values import as_dict
 
 @dataclass(frozen=True)
 class Contents:
-    """What is in a payload."""
+    """Content of a payload."""
 
     fields: tuple[Field, ...] = ()
     payload: bytes = b""
@@ -49,21 +49,21 @@ class Contents:
 
     @cached_property
     def meanings(self) -> Mapping[str, Hashable]:
-        """What the values mean, the same for the same meaning in other words."""
+        """Meaning of the values, the same for the same meaning in other words."""
         return {row.path: _meaning(row) for row in self._rows}
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a receiver sees."""
+    """Observation by a receiver."""
 
     message: str | None
     """None where it sees none."""
     why: str = ""
-    """Why there is none."""
+    """Reason why there is none."""
     contents: Contents = Contents()
     parts: Mapping[str, str] = field(default_factory=dict)
-    """What the sender chose in the frame itself."""
+    """Values that the sender chose in the frame itself."""
 
     @property
     def values(self) -> Mapping[str, str]:
@@ -77,7 +77,7 @@ class Reading:
 
     @property
     def meanings(self) -> Mapping[str, Hashable]:
-        """What they mean, the same for the same meaning in other words: 0.0 is 0, 1 m is 100 cm."""
+        """Their meaning, the same for the same meaning in other words: 0.0 is 0, 1 m is 100 cm."""
         return {**self.parts, **self.contents.meanings}
 
 
@@ -108,13 +108,13 @@ class Side:
             return None  # Values of the other version may be none of this one's.
 
     def _decoder(self, sender: str) -> Decoder[Any, Any]:
-        """What takes one frame after the other, each with an end of input behind it."""
+        """Receiver that takes one frame after the other, each with an end of input behind it."""
         if sender not in self._decoders:
             self._decoders[sender] = Decoder(self._codec.sender(sender))
         return self._decoders[sender]
 
     def reads(self, sender: str, frame: bytes, like: Reading | None = None) -> Reading:
-        """What a receiver makes of a frame that stands alone.
+        """Observe a frame that stands alone.
 
         `like` is what another receiver made of it. Most messages of two versions are the same, and
         then so is what is in them.
@@ -134,7 +134,7 @@ class Side:
 
 
 def _meaning(row: Row) -> Hashable:
-    """What programs get to see of a value: the number, its names, and the quantity."""
+    """A value as programs see it: the number, its names, and the quantity."""
     if row.value is None:
         return row.bytes
     if not isinstance(row.subject, Field) or isinstance(row.value, str):
@@ -147,7 +147,7 @@ def _meaning(row: Row) -> Hashable:
 
 
 def _is_special(row: Row) -> bool:
-    """Whether the value has a name of its own, and so is no quantity."""
+    """True if the value has a name of its own, and so is no quantity."""
     return isinstance(row.subject, Field) and row.value in {v.value for v in row.subject.special}
 
 

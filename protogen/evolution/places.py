@@ -1,4 +1,4 @@
-"""Where in the schemas a change stands: the line of the field, the value or the part."""
+"""Places of changes in the schemas: the line of the field, the value or the part."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Places(NamedTuple):
 
 
 def places_of(comparison: Comparison, change: Change) -> Places:
-    """Where the change stands in OLD and in NEW: as close to what changed as there is a place."""
+    """Places of the change in OLD and in NEW: as close to what changed as there is a place."""
     old = _place(comparison.old, change, change.message, change.path, 0)
     renamed = comparison.messages.get(change.message or "", change.message)
     path = _translated(comparison, change)
@@ -86,7 +86,7 @@ def _part(protocol: Protocol, change: Change) -> Span | None:
 
 
 def _abouts(message: Message, path: str | None, change: Change, side: int) -> Iterator[About]:
-    """What is known of the things that lead to the change, from the outside in."""
+    """Texts about the things that lead to the change, from the outside in."""
     fields: Sequence[Field] = message.fields
     found: Field | None = None
     for step in path.split(".") if path is not None else ():

@@ -1,4 +1,4 @@
-"""What a number stands for, whatever unit it is stated in: 0.1 m is 100 mm."""
+"""Quantities that numbers stand for, whatever the unit: 0.1 m is 100 mm."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PREFIXES = {
 
 
 class Meaning(NamedTuple):
-    """What a raw value means: `raw * scale + offset` of the unit."""
+    """Meaning of a raw value: `raw * scale + offset` of the unit."""
 
     scale: Fraction
     offset: Fraction
@@ -31,7 +31,7 @@ class Meaning(NamedTuple):
 
 
 def meaning_of(field: Field) -> Meaning:
-    """What the raw values of a number mean."""
+    """Meaning of the raw values of a number."""
     factor, unit = _without_prefix(field.unit or "")
     return Meaning(field.scale * factor, field.offset * factor, unit)
 

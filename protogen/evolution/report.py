@@ -72,9 +72,9 @@ def _finding(comparison: Comparison, item: Finding) -> dict[str, Any]:
         "lines": {side: None if s is None else s.line for side, s in places.items()},
         "message": change.message,
         "text": change.text,
-        "hurt": item.hurt,
+        "affects": item.affected,
         "harm": item.harm,
-        "mend": item.rule.mend,
+        "fix": item.rule.fix,
         "witnesses": [
             {
                 "sends": "old" if witness.old_sends else "new",

@@ -1,4 +1,4 @@
-"""What each kind of change means. Names are stable: configurations and reviews refer to them."""
+"""Rules: what each kind of change means. Names are stable: configurations and reviews use them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Category(StrEnum):
-    """How much a change can hurt, the worst first."""
+    """Harm that a change can do, the worst first."""
 
     WIRE = "WIRE"
     """Bytes are cut or read another way: frames are lost or misread."""
@@ -26,9 +26,9 @@ class Rule:
     name: str
     category: Category
     about: str
-    """What changed."""
-    mend: str
-    """What to do instead, or besides."""
+    """Short description of the change."""
+    fix: str
+    """Advice: what to do instead, or besides."""
 
 
 _W, _V, _S, _N = Category.WIRE, Category.VALUE, Category.SOURCE, Category.NONE

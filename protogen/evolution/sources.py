@@ -1,4 +1,4 @@
-"""Where versions of a schema come from: files, folders, and what git or a lock keeps of them."""
+"""Sources of versions of a schema: files, folders, and what git or a lock keeps of them."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from protogen.problems import SourceMap
 from protogen.project.schemas import schemas_below
 
 GIT = "git:"
-"""What a version of a file in git begins with: `git:main:schemas/rn1.yaml`."""
+"""Prefix of a version of a file in git: `git:main:schemas/rn1.yaml`."""
 LOCK = "lock:"
-"""What a lock file begins with: `lock:protogen.lock`."""
+"""Prefix of a lock file: `lock:protogen.lock`."""
 _SUFFIXES = (".yaml", ".yml")
 
 
@@ -42,7 +42,7 @@ class Version:
 
 
 def names_no_path(given: str) -> bool:
-    """Whether a version is one of whatever path: `git:REV`, or a lock."""
+    """True if a version is one of whatever path: `git:REV`, or a lock."""
     return given.startswith(LOCK) or (given.startswith(GIT) and ":" not in given.removeprefix(GIT))
 
 
@@ -118,7 +118,7 @@ def _extracted(revision: str, wanted: Path) -> Iterator[tuple[Path, Path]]:
 
 
 def _locked(lock: Path, path: Path | None, *, may_lack: bool = False) -> Version:
-    """What a lock keeps of a schema, or of those in a folder; of all without a path."""
+    """Content of a lock for a schema, or for those in a folder; for all without a path."""
     try:
         kept = read_lock(lock)
     except LockError as error:
@@ -174,7 +174,7 @@ def _inside(path: Path, top: Path) -> Path:
 
 
 def _is_below(path: Path) -> bool:
-    """Whether a path may be meant from the top of a repository, as git has them."""
+    """True if a path may be meant from the top of a repository, as git has them."""
     return not path.is_absolute() and ".." not in path.parts
 
 

@@ -30,11 +30,11 @@ _INDEX = re.compile(r"\[\d+\]")
 
 
 _OF_FRAMES = frozenset({"noise", "truncated", "length", "checksum", "stuffing", "encoding"})
-"""Why a frame is lost whatever message it has."""
+"""Reasons to lose a frame whatever message it has."""
 
 
 class Harm(StrEnum):
-    """What becomes of a frame at the other end."""
+    """Fate of a frame at the other end."""
 
     REJECTED = "rejected"
     """The frame is lost."""
@@ -60,7 +60,7 @@ class Witness:
     """A frame, and both readings of it."""
 
     old_sends: bool
-    """Whether OLD sends and NEW reads, or the other way round."""
+    """True if OLD sends and NEW reads; False the other way round."""
     sender: str
     message: str
     frame: bytes
@@ -143,7 +143,7 @@ class Witnesses:
         ]
 
     def _has_changed(self, witness: Witness) -> bool:
-        """Whether the message has changes of its own, which the witness may show."""
+        """True if the message has changes of its own, which the witness may show."""
         names = self._comparison
         name = witness.message
         if not witness.old_sends:
@@ -274,7 +274,7 @@ def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:
 
 
 def _is_drawn_alike(one: Message, other: Message) -> bool:
-    """Whether the same samples are drawn for both."""
+    """True if the same samples are drawn for both."""
     shapes = [(m.name, m.fields, m.unspecified, m.sizes) for m in (one, other)]
     return shapes[0] == shapes[1]
 
@@ -342,13 +342,13 @@ def _marked(value: Any, steps: Sequence[str], mark: Mark) -> Any:
 
 
 def _around(path: str, name: str) -> list[str]:
-    """Where a field may be that something at a path depends on: beside it, or further out."""
+    """Places of a field that something at a path depends on: beside it, or further out."""
     steps = path.split(".")[:-1]
     return [".".join([*steps[:count], name]) for count in range(len(steps) + 1)]
 
 
 def _holds(reading: Reading, path: str, mark: Mark) -> bool:
-    """Whether a value at the path is as the mark has it."""
+    """True if a value at the path is as the mark has it."""
     found = (raw for place, raw in reading.raw.items() if _INDEX.sub("", place) == path)
     return any(mark.on(raw) for raw in found)
 

@@ -1,1 +1,1 @@
-"""What generated C costs on a machine: flash, RAM and stack, as its compiler makes them."""
+"""Cost of generated C on a machine: flash, RAM and stack, as its compiler makes them."""

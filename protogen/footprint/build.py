@@ -17,7 +17,7 @@ from protogen.targets.c.options import COptions
 
 _FLAGS = ("-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-fstack-usage")
 _QUIET = ("-fno-asynchronous-unwind-tables", "-fno-stack-protector", "-fcf-protection=none")
-"""What some hosts add to each function, and controllers do not have."""
+"""Flags against code that some hosts add to each function, and controllers do not have."""
 
 
 class NoCompilerError(Exception):
@@ -100,7 +100,7 @@ def _compile(compiler: str, flags: Sequence[str], folder: Path, name: str) -> El
 
 
 def _stack_frames(text: str) -> dict[str, int]:
-    """What `-fstack-usage` wrote: file:line:column:function, bytes and how they are known."""
+    """Lines that `-fstack-usage` wrote: file:line:column:function, bytes and how they are known."""
     frames: dict[str, int] = {}
     for line in text.splitlines():
         place, size, _ = line.split("\t")

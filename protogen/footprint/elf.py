@@ -26,7 +26,7 @@ class Section:
     is_code: bool
     is_writable: bool
     is_stored: bool
-    """Whether the file holds its bytes, which then are in flash."""
+    """True if the file holds its bytes, which then are in flash."""
 
 
 @dataclass(frozen=True, slots=True)

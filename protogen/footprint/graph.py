@@ -1,4 +1,4 @@
-"""Who needs what in a compiled program: what a function takes along, and how deep it goes.
+"""Call graph of a compiled program: what a function takes along, and how deep it goes.
 
 There is no recursion in generated C, and no call through a pointer but those of the user's own
 functions, so the deepest chain of calls is exact up to the user's functions.
@@ -21,7 +21,7 @@ class Graph:
         self.sections: dict[int, Section] = {item.index: item for item in build.elf.sections}
         self._needs: dict[int, set[int]] = {index: set() for index in self.sections}
         self.external: set[str] = set()
-        """What the compiler's library has to give."""
+        """Functions that the compiler's library has to give."""
         for reference in build.elf.references:
             if reference.section in self.sections:
                 self._add(reference.section, reference.symbol.section, reference.symbol.name)

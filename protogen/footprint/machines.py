@@ -16,7 +16,7 @@ class Machine:
     package: str
     """The package of Debian and Ubuntu that has the compiler."""
     constants_in_ram: bool = False
-    """Whether constants are copied to RAM before the program starts."""
+    """True if constants are copied to RAM before the program starts."""
 
 
 MACHINES: dict[str, Machine] = {

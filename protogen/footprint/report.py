@@ -1,4 +1,4 @@
-"""What each message and each decoder of a protocol costs.
+"""Cost of each message and each decoder of a protocol.
 
 What only one function needs is counted with it. What several need, of one message or decoder,
 counts as shared there; what messages and decoders have in common has a row of its own.
@@ -57,7 +57,7 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a protocol costs."""
+    """Cost of a protocol."""
 
     protocol: str
     machine: Machine
@@ -199,7 +199,7 @@ class _Account:
         return Cost(owner.name, tuple(functions), self.graph.flash(own) - taken, struct)
 
     def _handler_sections(self) -> frozenset[int]:
-        """What handlers need and neither a message nor a decoder does."""
+        """Sections that handlers need and neither a message nor a decoder does."""
         reached = (self._reach(function) for _, function in self.handlers.roles)
         return frozenset().union(*reached) - self.users.keys()
 

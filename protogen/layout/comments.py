@@ -1,4 +1,4 @@
-"""Which comment belongs to which item.
+"""Comments and the items that they belong to.
 
 A comment on a line of its own belongs to what follows it; where nothing follows in the same
 mapping or list, it stands at the foot of the one whose indentation it has. A comment behind
@@ -23,7 +23,7 @@ class _Found:
     column: int
     is_alone: bool
     is_lined_up: bool
-    """Whether more than the usual two spaces stand in front of it."""
+    """True if more than the usual two spaces stand in front of it."""
     below_blank: bool
 
 

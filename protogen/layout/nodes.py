@@ -1,4 +1,4 @@
-"""What a formatter knows of a text: its nodes, how each was written, and the comments beside it."""
+"""Nodes for the formatter: how each was written, and the comments beside it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Scalar:
     value: str
     """The text that it stands for, line breaks folded and escapes read."""
     source: str
-    """How it was written."""
+    """Style in which it was written."""
     style: str
     """`'`, `"`, `|` or `>`; empty for a plain one."""
     start: int
@@ -22,7 +22,7 @@ class Scalar:
 
     @property
     def is_block(self) -> bool:
-        """Whether it is a block of lines below its key."""
+        """True if it is a block of lines below its key."""
         return self.style in ("|", ">")
 
 
@@ -42,7 +42,7 @@ class Comment:
 
     text: str
     column: int
-    """Where it begins if it is lined up with others; else 0."""
+    """Column where it begins if it is lined up with others; else 0."""
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class Item:
     """Index of the key or of the dash."""
     column: int
     value_column: int | None
-    """Where the value begins if that is on the line of the key."""
+    """Column where the value begins if that is on the line of the key."""
     leading: list[str] = field(default_factory=list)
     """Comments on lines of their own in front of it; an empty text is a blank line."""
     beside: list[Comment] = field(default_factory=list)
@@ -88,7 +88,7 @@ class Text:
     """A whole file."""
 
     head: list[str]
-    """What stands in front of everything: directives and the first comments."""
+    """Head of the text: directives and the first comments."""
     root: Collection
 
 

@@ -1,4 +1,4 @@
-"""How a single value is written: hex stays hex, and quotes stay where there were some."""
+"""Spelling of a single value: hex stays hex, and quotes stay where there were some."""
 
 from __future__ import annotations
 

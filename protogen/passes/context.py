@@ -1,4 +1,4 @@
-"""What every pass is given: the syntax tree, the places of its nodes, and where problems go."""
+"""Context of the passes: the syntax tree, the places of its nodes, and where problems go."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from protogen.schema.syntax.base import Source as SourceSyntax
 from protogen.schema.syntax.protocol import ProtocolSyntax
 
 Loc = tuple[str | int, ...]
-"""Where in the schema: keys and indexes from the root."""
+"""Place in the schema: keys and indexes from the root."""
 
 _CERTAIN = frozenset(
     {"PG104", "PG105", "PG106", "PG108", "PG120", "PG123", "PG134", "PG143", "PG165"}
@@ -29,11 +29,11 @@ Find = Callable[[Loc], Span]
 
 @dataclass(slots=True)
 class Tally:
-    """How often something was found to be wrong, the same problem counted each time."""
+    """Number of errors found, the same problem counted each time."""
 
     errors: int = 0
     in_examples: int = 0
-    """How many of them concern examples only."""
+    """Number of errors that concern examples only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Context:
     lost: frozenset[Loc] = frozenset()
     """Names of which is not known what they mean; a key of the root stands for all its names."""
     spoilt: bool = False
-    """Whether more than some examples could not be read."""
+    """True if more than some examples could not be read."""
     tally: Tally = field(default_factory=Tally)
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
@@ -80,7 +80,7 @@ class Context:
             self.problems.extend([problem])
 
     def _is_doubtful(self, code: str, loc: Loc) -> bool:
-        """Whether the problem may be no more than a consequence of what could not be read."""
+        """True if the problem may only follow from something that could not be read."""
         if any(loc[:steps] in self.doubtful for steps in range(4, len(loc) + 1)):
             return True
         if loc[0] == "messages" and loc[2:3] == ("fields",):
@@ -91,7 +91,7 @@ class Context:
         return loc[:2] in self.doubtful
 
     def is_lost(self, key: str, name: str) -> bool:
-        """Whether `name` may be written under this key of the root, but could not be read.
+        """True if `name` may be written under this key of the root, but could not be read.
 
         What is refused as a name, such as `LeftMotor`, stands for the name it should have been.
         """
@@ -100,7 +100,7 @@ class Context:
 
     @property
     def failed(self) -> bool:
-        """Whether there is something wrong so far, but for examples, which nothing depends on."""
+        """True if there is an error so far, but for examples, which nothing depends on."""
         return self.spoilt or self.tally.errors > self.tally.in_examples
 
 
@@ -114,7 +114,7 @@ def source_of(syntax: SourceSyntax | None) -> Source | None:
 
 
 def about(doc: str | None, source: SourceSyntax | None, span: Span | None = None) -> About:
-    """What people read about a thing, and where it stands."""
+    """Text for readers about a thing, and where it stands."""
     if doc is None and source is None and span is None:
         return NOTHING
     return About(doc=(doc or "").strip(), source=source_of(source), span=span)

@@ -1,4 +1,4 @@
-"""What the passes have worked out so far: the mutable model under construction."""
+"""Draft of the model: results of the passes so far."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What identifies the wire format: layout, framing and the meaning of values.
+"""Hash of the wire format: layout, framing and the meaning of values.
 
 Texts for people, sources, decisions and examples do not count; both ends of a wire can compare the
 hash to know whether they speak the same protocol.
@@ -25,10 +25,10 @@ _LEFT_OUT = frozenset(
         "ranged", "stated", "preset", "spec_hash", "reserved", "plan", "needs", "holds_values",
     }
 )  # fmt: skip
-"""What people read, and what follows from the rest."""
+"""Text for readers, and facts that follow from the rest."""
 
 _LISTED = frozenset({"messages", "enums", "flags", "structs"})
-"""What a protocol lists that stands in other places, too: messages under their senders."""
+"""Members of a protocol that stand in other places, too: messages under their senders."""
 
 _NAMED: tuple[type[Any], ...] = (Enum, Flags, Struct)
 """Types that count once; where they are used their names stand for them."""

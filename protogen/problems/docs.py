@@ -40,8 +40,8 @@ def _section(code: Code) -> str:
         f'\n## <a id="{code.code.lower()}"></a>{code.code}: {code.title}\n\n'
         f"`{code.name}`, {code.severity.value}. {code.explanation.strip()}\n\n"
         f"{_fenced(code.bad_example, language)}\n"
-        f"Mended:\n\n"
-        f"{_fenced(code.mended_example, language)}"
+        f"Fixed:\n\n"
+        f"{_fenced(code.fixed_example, language)}"
     )
 
 

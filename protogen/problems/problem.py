@@ -17,7 +17,7 @@ SortKey = tuple[str, int, int, str, str]
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong, where, and how to mend it. Problems order by file, line, column and code."""
+    """A problem, its place, and how to fix it. Problems order by file, line, column and code."""
 
     code: str
     severity: Severity
@@ -43,7 +43,7 @@ class Problem:
 
     @property
     def sort_key(self) -> SortKey:
-        """What problems are ordered by; those without a place come first."""
+        """Key that problems are ordered by; those without a place come first."""
         file, line, column = _place(self.span)
         return file, line, column, self.code, self.message
 

@@ -30,7 +30,7 @@ _GITHUB_COMMANDS = {
 _GREATEST_EXCERPT = 160
 """The most characters of a source line that are shown."""
 _EXCERPT_LEAD = 40
-"""How many characters are kept before the place in a line that is cut."""
+"""Number of characters kept before the place in a line that is cut."""
 _STAND_INS = {"\t": " ", "\xa0": " "}
 
 

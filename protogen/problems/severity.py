@@ -1,4 +1,4 @@
-"""How grave a problem is."""
+"""Severity of a problem."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """How grave a problem is; the value is the word that is printed."""
+    """Severity of a problem; the value is the word that is printed."""
 
     ERROR = "error"
     """Nothing can be generated."""
     WARNING = "warning"
     """The schema compiles, but is likely to say something else than is meant."""
     NOTE = "note"
-    """Worth knowing, nothing to mend."""
+    """Worth knowing, nothing to fix."""

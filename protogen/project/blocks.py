@@ -35,7 +35,7 @@ class Page:
 
     @property
     def is_current(self) -> bool:
-        """Whether there is nothing to write."""
+        """True if there is nothing to write."""
         return self.old == self.new
 
 

@@ -1,4 +1,4 @@
-"""What marked blocks are filled with: sections of the reference pages of the schemas."""
+"""Contents of marked blocks: sections of the reference pages of the schemas."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def section(data: Any, file: Path) -> Any:
 
 
 def _has_table(file: Path) -> bool:
-    """Whether the shared file has the table. One that is no TOML is for others to complain of."""
+    """True if the shared file has the table. One that is no TOML is for others to complain of."""
     try:
         data = tomllib.loads(file.read_text("utf-8"))
     except (OSError, ValueError):

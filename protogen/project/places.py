@@ -1,4 +1,4 @@
-"""Where a key stands in a TOML file. The parser of the standard library does not tell.
+"""Places of keys in a TOML file. The parser of the standard library does not tell.
 
 The file was parsed before, so a search line by line is enough: it knows headers of tables, dotted
 keys and inline tables. What it does not find has the place of the table around it.

@@ -126,7 +126,7 @@ _WORDS = {
 
 
 def _plain(detail: ErrorDetails) -> str:
-    """What may be written, in the words of TOML."""
+    """Complaint about a value, in the words of TOML."""
     choices = _choices(detail)
     if choices:
         return f"this is {' or '.join(choices)}"

@@ -1,4 +1,4 @@
-"""What the last run read and made, so that a run that has nothing to do need not compile.
+"""Record of the last run, so that a run that has nothing to do need not compile.
 
 A record is kept in `.protogen_cache` beside the project's file, as pytest, mypy and ruff keep
 theirs: it goes away with the project, and a `.gitignore` of its own keeps it out of commits. It
@@ -42,18 +42,18 @@ Job = tuple[Sequence[File], Path, bool]
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """What stands in one target's folder."""
+    """Contents of one target's folder."""
 
     folder: str
     prune: bool
     files: int
-    """How many the target makes."""
+    """Number of files that the target makes."""
     expected: dict[str, str | None]
     """The hash of each; None where any content will do."""
 
     @property
     def written(self) -> int:
-        """How many files a run has to look after."""
+        """Number of files that a run has to look after."""
         return sum(digest is not None for digest in self.expected.values())
 
 
@@ -87,11 +87,11 @@ class Keeper:
     root: Path
     """The folder of the project."""
     options: Mapping[str, object]
-    """What else the output depends on, as JSON has it."""
+    """Other things that the output depends on, as JSON has them."""
     schemas: Sequence[Path]
     pages: Sequence[Path]
     program: str = field(default_factory=program)
-    """Which program this is, asked once: it may change while it runs."""
+    """Identity of this program, asked once: it may change while it runs."""
 
     def current(self) -> Record | None:
         """Return the record of the last run if a run would change nothing now."""

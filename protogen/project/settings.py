@@ -1,4 +1,4 @@
-"""What may be written in `protogen.toml`, or in `[tool.protogen]` of `pyproject.toml`."""
+"""Settings in `protogen.toml`, or in `[tool.protogen]` of `pyproject.toml`."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ _OFFERS = (
     ("Part", "type", "PartTypes"),
     ("Part", "algorithm", "Algorithms"),
 )
-"""Which keys they are offered for; another text may stand there, too."""
+"""Keys that the words are offered for; another text may stand there, too."""
 
 
 def json_schema() -> JsonObject:
@@ -148,7 +148,7 @@ _DIRECTIVES: JsonObject = {
         "type": ["string", "integer"],
     },
 }
-"""How a schema that extends another one changes a mapping."""
+"""Keys by which a schema that extends another one changes a mapping."""
 
 _OTHER_NAMES = NAME_PATTERN.replace("^", f"^(?!({'|'.join(_DIRECTIVES)})$)")
 """Names that are no directives."""

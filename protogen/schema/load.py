@@ -25,7 +25,7 @@ class Loaded:
     lost: frozenset[Loc] = frozenset()
     """Names that are written, but whose meaning could not be read."""
     spoilt: bool = False
-    """Whether more than some examples could not be read."""
+    """True if more than some examples could not be read."""
 
 
 def load_syntax(

@@ -25,7 +25,7 @@ Steps = Sequence[str | int]
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What was written, as far as it can be read."""
+    """A schema as it was written, as far as it can be read."""
 
     syntax: ProtocolSyntax
     doubtful: frozenset[Loc] = frozenset()
@@ -33,7 +33,7 @@ class Shape:
     lost: frozenset[Loc] = frozenset()
     """Names that are written, but can't be referred to."""
     spoilt: bool = False
-    """Whether more than some examples could not be read."""
+    """True if more than some examples could not be read."""
 
 
 def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
@@ -97,7 +97,7 @@ _FORMS: dict[type[BaseModel], str] = {
     Step: "a step is the name of a message, or a mapping with a `message`",
     Source: "a source is the lines of the document, or a mapping",
 }
-"""What may stand where one of these is."""
+"""Forms of what may stand where one of these is."""
 
 
 def _form(detail: ErrorDetails) -> str | None:

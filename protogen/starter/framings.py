@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Framing(StrEnum):
-    """How a receiver finds a frame."""
+    """Ways for a receiver to find a frame."""
 
     COBS = "cobs"
     SLIP = "slip"
@@ -36,7 +36,7 @@ _SUMMARIES = {
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """What numbers look like on the wire of a framing."""
+    """Look of numbers on the wire of a framing."""
 
     small: str
     unsigned: str

@@ -1,4 +1,4 @@
-"""`protogen breaking`: a gate for changes that hurt the other end of the wire."""
+"""`protogen breaking`: a gate for changes that affect the other end of the wire."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EXAMPLE = "Example: protogen breaking schemas --against git:main"
 
 
 class BreakingFormat(StrEnum):
-    """How findings are printed."""
+    """Format in which findings are printed."""
 
     TEXT = "text"
     JSON = "json"
@@ -53,8 +53,8 @@ def breaking(
 ) -> int:
     """Refuse changes that the other end of the wire would misread or lose.
 
-    Each finding has a rule, who is hurt and how, and a frame that shows it. Exits with 0 if nothing
-    is broken, 1 if something is.
+    Each finding has a rule, who is affected and how, and a frame that shows it. Exits with 0 if
+    nothing is broken, 1 if something is.
 
     With nothing given, in a project: its schemas, against those of the last commit (git:HEAD); a
     gate for pull requests names the branch that they go to, as in --against git:origin/main.
@@ -100,7 +100,7 @@ def _judged(
 
 
 def _gate(project: Project | None, use: list[str], except_: list[str], ignore: list[str]) -> Gate:
-    """What counts: the command line over the project's file."""
+    """Selection of rules: the command line over the project's file."""
     from protogen.evolution.findings import Gate
     from protogen.evolution.rules import BY_NAME, Category
     from protogen.problems import hint_for

@@ -21,7 +21,7 @@ EXAMPLE = "Example: protogen diff git:main:schemas/rn1.yaml schemas/rn1.yaml"
 
 
 class DiffFormat(StrEnum):
-    """How changes are printed."""
+    """Format in which changes are printed."""
 
     TEXT = "text"
     MARKDOWN = "markdown"
@@ -88,10 +88,10 @@ def print_findings(out: Console, comparison: Comparison, found: list[Finding]) -
             if where:
                 out.print(f"    at {where}", style="dim")
             if item.witnesses:
-                out.print(f"    hurts {item.hurt}: {item.harm}")
+                out.print(f"    affects {item.affected}: {item.harm}")
             for witness in item.witnesses:
                 out.print(f"    {witness.words}")
             if item.category not in ("NONE",):
-                out.print(f"    mend: {item.rule.mend}", style="green")
+                out.print(f"    fix: {item.rule.fix}", style="green")
     if not found:
         out.print(f"{comparison.new.name}: no change", style="bold")

@@ -12,6 +12,6 @@ def rules() -> int:
     from protogen.cli.console import console, print_table
     from protogen.evolution.rules import RULES
 
-    rows = [[rule.name, rule.category.value, rule.about, rule.mend] for rule in RULES]
+    rows = [[rule.name, rule.category.value, rule.about, rule.fix] for rule in RULES]
     print_table(console(), ("rule", "category", "what changed", "what to do"), rows)
     return CLEAN

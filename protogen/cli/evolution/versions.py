@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from protogen.project.read import Project
 
 LAST_COMMIT = "git:HEAD"
-"""What a project's schemas are held against by default."""
+"""Default version that a project's schemas are compared with."""
 
 
 class Pair(NamedTuple):

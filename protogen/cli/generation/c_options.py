@@ -54,7 +54,7 @@ Stubs = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What the command line said of C; None where it said nothing."""
+    """Options of the command line about C; None where it said nothing."""
 
     style: str | None
     events: str | None
@@ -64,7 +64,7 @@ class Choice:
 
     @property
     def is_default(self) -> bool:
-        """Whether nothing was said."""
+        """True if nothing was said."""
         return not any((self.style, self.events, self.only, self.senders, self.stubs))
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What is done with what a run makes."""
+    """Use of the files that a run makes."""
 
     check: bool = False
     diff: bool = False
@@ -36,13 +36,13 @@ class Mode:
 
     @property
     def writes(self) -> bool:
-        """Whether files are written."""
+        """True if files are written."""
         return not self.check and not self.diff
 
 
 @dataclass(slots=True)
 class Reads:
-    """What a run depends on, as far as it came: for `--watch`."""
+    """Files that a run depends on, as far as it came: for `--watch`."""
 
     files: set[Path] = field(default_factory=set)
     """Files that were read or looked for, other than those of the plan."""
@@ -54,7 +54,7 @@ class Reads:
 
 
 def generate_once(given: Given, mode: Mode, reads: Reads) -> int:
-    """Do what the command line and the project's file ask for; return the exit code."""
+    """Carry out what the command line and the project's file ask for; return the exit code."""
     from protogen.problems import Problems, SourceMap
 
     problems, sources = Problems(), SourceMap()

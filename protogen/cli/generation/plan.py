@@ -1,4 +1,4 @@
-"""What a run of `protogen generate` is to do: the command line over the project's settings."""
+"""Plan of a run of `protogen generate`: the command line over the project's settings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MARKDOWN = "markdown"
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """What the command line said; None where it said nothing."""
+    """Request of the command line; None where it said nothing."""
 
     schemas: Sequence[Path] | None
     output: Path | None
@@ -35,7 +35,7 @@ class Given:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is to be generated from what."""
+    """Plan of what is to be generated from what."""
 
     schemas: tuple[Path, ...]
     output: Path
@@ -45,7 +45,7 @@ class Plan:
     pages: tuple[Path, ...]
     """Hand-written files with marked blocks."""
     prune: bool
-    """Whether other files of ours in the output are stale: not if only some schemas were named."""
+    """True if other files of ours in the output are stale: not if only some schemas were named."""
 
     @property
     def references(self) -> Path | None:
@@ -54,7 +54,7 @@ class Plan:
 
     @property
     def options(self) -> Mapping[str, object]:
-        """What else than files the output depends on, for a record of the run."""
+        """Dependencies of the output other than files, for a record of the run."""
         return {
             "output": self.output.as_posix(),
             "targets": self.targets,

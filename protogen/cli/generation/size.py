@@ -39,7 +39,7 @@ class CEvents(StrEnum):
 
 
 class SizeFormat(StrEnum):
-    """How sizes are printed."""
+    """Format in which sizes are printed."""
 
     TEXT = "text"
     JSON = "json"

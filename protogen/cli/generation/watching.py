@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def generate_and_watch(given: Given, mode: Mode) -> int:
     """Generate now and after each change. Ctrl-C ends it; problems in files do not.
 
-    A call that is wrong from the start ends it as well: no change of a file could mend that.
+    A call that is wrong from the start ends it as well: no change of a file could fix that.
     """
     from protogen.project.watch import wait_for_change
 
@@ -39,7 +39,7 @@ def generate_and_watch(given: Given, mode: Mode) -> int:
 
 @dataclass(slots=True)
 class _Watch:
-    """What is watched, and how it was before the last run."""
+    """Files that are watched, and how they were before the last run."""
 
     given: Given
     mode: Mode

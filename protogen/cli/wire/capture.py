@@ -26,7 +26,7 @@ _LONGEST_LINE = 1 << 24
 
 
 class InputFormat(StrEnum):
-    """What a capture is written in."""
+    """Format in which a capture is written."""
 
     RAW = "raw"
     """The bytes themselves."""
@@ -76,7 +76,7 @@ def raw_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
 
 
 def hex_bytes(text: str) -> bytes:
-    """What the text says in hex. Raises UsageError with line and column."""
+    """Bytes that the text says in hex. Raises UsageError with line and column."""
     try:
         return parse_hex(text)
     except HexError as error:
@@ -84,7 +84,7 @@ def hex_bytes(text: str) -> bytes:
 
 
 def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
-    """What the pieces say in hex. Raises UsageError with line and column."""
+    """Bytes that the pieces say in hex. Raises UsageError with line and column."""
     decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     reader = HexReader()
     try:

@@ -43,7 +43,7 @@ Show = Callable[[Any], None]
 
 
 class EventFormat(StrEnum):
-    """How events are printed."""
+    """Format in which events are printed."""
 
     TEXT = "text"
     JSONL = "jsonl"
@@ -89,7 +89,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 
 class Faults:
-    """What was wrong with a capture."""
+    """Faults of a capture."""
 
     _MOST_LINES = 20
     """So many lines of a log are complained of one by one."""
@@ -97,11 +97,11 @@ class Faults:
     def __init__(self) -> None:
         self._lines = 0
         self.any = False
-        """Whether any byte belongs to no valid frame."""
+        """True if some bytes belong to no valid frame."""
 
     @property
     def lost(self) -> bool:
-        """Whether there were lines whose bytes nobody gets to see."""
+        """True if there were lines whose bytes nobody gets to see."""
         return self._lines > 0
 
     def see(self, event: Any) -> None:

@@ -34,7 +34,7 @@ Write = Callable[[bytes], None]
 
 
 class BytesFormat(StrEnum):
-    """How bytes are printed."""
+    """Format in which bytes are printed."""
 
     HEX = "hex"
     RAW = "raw"

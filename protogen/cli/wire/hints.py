@@ -1,4 +1,4 @@
-"""What may be written in the place of a field that an encoder refused."""
+"""Hints on what may be written for a field that an encoder refused."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class _LinePiece(NamedTuple):
 def tagged_pieces(
     pieces: Iterator[bytes], senders: Sequence[str], complain: Complain
 ) -> Iterator[Piece]:
-    """What each line says behind its sender; lines of which that can't be said are complained of.
+    """Bytes of each line behind its sender; lines without a clear sender are complained of.
 
     Empty lines and those that begin with `#` say nothing. A sender may stand in upper case.
     """

@@ -96,7 +96,7 @@ def _members(
 
 
 def _has_no_bytes(field: Field, scope: Scope) -> bool:
-    """Whether the field is a switch whose case has nothing to give."""
+    """True if the field is a switch whose case has nothing to give."""
     if not isinstance(field.type, Switch):
         return False
     chosen = scope.get(field.type.selector)

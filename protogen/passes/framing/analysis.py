@@ -1,4 +1,4 @@
-"""How does a receiver find where a frame starts and ends?
+"""Framing of a sender: how a receiver finds where a frame starts and ends.
 
 Decides, for each sender, what marks the start and the end, whether those marks are protected, and
 how large a frame can be. A schema whose receiver could not tell is a problem here.
@@ -132,7 +132,7 @@ class _Analysis:
     # -- what a receiver can tell -------------------------------------------------------------
 
     def _ends_known(self, end: End | None) -> bool:
-        """Whether the frame, or each message, says where it ends."""
+        """True if the frame, or each message, says where it ends."""
         if self.frame.length is not None or end is not None:
             return True
         if not self._identity_first():
@@ -245,7 +245,7 @@ class _Analysis:
         return SizeSet.between(least, greatest)
 
     def _sendable(self, sizes: SizeSet) -> SizeSet:
-        """What this sender's frames can carry of a message that others may send as well."""
+        """Sizes of a message that this sender's frames can carry; others may send it as well."""
         if self._stated is None:
             return sizes
         return sizes.within(self._stated.least, self._stated.greatest) or sizes

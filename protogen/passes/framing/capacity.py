@@ -1,4 +1,4 @@
-"""How long can a payload be in a frame?"""
+"""Capacity of a frame: how long its payload can be."""
 
 from __future__ import annotations
 
@@ -69,5 +69,5 @@ def _is_first_covered(frame: Frame, part: Part) -> bool:
 
 
 def is_delimited(frame: Frame) -> bool:
-    """Whether the frame itself tells where the payload ends."""
+    """True if the frame itself tells where the payload ends."""
     return frame.length is not None or bool(tail_literals(frame))

@@ -1,4 +1,4 @@
-"""What does a checksum of a frame compute, and over which parts?"""
+"""Checksums of a frame: their algorithms, and the parts that they cover."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class ChecksumReader:
 
 
 def check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
-    """What can only be asked when all parts are there."""
+    """Check what can only be asked when all parts are there."""
     in_circles: set[str] = set()
     for part in frame.checksums:
         circle = [] if part.name in in_circles else _circle(frame, part.name)

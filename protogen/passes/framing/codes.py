@@ -1,4 +1,4 @@
-"""Can what the transparency makes be undone?"""
+"""Check that what the transparency makes can be undone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Can the literals that open and close a frame also occur inside of it?"""
+"""Literals that open and close a frame: can they also occur inside of it?"""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ class Delimiter:
 
     @property
     def bytes(self) -> bytes:
-        """What the literals are together."""
+        """Bytes of the literals together."""
         return b"".join(part.bytes for part in self.parts)
 
     @property
     def protected(self) -> bool:
-        """Whether it occurs nowhere else in a frame."""
+        """True if it occurs nowhere else in a frame."""
         return self.witness is None
 
 
 @dataclass(frozen=True, slots=True)
 class Delimiters:
-    """What marks the frames of one sender."""
+    """Delimiters of the frames of one sender."""
 
     head: Delimiter | None
     tail: Delimiter | None

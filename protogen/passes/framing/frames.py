@@ -1,4 +1,4 @@
-"""Which parts does a sender's frame have, and what does each do?"""
+"""Parts of a sender's frame, and the role of each."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class FrameBuilder:
         return frame if self._context.tally.errors == before else None
 
     def _check(self, frame: Frame) -> None:
-        """What can only be asked when all parts are there."""
+        """Check what can only be asked when all parts are there."""
         check_checksums(self._context, frame, self._loc)
         length = frame.length
         if length is not None and stated_range(frame, length) is None:

@@ -8,7 +8,7 @@ from protogen.model.messages import Message
 
 
 def finds_start(start: Start) -> str:
-    """How a receiver finds where a frame starts."""
+    """Sentence on how a receiver finds where a frame starts."""
     match start:
         case StartLiteral(protected=True):
             return f"at {_hex(start.bytes)}, which occurs nowhere else in a frame"
@@ -28,7 +28,7 @@ def finds_start(start: Start) -> str:
 
 
 def finds_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
-    """How a receiver finds where a frame ends."""
+    """Sentence on how a receiver finds where a frame ends."""
     if frame.length is not None:
         where = f"`{frame.length.name}` gives the size"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
@@ -45,7 +45,7 @@ def finds_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
 
 
 def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, str]:
-    """Whether a receiver that joins anywhere finds the next frame for sure, and why."""
+    """Sentence on whether a receiver that joins anywhere surely finds the next frame, and why."""
     match start:
         case StartLiteral(protected=True) | StartSet(protected=True):
             return True, (

@@ -1,4 +1,4 @@
-"""Which parts of a frame does a run such as `first..last` mean?"""
+"""Runs of parts of a frame, such as `first..last`."""
 
 from __future__ import annotations
 

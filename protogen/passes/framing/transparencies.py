@@ -1,4 +1,4 @@
-"""What keeps delimiters out of a sender's frame, and where?"""
+"""Transparency of a sender's frame: what keeps delimiters out, and where."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What does each message carry, and how is it told apart?"""
+"""Messages: what each carries, and how it is told apart."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def resolve_messages(context: Context, draft: Draft) -> None:
 
 
 class _Framed(NamedTuple):
-    """What a message of one sender travels in."""
+    """Carrier of a message of one sender."""
 
     sender: str
     frame: Frame
@@ -187,7 +187,7 @@ class _Resolution:
         return sizes.within(low, max(allowed.greatest for allowed in known)) or sizes
 
     def _fits(self, sizes: SizeSet, framed: _Framed) -> None:
-        """Whether the length part can state all sizes that the schema insists on."""
+        """True if the length part can state all sizes that the schema insists on."""
         sender, frame, allowed = framed
         if frame.length is None or allowed is None or not self._sound:
             return

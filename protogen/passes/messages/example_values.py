@@ -1,4 +1,4 @@
-"""Which bytes does an example state for the byte strings of a message?
+"""Byte strings in the values of examples.
 
 A byte string is written `{hex: ...}`, `{text: ...}`, as a number or as a list of numbers. The type
 of a field tells which numbers and lists are byte strings.
@@ -50,7 +50,7 @@ def _byte_string(value: Any) -> Any:
 
 
 def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) -> Type | None:
-    """What the switch is for the value that its selector has in the example."""
+    """Type of a switch for the value that its selector has in the example."""
     selector = types.get(switch.selector)
     if not isinstance(selector, Integer) or switch.selector not in around:
         return None

@@ -1,4 +1,4 @@
-"""Do the examples say enough to be verified, and do exchanges name messages that exist?
+"""Examples and exchanges: examples must say enough to be verified, and exchanges name messages.
 
 Whether an example decodes to its values is asked later, by the Python target's own output.
 """
@@ -33,7 +33,7 @@ def attach_examples(context: Context, draft: Draft) -> None:
 
 
 def _content_known(context: Context) -> None:
-    """What `content` holds by default are parts of some frame at least, examples or not."""
+    """Check the default of `content`: parts of some frame at least, examples or not."""
     frames = [list(frame) for frame in context.syntax.frame.values()]
     names = dict.fromkeys(name for frame in frames for name in frame)
     loc: Loc = ("content_covers",)
@@ -48,7 +48,7 @@ def _content_known(context: Context) -> None:
 
 
 def _in_order(names: list[str], ends: list[str]) -> bool:
-    """Whether a frame of these parts has a run with these ends."""
+    """True if a frame of these parts has a run with these ends."""
     return set(ends) <= set(names) and names.index(ends[0]) <= names.index(ends[-1])
 
 

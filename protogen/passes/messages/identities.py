@@ -1,4 +1,4 @@
-"""Can a receiver tell the messages of each sender apart?"""
+"""Check that a receiver can tell the messages of each sender apart."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which values of a frame's identity parts does an `id` mean?"""
+"""Values of a frame's identity parts that an `id` means."""
 
 from __future__ import annotations
 

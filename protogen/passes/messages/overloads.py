@@ -1,4 +1,4 @@
-"""How does a receiver tell messages apart that share an identity?"""
+"""Overloads: how a receiver tells messages apart that share an identity."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Overloads:
                 self._context.error("PG154", loc, f"`{message}` stands here twice")
 
     def resolve(self, sender: str, messages: Sequence[Message]) -> OverloadModel | None:
-        """What is said of messages of one sender and identity; None where that is reported."""
+        """Rule for messages of one sender and identity; None where that is reported."""
         names = [message.name for message in messages]
         listing = dict.fromkeys(name for message in names for name in self._listing[message])
         about_some = [name for name in listing if len(self._left_out(name, names)) < len(names) - 1]
@@ -127,7 +127,7 @@ class Overloads:
 
 
 def _others(count: int) -> str:
-    """How many more messages can have the size of another one."""
+    """Number of further messages that can have the size of another one."""
     return f", and so can {count} more of these messages" if count else ""
 
 

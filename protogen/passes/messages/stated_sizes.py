@@ -1,4 +1,4 @@
-"""Which sizes does a schema insist on?
+"""Sizes that a schema insists on.
 
 A count without a `range` and a fill without `max` take what the frame has room for. Everything else
 states how large it can be, and the frame has to do.

@@ -1,4 +1,4 @@
-"""Can every target use the names, and does each endpoint that is referred to exist?"""
+"""Check that every target can use the names, and that each endpoint named exists."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _senders(context: Context) -> tuple[str, ...]:
 
 
 def check_endpoint(context: Context, name: str, loc: Loc) -> bool:
-    """Whether there is such an endpoint; a problem at `loc` if not."""
+    """True if there is such an endpoint; reports a problem at `loc` if not."""
     endpoints = context.syntax.endpoints
     if name not in endpoints and not context.is_lost("endpoints", name):
         text = f"there is no endpoint `{name}`"

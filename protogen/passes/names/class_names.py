@@ -1,4 +1,4 @@
-"""Do two things come to the same name in generated code?
+"""Check that no two things come to the same name in generated code.
 
 Targets write `m_1` and `m1` as `M1`. Messages, named types and what a module needs itself share one
 set of such names.

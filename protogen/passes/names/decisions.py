@@ -1,4 +1,4 @@
-"""Which decisions does the schema record, and does every reference to one name one?"""
+"""Decisions of a schema, and the references to them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does something come back that is reserved?"""
+"""Check that nothing comes back that is reserved."""
 
 from __future__ import annotations
 

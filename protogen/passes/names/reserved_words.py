@@ -32,10 +32,10 @@ DIRECTIVES = frozenset({"rename", "remove", "replace", "after", "before"})
 OWN_ATTRIBUTES = frozenset(
     {"violations", "to_dict", "from_dict", "to_payload", "from_payload", "parse_payload"}
 )
-"""What generated messages and structs do, which a field of the name would hide."""
+"""Attributes of generated messages and structs, which a field of the name would hide."""
 
 OWN_ARGUMENTS = frozenset({"message", "sender", "strict", "engine"})
-"""What a generated encoder takes beside the parts whose values the caller gives."""
+"""Arguments of a generated encoder beside the parts whose values the caller gives."""
 
 AS_CLASSES = frozenset({"none"})
 """Words that are reserved only as classes are written."""

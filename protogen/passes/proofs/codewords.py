@@ -189,7 +189,7 @@ class _Step(NamedTuple):
 
 
 class _Taking(NamedTuple):
-    """What taking a word does to a literal that is matched in part; `hit` as in a step."""
+    """Effect of a word on a literal that is matched in part; `hit` as in a step."""
 
     word: bytes
     matched: int

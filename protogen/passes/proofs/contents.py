@@ -1,4 +1,4 @@
-"""What can the bytes of a frame be, where its message and the size of its payload are known?"""
+"""Contents of a frame, where its message and the size of its payload are known."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Stretch:
 
     @property
     def known(self) -> bool:
-        """Whether the bytes are always the same."""
+        """True if the bytes are always the same."""
         return len(self.values) == 1
 
 
@@ -75,7 +75,7 @@ def _part(
 
 
 def _stated(frame: Frame, length: LengthPart, payload: int) -> int | None:
-    """What the length part says; None where it can't say that, so that there is no such frame."""
+    """Value of the length part; None where it can't say that, so that there is no such frame."""
     counted = (frame.part(name) for name in length.counts)
     value = payload + sum(part.size for part in counted if payload or not part.is_optional)
     return value if length.least <= value <= length.greatest else None

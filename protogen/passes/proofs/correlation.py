@@ -1,4 +1,4 @@
-"""How much can some bytes and the checksum of them take together?
+"""Size on the wire of some bytes and of the checksum of them, at most or at least.
 
 A checksum follows from what it covers, so that both may never be at their longest, or at their
 shortest, at once. Bytes and checksums are *worth* something here: their bytes on the wire, or less
@@ -120,7 +120,7 @@ def most_tried(
 
 
 def _greatest_losses(places: Sequence[Place]) -> list[int]:
-    """How much all places from each one on can lose."""
+    """Greatest loss of all places from each one on."""
     losses = [0]
     for place in reversed(places):
         losses.append(losses[-1] + max(place.options))

@@ -1,4 +1,4 @@
-"""Can a wrong end join two frames into one that checks?
+"""Wrong ends that join two frames into one that checks.
 
 Behind a frame and its checksum, many algorithms stand where they started: an exclusive or is 0, a
 negated sum as well, and so is a CRC without `init` and `xorout`. If the wrong end leaves it at
@@ -46,7 +46,7 @@ def joined_frames(
 
 
 def _may_join(frame: Frame, start: Start, messages: list[Message]) -> bool:
-    """Whether nothing but the end, and the checksum, tells two frames from one."""
+    """True if nothing but the end, and the checksum, tells two frames from one."""
     encoding = frame.transparency.encoding if frame.transparency else None
     if frame.length is not None or isinstance(encoding, Base16):
         return False
@@ -58,7 +58,7 @@ def _may_join(frame: Frame, start: Start, messages: list[Message]) -> bool:
 
 
 def _sizes_join(frame: Frame, messages: list[Message]) -> bool:
-    """Whether some message can be as long as it and another one are together."""
+    """True if some message can be as long as it and another one are together."""
     between = sum(part.size for part in frame.parts)
     filled = {sizes for message in messages if (sizes := message.sizes.within(1, 1 << 20))}
     groups = defaultdict(list)
@@ -105,7 +105,7 @@ def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
 
 
 def _checks(frame: Frame, one: dict[str, bytes], between: bytes, other: dict[str, bytes]) -> bool:
-    """Whether two frames are one: what is between their payloads is payload then."""
+    """True if two frames are one: what is between their payloads is payload then."""
     names = [part.name for part in frame.parts]
     payload = next(part.name for part in frame.parts if isinstance(part, PayloadPart))
     index = names.index(payload)

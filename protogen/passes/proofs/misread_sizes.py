@@ -1,4 +1,4 @@
-"""Can a wrong byte make a receiver look for the checksum in another place, and find one there?
+"""Wrong bytes that make a receiver look for the checksum in another place, and find one there.
 
 What is there checks by chance, once in 2^w for a checksum of w bits.
 """
@@ -78,7 +78,7 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
 
 
 def _settled_early(frame: Frame, length: LengthPart) -> bool:
-    """Whether a checksum of the header alone covers the length."""
+    """True if a checksum of the header alone covers the length."""
     return any(
         length.name in part.covers
         and not part.when_payload

@@ -1,4 +1,4 @@
-"""What do a stuffed checksum and the parts that it covers take together on the wire?"""
+"""Joint size of a stuffed checksum and the parts that it covers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tri
 from protogen.passes.proofs.wire_code import ByteSet
 
 Price = Callable[[str, int], int]
-"""What a byte of a part is worth."""
+"""Worth of a byte of a part."""
 
 _MOST_PLACES = 2048
 """Bytes up to which it is followed which sums they can have."""
@@ -48,7 +48,7 @@ class Together:
         return self._tried(part, covered, contents, _TRIED_BYTES // max(size, 1))
 
     def _is_open(self, name: str, contents: Contents) -> bool:
-        """Whether a covered part is a checksum that follows from yet other bytes."""
+        """True if a covered part is a checksum that follows from yet other bytes."""
         known = all(stretch.known for stretch in contents[name])
         return isinstance(self._frame.part(name), ChecksumPart) and not known
 

@@ -1,4 +1,4 @@
-"""Which single wrong bytes go unnoticed?
+"""Single wrong bytes that go unnoticed.
 
 A byte is checked if a checksum covers it that any change of one byte changes, or if it is fixed.
 What is left is said in one sentence each.
@@ -60,7 +60,7 @@ def _part(
 
 
 def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]) -> str:
-    """Where each checksum is absent without a payload, a frame without one is not checked."""
+    """Sentence on frames without a payload, where each checksum is absent from them."""
     empty = any(message.sizes.least == 0 for message in messages)
     always = any(not checksum.when_payload for checksum in covering)
     if always or not empty or isinstance(part, PayloadPart):
@@ -114,7 +114,7 @@ def _early_end(frame: Frame, start: Start, end: End | None, messages: list[Messa
 
 
 def _share_a_size(messages: list[Message]) -> bool:
-    """Whether two of the messages, which differ in identity, can have the same size."""
+    """True if two of the messages, which differ in identity, can have the same size."""
     distinct = {message.identity: message.sizes for message in messages}
     by_least = sorted(distinct.values(), key=lambda sizes: sizes.least)
     fixed = {sizes.least for sizes in by_least if sizes.step == 0}
@@ -125,7 +125,7 @@ def _share_a_size(messages: list[Message]) -> bool:
 
 
 def _inside(frame: Frame, payload: ByteSet) -> str:
-    """What still shows some wrong bytes: an encoding, or that their highest bit is 0."""
+    """Sentence on what still shows some wrong bytes: an encoding, or a highest bit of 0."""
     encoding = frame.transparency.encoding if frame.transparency else None
     if isinstance(encoding, Base16):
         return " that is still a hex digit"

@@ -1,4 +1,4 @@
-"""What can stand where on the wire: a frame as segments of codewords.
+"""Wire code of a frame: segments of codewords.
 
 The framing analysis asks of these segments whether a delimiter can occur where it must not.
 """
@@ -61,7 +61,7 @@ def covered_parts(frame: Frame) -> frozenset[str]:
 
 
 def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
-    """What each unstuffed byte of a part can be; for the payload, what any of its bytes can be."""
+    """Values of each unstuffed byte of a part; for the payload, of any of its bytes."""
     match part:
         case LiteralPart():
             return tuple(frozenset({byte}) for byte in part.bytes)

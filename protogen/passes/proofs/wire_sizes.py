@@ -1,4 +1,4 @@
-"""How many bytes does a frame take on the wire, stuffing included?
+"""Sizes of frames on the wire, stuffing included.
 
 Stuffed byte by byte, a frame takes what each of its bytes takes at best or at worst. The greatest
 size is never too small and the least never too great, as a decoder relies on both. They are exact,
@@ -116,7 +116,7 @@ class WireSizes:
         return best
 
     def _ceiling(self, contents: Contents, sign: int) -> int:
-        """What no frame is worth more than, whatever length and checksums it has."""
+        """Bound on the worth of a frame, whatever length and checksums it has."""
         free = [part.name for part in self._frame.parts if isinstance(part, _FOLLOWING)]
         most = sum(
             self._frame.part(name).size * self._byte(name, EVERY_BYTE, sign) for name in free
@@ -139,7 +139,7 @@ class WireSizes:
         return self._apart(contents, sign)
 
     def _apart(self, contents: Contents, sign: int) -> int:
-        """What the frame is worth, if a checksum can be anything whatever it covers."""
+        """Worth of the frame, if a checksum can be anything whatever it covers."""
         if self._by_byte is None:
             return sign * self._with_cobs(contents, worst=sign > 0)
         return sum(self._part(name, stretches, sign) for name, stretches in contents.items())
@@ -148,7 +148,7 @@ class WireSizes:
         return sum(stretch.count * self._byte(name, stretch.values, sign) for stretch in stretches)
 
     def _byte(self, part: str, values: ByteSet, sign: int) -> int:
-        """What a byte of a part is worth at most, if it has one of these values."""
+        """Greatest worth of a byte of a part, if it has one of these values."""
         if part not in self._covered:
             return sign
         key = values, sign
@@ -157,7 +157,7 @@ class WireSizes:
         return self._known[key]
 
     def _value(self, value: int, sign: int) -> int:
-        """What a stuffed byte is worth: a lenient decoder also takes needless escapes."""
+        """Worth of a stuffed byte: a lenient decoder also takes needless escapes."""
         assert self._by_byte is not None
         needless = self._lenient and isinstance(self._encoding, Escape) and sign > 0
         return 2 if needless else sign * len(self._by_byte[value])
@@ -165,7 +165,7 @@ class WireSizes:
     # -- checksums ------------------------------------------------------------------------------
 
     def _depends(self, part: ChecksumPart, contents: Contents) -> bool:
-        """Whether the size of a checksum varies with what it covers."""
+        """True if the size of a checksum varies with what it covers."""
         if part.name not in self._covered or self._by_byte is None:
             return False
         return any(
@@ -174,7 +174,7 @@ class WireSizes:
         )
 
     def _together(self, part: ChecksumPart, contents: Contents, sign: int) -> int:
-        """What the frame is worth, where the checksum is that of the bytes."""
+        """Worth of the frame, where the checksum is that of the bytes."""
         found = self._checksums[sign].most(part, contents)
         parts = {part.name, *part.covers} if found is not None else set()
         others = (item for item in contents.items() if item[0] not in parts)

@@ -1,4 +1,4 @@
-"""Do the constants that a schema states fit their fields?"""
+"""Constants that a schema states, checked to fit their fields."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class _Reader:
         raise _UnfitError(f"{text} is not a value of {self._item.type}", hint)
 
     def _allowed(self, value: int, type_: Integer) -> int:
-        """What fits the bits must also be in the range, and have a name in a closed enum."""
+        """Check that a value that fits is in the range, and has a name in a closed enum."""
         special = [entry.value for entry in (self._item.special or {}).values()]
         if value not in special:
             self._in_range(value)

@@ -1,4 +1,4 @@
-"""Which declaration does the type of a field mean?"""
+"""Declarations that the types of fields lead to."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ class Effective:
     """The declaration, with the keys of its uses on top."""
     setting: Setting
     chain: tuple[tuple[FieldSyntax, Loc], ...]
-    """What was written: the field, then the declarations that it leads to."""
+    """Syntax of the field, then of the declarations that it leads to."""
     declared: str | None = None
     """The declared type that the named type is called after."""
 
     @property
     def owner(self) -> str:
-        """What the enum, flags or struct of this field is called."""
+        """Name of the enum, flags or struct of this field."""
         return self.declared or self.setting.owner
 
     @property
     def origin(self) -> FieldSyntax:
-        """Where the named type is written: what people read about it stands there."""
+        """Place of the named type, where its text for readers stands."""
         return self.chain[self._naming()][0]
 
     @property
@@ -77,7 +77,7 @@ class Effective:
         return replace(self, setting=replace(self.setting, layout=layout))
 
     def _naming(self) -> int:
-        """Which link of the chain names the type; the field itself where none does."""
+        """Link of the chain that names the type; the field itself where none does."""
         places = [loc for _, loc in self.chain]
         return 0 if self.declared is None else places.index(("types", self.declared))
 
@@ -94,7 +94,7 @@ class Declarations:
         """The fields whose types were not followed, because they are nested too deep."""
 
     def effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
-        """What a field comes to; a plain byte where its types lead nowhere."""
+        """Effective form of a field; a plain byte where its types lead nowhere."""
         result = Effective(item, setting, ((item, loc),))
         while (name := result.syntax.type) is not None and name in self._types:
             if self._is_endless(name, result.setting, loc):

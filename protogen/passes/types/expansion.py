@@ -1,4 +1,4 @@
-"""How many fields do the declared types come to, and which need to be resolved only once?
+"""Count of the fields that declared types come to; some need to be resolved only once.
 
 Types that hold each other twice double with every step, as the aliases of an alias bomb do.
 """
@@ -18,7 +18,7 @@ GREATEST_NUMBER = 50_000
 
 
 class Mark(NamedTuple):
-    """What was counted when a struct was begun."""
+    """Counts when a struct was begun."""
 
     fields: int
     varying: int
@@ -33,7 +33,7 @@ class Expansion:
         self._varying = 0
         self._fixed: dict[tuple[str, Layout], tuple[Struct, int]] = {}
         self.is_spent = False
-        """Whether there were too many fields; what was built since is not whole."""
+        """True if there were too many fields; what was built since is not whole."""
 
     def enter(self, loc: Loc, setting: Setting) -> bool:
         """Count a field; False where there are too many, which is said once."""
@@ -51,7 +51,7 @@ class Expansion:
         self._varying += 1
 
     def mark(self) -> Mark:
-        """What was counted so far."""
+        """Counts so far."""
         return Mark(self._fields, self._varying)
 
     def keep(self, item: Effective, struct: Struct, layout: Layout, begun: Mark) -> None:

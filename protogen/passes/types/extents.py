@@ -1,4 +1,4 @@
-"""How many elements or bytes does a field have?"""
+"""Extents: the number of elements or bytes of a field."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Extents:
         self._context = context
 
     def extent(self, written: Written, loc: Loc, element: int, setting: Setting) -> Extent:
-        """How many elements of at least `element` bytes."""
+        """Number of elements of at least `element` bytes."""
         if isinstance(written, FillSyntax):
             return self._fill(written, loc, element, setting)
         if isinstance(written, str):

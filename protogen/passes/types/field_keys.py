@@ -1,4 +1,4 @@
-"""Do the keys of a field go together?
+"""Check that the keys of a field go together.
 
 The keys about numbers and constants are asked about where their values are.
 """
@@ -14,7 +14,7 @@ _STRINGS = ("ascii", "bytes")
 
 
 def has_one_form(context: Context, item: FieldSyntax, loc: Loc) -> bool:
-    """Whether the field has a type, or is a struct, or a switch, and only one of them."""
+    """True if the field has just one of a type, fields, or a switch."""
     forms = [key for key in _FORMS if getattr(item, key) is not None]
     if len(forms) == 1:
         return True

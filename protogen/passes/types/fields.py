@@ -1,4 +1,4 @@
-"""Which fields does a payload have, and how do they lie in it?
+"""Fields of a payload, and how they lie in it.
 
 Turns the fields of a message or struct into resolved types, outer before inner, in wire order.
 """
@@ -93,7 +93,7 @@ class FieldBuilder:
         return meaning.attach(self._context, name, self._type(effective), effective)
 
     def effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
-        """What a field comes to once declared types are followed."""
+        """Effective form of a field, once declared types are followed."""
         return self._declarations.effective(item, loc, setting)
 
     def _behind(self, filler: str, loc: Loc) -> None:
@@ -192,7 +192,7 @@ class FieldBuilder:
 
 
 def fills(type_: Type) -> bool:
-    """Whether a value of the type takes all that the payload has left."""
+    """True if a value of the type takes all that the payload has left."""
     match type_:
         case Text() | Octets() | Array():
             return isinstance(type_.extent, Fill)

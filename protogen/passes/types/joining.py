@@ -1,4 +1,4 @@
-"""What does a struct come to that is used in several places?
+"""Joining of a struct that is used in several places.
 
 The frame bounds what the schema does not: how many elements a count or a fill can mean depends on
 the room that is left. A type is one type wherever it is used, so it takes the greatest bounds.

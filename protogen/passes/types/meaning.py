@@ -1,4 +1,4 @@
-"""What do the values of a field mean, and does what the schema says of them fit the field?"""
+"""Meaning of a field's values, checked to fit the field."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What are enums, flags and structs called, and are the names free?
+"""Named types: enums, flags and structs, each under a name of its own.
 
 Every named type is registered under its name. A declared type has one layout: where two uses leave
 it different room, the type takes the greater bounds, whatever a single use could hold.
@@ -27,7 +27,7 @@ class NamedTypes:
         self._types: dict[str, Named] = {}
         self._settled: dict[str, Struct] = {}
         self.places: dict[str, Loc] = {}
-        """Where each name was used first."""
+        """First use of each name."""
 
     @property
     def enums(self) -> tuple[Enum, ...]:

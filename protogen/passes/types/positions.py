@@ -1,4 +1,4 @@
-"""Where does each field of a message or struct begin?"""
+"""Positions of the fields of a message or struct."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What does a field know of the payload around it?"""
+"""Setting of a field: the payload around it."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ Scope = ChainMap[str, Field]
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What the fields at hand are built in."""
+    """Surroundings in which the fields at hand are built."""
 
     layout: Layout
     capacity: int | None
     """Greatest payload in bytes, where the frame bounds it."""
     owner: str
-    """What unnamed enums and structs are called after."""
+    """Prefix for the names of unnamed enums and structs."""
     delimited: bool = True
-    """Whether the frame tells where the payload ends."""
+    """True if the frame tells where the payload ends."""
     last: bool = True
-    """Whether nothing of the payload follows."""
+    """True if nothing of the payload follows."""
     used: int = 0
     """The least number of bytes of the payload in front."""
     position: int | None = 0
@@ -38,7 +38,7 @@ class Setting:
     depth: int = 0
     """Structs and declared types around."""
     elsewhere: bool = False
-    """Whether these fields stand in no frame that is known: names may mean fields around them."""
+    """True if these fields stand in no frame that is known: names may mean fields around them."""
 
     @property
     def room(self) -> int | None:

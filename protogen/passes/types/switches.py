@@ -1,4 +1,4 @@
-"""Which cases does a switch have, and what becomes of a value without one?"""
+"""Cases of a switch, and the rest for a value without one."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from protogen.schema.syntax.fields import FieldSyntax
 
 
 class Fields(Protocol):
-    """What resolves the fields that cases are."""
+    """Resolver of the fields that cases are."""
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
         """One field."""
 
     def effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
-        """What a field comes to once declared types are followed."""
+        """Effective form of a field, once declared types are followed."""
 
 
 class SwitchBuilder:
@@ -34,7 +34,7 @@ class SwitchBuilder:
         self._named = named
         self._fields = fields
         self._ends: dict[tuple[Loc, str], bool] = {}
-        """Where a switch was written, and in which type: whether it ended the payload."""
+        """True where a switch ended the payload, by its place and the type that it is in."""
 
     def switch(self, item: Effective) -> Switch | None:
         """The switch, or None where nothing can choose."""
@@ -72,7 +72,7 @@ class SwitchBuilder:
         return None
 
     def _rest(self, cases: Sequence[Case], item: Effective) -> int | None:
-        """How many bytes a value without a case may have; None where the end is not known."""
+        """Greatest number of bytes for a value without a case; None where the end is not known."""
         ends = item.setting.delimited and item.setting.last
         self._same_everywhere(ends, item)
         if not ends:

@@ -29,13 +29,13 @@ _OTHER_WORDS = {
     "string": "ascii", "str": "ascii", "text": "ascii", "float": "float32", "single": "float32",
     "f32": "float32", "double": "float64", "f64": "float64", "boolean": "bool", "blob": "bytes",
 }  # fmt: skip
-"""What other languages call the built-in types."""
+"""Names of other languages for the built-in types."""
 _OTHER_INTEGER = re.compile(r"(u|uint|unsigned|i|s|int|sint|signed)([0-9]{0,3})(_t)?")
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How numbers lie in the payload or frame at hand. `byte_order` None: nobody has said."""
+    """Layout of numbers in the payload or frame at hand. `byte_order` None: nobody has said."""
 
     byte_bits: Literal[7, 8]
     byte_order: ByteOrder | None
@@ -48,13 +48,13 @@ def integer_width(name: str) -> int | None:
 
 
 def has_width(name: str) -> bool:
-    """Whether the name is no integer's, or that of one that exists: of 1 to 64 bits."""
+    """True if the name is no integer's, or that of one that exists: of 1 to 64 bits."""
     width = integer_width(name)
     return width is None or 1 <= width <= GREATEST_WIDTH
 
 
 def type_hint(name: str, declared: Iterable[str] = ()) -> str | None:
-    """Which type was probably meant: by its name in another language, or a slip of one here."""
+    """Type that was probably meant: by its name in another language, or a slip of one here."""
     word = name.casefold().replace(" ", "")
     integers = _OTHER_INTEGER.fullmatch(word)
     if integers is None:
@@ -68,7 +68,7 @@ def type_hint(name: str, declared: Iterable[str] = ()) -> str | None:
 
 
 def is_builtin(name: str) -> bool:
-    """Whether a schema may not declare a type of this name."""
+    """True if a schema may not declare a type of this name."""
     return name in PLAIN_NAMES or integer_width(name) is not None
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with fields that stand in no frame?
+"""Problems of fields that stand in no frame.
 
 Types that no message uses, and messages whose frame could not be resolved, are in no model. They
 are checked all the same, so that a run reports what it can.

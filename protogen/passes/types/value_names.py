@@ -1,4 +1,4 @@
-"""Which names do the values and bits of an integer have?"""
+"""Names of the values and bits of an integer."""
 
 from __future__ import annotations
 

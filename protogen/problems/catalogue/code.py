@@ -1,4 +1,4 @@
-"""What the catalogue says of one problem code."""
+"""Entry of the catalogue for one problem code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _FILE_HEADER = re.compile(r"^# file: (\S+)\n", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """A kind of problem: its stable code, its short name, and how to mend it.
+    """A kind of problem: its stable code, its short name, and how to fix it.
 
     ``explanation`` is Markdown. The examples are YAML; one that needs several files starts each
     with a line ``# file: NAME``. ``compiles`` is false where an example only describes a file
@@ -24,7 +24,7 @@ class Code:
     title: str
     explanation: str
     bad_example: str
-    mended_example: str
+    fixed_example: str
     severity: Severity = Severity.ERROR
     compiles: bool = True
 

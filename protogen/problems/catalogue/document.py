@@ -59,7 +59,7 @@ not a schema; if it is one, split it along its protocols.
         "The text is not YAML",
         """\
 The file can't be taken apart into mappings, lists and scalars, or it holds a character that
-YAML does not allow. Nothing more can be said of it until this is mended. A frequent cause
+YAML does not allow. Nothing more can be said of it until this is fixed. A frequent cause
 is a text that holds `: ` or ` #` and has no quotes around it.
 """,
         """\

@@ -24,7 +24,7 @@ Rename = tuple[ScalarNode, ScalarNode]
 
 @dataclass(frozen=True, slots=True)
 class Directives:
-    """What a mapping of a dialect says about the mapping of the base that it meets."""
+    """Directives of a mapping of a dialect, about the mapping of the base that it meets."""
 
     renames: tuple[Rename, ...] = ()
     removed: tuple[ScalarNode, ...] = ()

@@ -25,7 +25,7 @@ _Placements = dict[Scalar, Placement]
 def merge(base: Node, dialect: Node, problems: Problems) -> Node:
     """Return ``base`` with the differences that ``dialect`` states.
 
-    A merged mapping has the span of the dialect's, since that is where it can be mended.
+    A merged mapping has the span of the dialect's, since that is where it can be fixed.
     """
     if not isinstance(dialect, MappingNode):
         return dialect

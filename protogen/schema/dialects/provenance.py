@@ -1,4 +1,4 @@
-"""Which document do the lines of a source belong to, once schemas are merged?
+"""Names of documents for the sources of a schema, so that they survive a merge.
 
 `source: 61-65` means lines of the document that the same file names at its root. A dialect names
 another document there, so before schemas are merged each source is given its document's name.
@@ -44,7 +44,7 @@ def _below(key: ScalarNode, value: Node, origin: _Origin) -> Node:
 
 
 def _levels_of_names(key: ScalarNode, value: Node) -> int:
-    """How many levels of mappings under a key are keyed by names; a frame per sender has two."""
+    """Number of levels of mappings under a key whose keys are names; a frame per sender has two."""
     if key.value not in keyed_by_names():
         return 0
     inner = [item for _, item in items_of(value)]

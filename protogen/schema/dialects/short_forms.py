@@ -1,4 +1,4 @@
-"""Where a dialect puts a mapping over a short form of the base: what the short form stands for.
+"""Short forms of a base, written out where a dialect puts a mapping over them.
 
 `speed: uint8` says `speed: {type: uint8}`, so a dialect may add a unit to it.
 """

@@ -1,4 +1,4 @@
-"""What every part of the syntax tree shares: the strict base class and the scalar types.
+"""Basics of the syntax tree: the strict base class and the scalar types.
 
 A syntax object says what was written, checked by shape only. Whether it makes sense together with
 the rest of the schema is asked by the passes.
@@ -152,7 +152,7 @@ class ShortForm:
 
 
 class Source(Syntax):
-    """Where a fact is written down."""
+    """Place where a fact is written down."""
 
     document: Text | None = Field(None, description="File name or title of the document.")
     revision: Text | None = Field(None, description="Revision, date or commit of the document.")

@@ -91,7 +91,7 @@ Extent = Annotated[
     | Annotated[Fill, BeforeValidator(_to_fill, json_schema_input_type=str | Fill), Tag("fill")],
     Discriminator(_extent_form),
 ]
-"""How many: a number, the name of an earlier field, or `fill`."""
+"""Number of elements or bytes: a number, the name of an earlier field, or `fill`."""
 
 
 def _to_constant(value: Any) -> Any:

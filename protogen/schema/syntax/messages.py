@@ -32,11 +32,11 @@ from protogen.schema.syntax.parts import ByteOrder, PartRun
 Reason = Literal[
     "noise", "checksum", "length", "stuffing", "truncated", "size", "encoding", "value"
 ]
-"""Why bytes are no frame."""
+"""Reason why bytes are no frame."""
 
 
 class Contradiction(Syntax):
-    """How an example of the document differs from the schema; checked to differ just so."""
+    """Contradiction between an example of the document and the schema; checked to be just that."""
 
     fails: Literal[Reason, "values", "unknown"] = Field(
         description="The decoder's reason, `values` where it decodes to other values than the "

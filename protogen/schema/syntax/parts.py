@@ -158,7 +158,7 @@ Substitutions = Annotated[
 
 
 class TransparencySyntax(Syntax):
-    """What keeps delimiters out of a region of the frame."""
+    """Rule that keeps delimiters out of a region of the frame."""
 
     covers: PartRun | None = Field(
         None,

@@ -69,7 +69,7 @@ EndpointRef = Annotated[
 
 
 class Decision(Syntax):
-    """What was chosen where the document does not say, or says two things."""
+    """Choice where the document says nothing, or two things."""
 
     question: Text = Field(description="What the document leaves open.")
     document: Text = Field(description="What the document says about it, in own words.")
@@ -87,7 +87,7 @@ class ReservedIdentity(Syntax):
 
 
 class Reserved(Syntax):
-    """What once was used and may not come back with another meaning."""
+    """Identities, names and values that may not come back with another meaning."""
 
     identities: tuple[ReservedIdentity, ...] = Field(
         (), strict=False, description="Identities of deleted messages."
@@ -125,7 +125,7 @@ _MARKS: dict[str, frozenset[str]] = {
 
 
 def _by_sender(key: str, value: Any, endpoints: Any) -> Any:
-    """What is not keyed by endpoints holds for all of them."""
+    """Return a value keyed by endpoints; one that is not so keyed holds for all of them."""
     return value if _is_by_sender(value, _MARKS[key], _keys(endpoints)) else {ALL_SENDERS: value}
 
 

@@ -18,9 +18,9 @@ class OpenNode(ABC):
         self.event = event
         self.begin = begin
         self.counted = counted
-        """How many nodes were counted before it."""
+        """Number of nodes counted before it."""
         self.end = begin
-        """Where the last thing inside ends."""
+        """End of the last thing inside."""
         self.height = 1
 
     def put(self, node: Node, height: int, end: Position) -> None:

@@ -23,9 +23,9 @@ from protogen.schema.text.places import Places, end_of_span, position_of
 from protogen.schema.text.scalars import resolve
 
 GREATEST_DEPTH = 64
-"""How deeply mappings and lists may stand inside each other, aliases written out."""
+"""Greatest depth of mappings and lists inside each other, aliases written out."""
 GREATEST_COUNT = 200_000
-"""How many keys and values a file may hold, aliases written out."""
+"""Greatest number of keys and values in a file, aliases written out."""
 
 Loader = Callable[[str], Any]
 """Makes a PyYAML loader, of which only the events are used, for a text."""
@@ -47,7 +47,7 @@ _SYNTAX_HINTS = {
     "<document start>": "a file holds one mapping and nothing behind it",
     "unknown escape character": "a backslash is written twice between double quotes",
 }
-"""What usually mends what the parser complains of, by words of its message."""
+"""Hints for complaints of the parser, by words of its message."""
 
 
 def compose(
@@ -79,9 +79,9 @@ class _Anchored:
 
     node: Node
     count: int
-    """How many keys and values it holds, itself included."""
+    """Number of its keys and values, itself included."""
     height: int
-    """How many mappings and lists stand inside each other in it."""
+    """Depth of mappings and lists inside each other in it."""
 
 
 def _events(text: str, loader: Loader) -> Iterator[Any]:

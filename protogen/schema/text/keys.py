@@ -1,4 +1,4 @@
-"""Which keys a mapping may have."""
+"""Keys of a mapping: only names and integers, each once."""
 
 from __future__ import annotations
 

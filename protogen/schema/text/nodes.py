@@ -114,7 +114,7 @@ def find(root: Node, loc: Loc, *, key: bool = False) -> Span:
 
 
 _Found = tuple[int, Item | None, Node]
-"""How many components led somewhere, the mapping's item the last one led to, and its node."""
+"""Number of components that led somewhere, the item that the last one led to, and its node."""
 
 
 def _follow(node: Node, loc: Loc) -> _Found:

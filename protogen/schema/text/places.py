@@ -1,4 +1,4 @@
-"""Where the parser's events stand in a text, as a reader sees it.
+"""Places of the parser's events in a text, as a reader sees them.
 
 The marks of PyYAML count from 0, take anchors and tags for a part of their node, and let block
 scalars and block collections reach to the next token.

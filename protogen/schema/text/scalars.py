@@ -1,4 +1,4 @@
-"""What a plain scalar means: the core schema of YAML 1.2.
+"""Meaning of a plain scalar: the core schema of YAML 1.2.
 
 `on`, `off`, `yes` and `no` are texts, `010` is ten, and there are no sexagesimals, no underscores
 in numbers and no dates.
