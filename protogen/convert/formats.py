@@ -1,4 +1,4 @@
-"""What captures are written in, and what they are converted to, as the command line names it.
+"""Formats of captures and of tables, as the command line names them.
 
 Nothing else is imported here, because every command does it at its start.
 """
@@ -9,7 +9,7 @@ from enum import StrEnum
 
 
 class InputKind(StrEnum):
-    """What the bytes of the line are written in."""
+    """Formats of the bytes of the line."""
 
     RAW = "raw"
     HEX = "hex"
@@ -18,7 +18,7 @@ class InputKind(StrEnum):
 
 
 class OutputFormat(StrEnum):
-    """What tables are written as."""
+    """Formats of tables."""
 
     JSONL = "jsonl"
     CSV = "csv"

@@ -38,11 +38,11 @@ class Others(NamedTuple):
 
 
 IN_LINES = Others('"nan"', '"inf"', '"-inf"')
-"""As in JSON lines, which are strict JSON."""
+"""Texts of JSON lines, which are strict JSON."""
 IN_JSON = Others("NaN", "Infinity", "-Infinity")
-"""As `json.dumps` has them."""
+"""Texts of `json.dumps`."""
 IN_CELLS = Others("nan", "inf", "-inf")
-"""As `str` has them."""
+"""Texts of `str`."""
 
 
 class Spelling(Enum):
@@ -70,7 +70,7 @@ class Integer:
 
 @dataclass(frozen=True, slots=True)
 class Bool:
-    """`true` or `false`."""
+    """A bool: `true` or `false`."""
 
     place: Place
 

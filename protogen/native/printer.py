@@ -27,11 +27,11 @@ class PrintedRows:
     rows: Any
     """A NumPy table whose rows begin with their offset."""
     differs: Any = None
-    """For each row a byte: an encoder makes other bytes of it."""
+    """Byte for each row: 1 if an encoder makes other bytes of it."""
     times: Any = None
-    """For each row when it came: `int64`."""
+    """Time of each row, in nanoseconds: `int64`."""
     timed: Any = None
-    """For each row a byte: that is known."""
+    """Byte for each row: 1 if its time is known."""
     payloads: bytes = b""
     """Bytes that rows of unknown frames refer to."""
 

@@ -94,7 +94,7 @@ class Lists:
 
     @property
     def there(self) -> Array:
-        """Which of the numbers belong to a list."""
+        """Mask of the numbers that belong to a list."""
         assert self.counts is not None
         return np.arange(self.values.shape[1]) < self.counts.reshape(-1, 1)
 

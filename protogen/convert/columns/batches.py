@@ -21,7 +21,7 @@ _ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
 
 @dataclass(slots=True)
 class Tally:
-    """What was in a capture, for people."""
+    """Counts of what was in a capture, for people."""
 
     bytes: int = 0
     """Bytes of the line."""
@@ -57,11 +57,11 @@ class Tally:
 
 
 class Batch(Protocol):
-    """What some bytes of a capture were."""
+    """Rows of some bytes of a capture."""
 
     @property
     def tally(self) -> Tally:
-        """How much of what is in it."""
+        """Counts of what is in it."""
 
     def rows(self) -> Iterable[Rows]:
         """The rows of each table that has some, in the order of the capture."""
@@ -97,7 +97,7 @@ class EventDecoder:
     """Decodes with the generated Python, an object for each event. It needs no other package."""
 
     def __init__(self, tables: Tables, spec: SenderSpec[Any, Any], start: int = 0) -> None:
-        """`start` is the offset of the first byte that will be fed."""
+        """Begin at offset `start`, that of the first byte that will be fed."""
         self._tables = tables
         self._decoder = Decoder(spec)
         self._clock = Clock()
@@ -127,11 +127,11 @@ class EventBatch:
     events: Sequence[Any]
     times: Sequence[int | None]
     start: int = 0
-    """What is to be added to the offsets of the events."""
+    """Added to the offsets of the events."""
 
     @property
     def tally(self) -> Tally:
-        """How much of what is in it."""
+        """Counts of what is in it."""
         tally = Tally()
         for event in self.events:
             tally.bytes += event.size
@@ -197,6 +197,6 @@ def _frame_value(column: Column, frame: Mapping[str, Any], event: Any) -> Any:
 
 
 def value_in(column: Column, values: Mapping[str, Any]) -> Any:
-    """What a column has of the values of a message."""
+    """Value of a column, out of those of a message."""
     raw = reached(values, column.path)
     return raw if column.derived is None else column.derived.of(raw)

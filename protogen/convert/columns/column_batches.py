@@ -52,7 +52,7 @@ _REASON_CODES = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """How rows of a message become columns."""
+    """Readers of a message's columns."""
 
     table: Table
     held: TableSchema
@@ -61,7 +61,7 @@ class Reading:
 
 
 class Readings:
-    """How each table of a sender is read."""
+    """Readers of all tables of a sender."""
 
     def __init__(self, tables: Tables, schema: CaptureSchema) -> None:
         self.tables = tables
@@ -102,7 +102,7 @@ def _number_reader(name: str) -> Reader:
 
 
 def _field_reader(column: Column, held: TableSchema) -> Reader:
-    """How a column is taken out of rows."""
+    """Reader of a column."""
     raw = _flat_reader(column, held) or _nested_reader(column, held)
     match column.derived:
         case Physical() as meaning:
@@ -135,7 +135,10 @@ def _nested_reader(column: Column, held: TableSchema) -> Reader:
 def _raw_reader(
     path: Sequence[str], fields: Sequence[Field], records: Sequence[Record]
 ) -> Reader | None:
-    """`records` are those on the way, the innermost one last; each but the first is a member."""
+    """Reader of the raw values at a path, through structs alone.
+
+    `records` are those on the way, the innermost one last; each but the first is a member.
+    """
     item = next(item for item in fields if item.name == path[0])
     inner = records[-1]
     column = next((c for c in inner.columns if c.role == "field" and c.source == path[0]), None)
@@ -200,13 +203,13 @@ def _text_reader(column: Held, type: TextType, counted_by: str | None) -> Reader
 
 @dataclass(slots=True)
 class Times:
-    """When the bytes of a capture came: runs of bytes, each with its end and its time."""
+    """Times of the bytes of a capture: runs of bytes, each with its end and its time."""
 
     ends: Array
     times: Array
 
     def of(self, rows: Any) -> Values:
-        """When the last byte of each row came."""
+        """Time of each row's last byte, in nanoseconds."""
         if not len(self.ends):
             return Nothing(len(rows))
         lasts = rows["offset"] + rows["size"] - np.uint64(1)
@@ -227,11 +230,11 @@ class ColumnBatch:
     times: Times
     printer: BatchPrinter | None = None
     start: int = 0
-    """What is to be added to the offsets of the rows."""
+    """Added to the offsets of the rows."""
 
     @property
     def tally(self) -> Tally:
-        """How much of what is in it."""
+        """Counts of what is in it."""
         filled = self.filled
         counts = {name: len(rows) for name, rows in filled.messages.items() if len(rows)}
         sizes = np.bincount(filled.invalid["reason"], filled.invalid["size"], 9)
@@ -271,7 +274,7 @@ class ColumnBatch:
         return self.data[place : place + size]
 
     def times_of(self, rows: Any) -> Values:
-        """When the last byte of each row came."""
+        """Time of each row's last byte, in nanoseconds."""
         return self.times.of(rows)
 
     def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
@@ -323,7 +326,7 @@ class ColumnDecoder:
         start: int = 0,
         printer: BatchPrinter | None = None,
     ) -> None:
-        """`start` is the offset of the first byte that will be fed."""
+        """Begin at offset `start`, that of the first byte that will be fed."""
         self._readings = readings
         self._engine = engine
         self._printer = printer

@@ -164,7 +164,7 @@ def _arrow(type: ColumnType, values: Values) -> pa.Array:
 
 
 def _placed(type: ColumnType, values: pa.Array, places: Array) -> pa.Array:
-    """For each place the value that is there; none for -1."""
+    """Value at each place; none for -1."""
     import pyarrow as pa
 
     from protogen.convert.columns.arrow_tables import type_of

@@ -31,7 +31,7 @@ def constants_in(fields: Iterable[Field], count: int) -> dict[str, Array]:
 
 
 def at_places(scope: Scope, places: Callable[[], Array]) -> Scope:
-    """What counts and chooses in these rows."""
+    """Numbers that count and choose in these rows."""
     return ChainMap(_Picked(scope, places))
 
 
@@ -44,11 +44,11 @@ class CaseRows:
     places: Array
     """The place among them of each row; -1: it has another case."""
     scope: Scope
-    """What counts and chooses in them."""
+    """Numbers that count and choose in them."""
 
     @classmethod
     def where(cls, there: Array, scope: Scope) -> CaseRows:
-        """Those of all rows where `there` holds."""
+        """Rows where `there` holds."""
         rows = np.flatnonzero(there)
         places = np.full(len(there), -1, "i8")
         places[rows] = np.arange(len(rows))
@@ -118,7 +118,7 @@ def _constant_cases(item: Field, type: Switch, count: int, scope: Scope) -> Case
 
 
 def followed(values: Values, path: Sequence[str]) -> Values:
-    """What the rest of a path leads to."""
+    """Values that the rest of a path leads to."""
     if not path:
         return values
     if isinstance(values, Structs):

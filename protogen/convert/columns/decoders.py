@@ -71,7 +71,7 @@ def _readings(tables: Tables) -> Readings:
 
 
 def _printer(tables: Tables, format: OutputFormat) -> RowPrinter | None:
-    """What prints rows; None where Python has to."""
+    """Printer of rows; None where Python has to do it."""
     from protogen.capture.errors import SlowCaptureWarning
     from protogen.convert.writers.row_printer import RowPrinter
     from protogen.native.errors import NativeError
@@ -92,4 +92,4 @@ def _printer(tables: Tables, format: OutputFormat) -> RowPrinter | None:
 
 
 _PRINTERS: deque[tuple[Tables, OutputFormat, RowPrinter]] = deque(maxlen=8)
-"""Those that were used last: a run converts many captures with one."""
+"""Printers that were used last: a run converts many captures with one."""

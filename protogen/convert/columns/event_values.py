@@ -54,7 +54,7 @@ def _plain_case(type: Switch, value: Any, scope: Scope) -> dict[str, Any]:
 
 
 def reached(values: Any, path: Sequence[str]) -> Any:
-    """What a path leads to; None where a case on the way was not chosen."""
+    """Value that a path leads to; None where a case on the way was not chosen."""
     for step in path:
         if values is None:
             return None

@@ -75,7 +75,7 @@ def _held(item: Field, columns: Sequence[Column]) -> Column | None:
 def _numbers(
     item: Field, in_front: Sequence[Field], columns: Iterable[Column], rows: Any
 ) -> dict[str, Array]:
-    """What counts or chooses in front of a field, by the names of fields and columns."""
+    """Numbers in front of a field, which count or choose, by the names of fields and columns."""
     found = constants_in(in_front, len(rows))
     names = {other.name for other in in_front}
     for column in columns:
@@ -87,7 +87,7 @@ def _numbers(
 
 
 def _chosen(choice: Choice, count: int, scope: Scope) -> Array:
-    """What the selector is, of each row."""
+    """Value of the selector in each row."""
     if isinstance(choice.selector, int):
         return np.full(count, choice.selector)
     return np.ascontiguousarray(scope[choice.selector])
@@ -102,7 +102,7 @@ def _case(
     held: Any,
     scope: Scope,
 ) -> Scattered:
-    """Of the rows that have the case that the path begins with, what the rest of it leads to."""
+    """Values behind a path, of the rows that have the case that it begins with."""
     case = next((case for case in type.cases if case.name == path[0]), None)
     if case is None:
         # NumPy would compare numbers of 64 bits with those of another type as floats.
@@ -159,7 +159,7 @@ def _values(
 
 
 def _counts(dimension: Dimension, scope: Scope) -> Array | None:
-    """How many elements or bytes each row has; None: as many as there is room for."""
+    """Number of elements or bytes in each row; None: as many as there is room for."""
     counted_by = dimension.counted_by
     if counted_by is None:
         return None
@@ -201,7 +201,7 @@ def _arrays(
 
 
 def _elements(held: Any, counts: Array) -> Any:
-    """Those that are there, of all rows; copied whole, which is much faster than by members."""
+    """Elements that are there, of all rows; copied whole, much faster than by members."""
     size = held.dtype.itemsize
     whole = held.view(f"u{size}" if size in (1, 2, 4, 8) else f"V{size}")
     if len(counts) and int(counts.min()) == held.shape[1]:

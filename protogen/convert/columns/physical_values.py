@@ -1,4 +1,4 @@
-"""What raw numbers mean, for whole columns: physical values and names."""
+"""Physical values and names of raw numbers, for whole columns."""
 
 from __future__ import annotations
 

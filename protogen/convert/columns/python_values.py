@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 Values = Any
-"""What a batch holds a column in."""
+"""A column, in any of the types that batches have."""
 
 _BETWEEN = "\ud800"
 """Half a character, which no text has."""
@@ -21,7 +21,7 @@ def as_list(values: Any) -> list[Any]:
 
 
 def json_of_each(values: Sequence[Any], default: Callable[[Any], Any]) -> list[str]:
-    """What `json.dumps` makes of each value. All at once: calling it takes longer than its work."""
+    """JSON of each value, as `json.dumps` makes it. One call for all, because calls are slow."""
     if not values:
         return []
     parted: list[Any] = [_BETWEEN] * (2 * len(values) - 1)

@@ -1,4 +1,4 @@
-"""Which tables a sender's capture becomes: columns of raw values, and what they mean beside them.
+"""Tables of a sender's captures: columns of raw values, and beside them what they mean.
 
 Each message has a table. Its columns are, in this order:
 
@@ -44,10 +44,10 @@ from protogen.model.types import (
 from protogen.version import VERSION
 
 REASONS = ("noise", "checksum", "length", "stuffing", "truncated", "size", "encoding", "value")
-"""Why bytes are no frame."""
+"""Reasons why bytes are no frame."""
 
 Path = tuple[str, ...]
-"""How a value is reached from a message: field, member, ..."""
+"""Way from a message to a value: field, member, ..."""
 
 # --- what a column holds --------------------------------------------------------------------------
 
@@ -73,7 +73,7 @@ class Listed:
     element: ColumnType
     count: int | None
     gaps: bool = False
-    """Whether some of them may be missing."""
+    """True if some of them may be missing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Record:
 
     members: tuple[tuple[str, ColumnType], ...]
     gaps: bool = False
-    """Whether some of them may be missing."""
+    """True if some of them may be missing."""
 
 
 ColumnType = Scalar | Names | Listed | Record
@@ -127,7 +127,7 @@ class Physical:
 
     @property
     def is_plain(self) -> bool:
-        """Whether the physical value is the raw one."""
+        """True if the physical value is the raw one."""
         return self.scale == 1 and self.offset == 0
 
     def of(self, raw: Any) -> Any:
@@ -167,7 +167,7 @@ class Column:
     derived: Derived | None = None
     nullable: bool = False
     facts: Mapping[str, str] = field(default_factory=dict)
-    """What a reader may want to know, for the metadata of formats that have such."""
+    """Facts for readers, in the metadata of formats that have such."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +176,7 @@ class Table:
 
     name: str
     frame_columns: tuple[Column, ...]
-    """`offset`, `size`, `t_ns`, then the parts."""
+    """Columns `offset`, `size`, `t_ns`, then the parts."""
     columns: tuple[Column, ...]
     facts: Mapping[str, str]
     message: Message | None = None
@@ -330,7 +330,7 @@ def _value_columns(item: Field, type: Type, path: Path, *, nullable: bool) -> It
 
 
 def rest_name(type: Switch) -> str:
-    """What the bytes of a value without a case are called."""
+    """Name of the bytes of a value without a case."""
     return _free("rest", (case.name for case in type.cases))
 
 
@@ -339,7 +339,7 @@ def _is_empty(case: Case) -> bool:
 
 
 def column_type(type: Type) -> ColumnType:
-    """What a column of such values holds."""
+    """Type of a column of such values."""
     match type:
         case Integer():
             return _scalar(type)
@@ -366,7 +366,7 @@ def column_type(type: Type) -> ColumnType:
 
 
 def _of_any_count(type: ColumnType) -> ColumnType:
-    """What a case holds: its lists have no elements where another case was chosen.
+    """Type of a case: its lists have no elements where another case was chosen.
 
     Arrow does not read from Parquet what it has written there of lists of a fixed size in a struct
     that is missing.

@@ -55,7 +55,7 @@ class Clock:
         self._end += len(chunk.data)
 
     def at(self, lasts: Sequence[int]) -> list[int | None]:
-        """When the bytes at these offsets came; None where nothing is known. They ascend."""
+        """Times of the bytes at these offsets, which ascend; None where nothing is known."""
         if not self._ends:
             return [None] * len(lasts)
         ends, times = list(self._ends), list(self._times)

@@ -18,7 +18,7 @@ from protogen.convert.inputs.text_logs import Complain
 
 
 class Packing(StrEnum):
-    """How a file is compressed."""
+    """Compressions of files."""
 
     NONE = ""
     GZIP = "gzip"
@@ -36,12 +36,12 @@ _READ = 1 << 16
 _MOST = 1 << 20
 """The most bytes that gzip unpacks at once."""
 _SLICE = 1 << 10
-"""So many bytes of zstd are unpacked at once. They may be blocks of 128 kB of one byte, each packed
+"""Bytes of zstd that are unpacked at once. They may be blocks of 128 kB of one byte, each packed
 into four."""
 
 
 def packing_of(head: bytes) -> Packing:
-    """How a file is compressed that begins with these bytes."""
+    """Compression of a file that begins with these bytes."""
     start = _skipped(head)
     if start:
         # Alone they say too little: what is behind them has to be zstd.
@@ -52,7 +52,7 @@ def packing_of(head: bytes) -> Packing:
 
 
 def _skipped(head: bytes) -> int:
-    """How many bytes in front are frames of zstd that hold no data."""
+    """Number of bytes in front that are frames of zstd without data."""
     place = 0
     while len(head) - place >= _SKIPPED.size:
         magic, size = _SKIPPED.unpack_from(head, place)
@@ -82,11 +82,11 @@ class _Member(Protocol):
     """One of the wholes that stand behind one another in a compressed file."""
 
     def feed(self, data: memoryview) -> tuple[bytes, int]:
-        """What some of the next bytes unpack to, and how many of them were taken."""
+        """Unpack some of the next bytes; the result, and how many of them were taken."""
 
     @property
     def is_whole(self) -> bool:
-        """Whether its end was seen."""
+        """True once its end was seen."""
 
 
 class _Gzip:
@@ -104,7 +104,7 @@ class _Gzip:
 
 
 class _Frame(Protocol):
-    """What zstandard's `decompressobj` makes."""
+    """Decompressor that zstandard's `decompressobj` makes."""
 
     eof: bool
     unused_data: bytes
@@ -137,7 +137,7 @@ class _Unpacked(RawIOBase):
         complain: Complain,
         padding: bytes = b"",
     ) -> None:
-        """`padding`: bytes that say nothing behind a member, as tapes have them."""
+        """Skip `padding` behind a member, as tapes have it."""
         self._stream = stream
         self._padding = padding
         self._new = member

@@ -1,4 +1,4 @@
-"""What a capture is written in, found out from its first bytes and its name, and how it is read.
+"""Captures: their format, found out from their first bytes and name, and their reading.
 
     bytes in front of the rest            it is
     1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd, maybe behind frames that
@@ -37,7 +37,7 @@ from protogen.convert.inputs.text_logs import BEGIN, Complain, log_pieces
 from protogen.convert.runs.table_names import STANDARD_INPUT, plain_name
 
 _HEAD = 1 << 12
-"""So many bytes are looked at to find out what a capture is."""
+"""Bytes that are looked at to find out what a capture is."""
 _READ = PIECE
 """The most bytes that are read at once."""
 _WORDS = {
@@ -51,18 +51,18 @@ _KINDS = {".hex": InputKind.HEX}
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a capture comes from: a path, a URL that fsspec knows, or `-`."""
+    """Origin of a capture: a path, a URL that fsspec knows, or `-`."""
 
     place: str
 
     @property
     def is_standard_input(self) -> bool:
-        """Whether the capture comes through a pipe."""
+        """True if the capture comes through a pipe."""
         return self.place == STANDARD_INPUT
 
     @property
     def is_url(self) -> bool:
-        """Whether fsspec has to open it."""
+        """True if fsspec has to open it."""
         return "://" in self.place
 
     @property
@@ -162,7 +162,7 @@ _VERSIONS = (
     "modify",
     "created",
 )
-"""What file systems call that which differs when a file changes, the most exact first."""
+"""Names that file systems have for a mark of a file's version, the most exact first."""
 
 
 def _url_stamp(url: str) -> tuple[int | None, str | None]:
@@ -176,14 +176,14 @@ def _url_stamp(url: str) -> tuple[int | None, str | None]:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """What a capture is written in."""
+    """Format of a capture."""
 
     kind: InputKind
     packing: Packing
 
     @property
     def is_plain(self) -> bool:
-        """Whether the file's bytes are those of the line, so that any part can be read alone."""
+        """True if the file's bytes are those of the line, so that any part can be read alone."""
         return self.kind is InputKind.RAW and self.packing is Packing.NONE
 
     def __str__(self) -> str:
@@ -236,7 +236,7 @@ def open_stream(place: str) -> Iterator[BinaryIO]:
 
 
 def format_of(source: Source, kind: InputKind | None) -> Format:
-    """What a capture is, without reading more of it than its start. Raises ConvertError."""
+    """Format of a capture, found out from its start alone. Raises ConvertError."""
     with opened(source, kind, "", (), lambda problem: None) as capture:
         return capture.format
 

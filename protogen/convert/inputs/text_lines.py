@@ -15,7 +15,7 @@ _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def encoding_of(head: bytes) -> str:
-    """What text is encoded in that begins with these bytes, at least two of them."""
+    """Encoding of text that begins with these bytes, at least two of them."""
     return "utf-16" if head.startswith(_MARKS) else "utf-8-sig"
 
 

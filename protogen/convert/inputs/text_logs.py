@@ -20,7 +20,7 @@ Complain = Callable[[str], None]
 """Take note of a line that can't be used."""
 
 BEGIN = re.compile(r"\s*(?:#[^\n]*\n\s*)*\(\d{1,12}(?:\.\d{1,9})?\)[ \t]+\S", re.ASCII)
-"""How a file of this kind begins."""
+"""Beginning of a file of this kind."""
 
 _SPLIT = re.compile(
     r"\((?P<seconds>\d{1,12})(?:\.(?P<fraction>\d{1,9}))?\)"

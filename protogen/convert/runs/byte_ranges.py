@@ -39,7 +39,7 @@ GREATEST = 1 << (64 - _SIZE_BITS)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where decoders meet: offset and size of a frame in the capture."""
+    """Frame at which decoders meet: its offset and size in the capture."""
 
     offset: int
     size: int
@@ -136,14 +136,14 @@ class RangeDecoder:
     def __init__(
         self, stream: BinaryIO, size: int, span: tuple[int, int], entry: Frame, make: MakeDecoder
     ) -> None:
-        """`span` is the range; `size` that of the capture."""
+        """Decode the range `span` of a capture of `size` bytes."""
         self._stream = stream
         self._size = size
         self._start, self._end = span
         self._entry = entry
         self._make = make
         self.exit = END
-        """Where the next range's rows begin; known when all batches are through."""
+        """Frame at which the next range's rows begin; known when all batches are through."""
 
     def batches(self) -> Iterator[ColumnBatch]:
         """The batches of the range."""

@@ -35,7 +35,7 @@ _LEAST_LEAD = 1 << 14
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What all parts of a run have in common."""
+    """Facts that all parts of a run have in common."""
 
     protocol: Protocol
     sender: str
@@ -48,15 +48,15 @@ class Part:
     """A part of a capture: a range of bytes, or where `span` is None the whole of it."""
 
     name: str
-    """Of its files, and of its marker."""
+    """Name of its files, and of its marker."""
     place: str
     capture: str
     """The name of the capture in metadata."""
     stamp: Mapping[str, Any]
-    """What the result depends on."""
+    """Facts that the result depends on."""
     input: str | None
     size: int = 0
-    """Of the capture."""
+    """Bytes of the capture."""
     span: tuple[int, int] | None = None
     entry: Frame | None = None
     """None: to be guessed."""
@@ -64,7 +64,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class PartDone:
-    """What became of a part."""
+    """Result of a part."""
 
     name: str
     entry: Frame
@@ -86,7 +86,7 @@ class PartDone:
 
 
 def read_marker(folder: Path, part: Part) -> PartDone | None:
-    """What became of a part in an earlier run; None where it is not done, or things changed."""
+    """Result of a part in an earlier run; None where it is not done, or things changed."""
     try:
         data = json.loads(marker_of(folder, part.name).read_text(encoding="utf-8"))
         if data["stamp"] != dict(part.stamp):
@@ -119,7 +119,7 @@ def convert_part(work: Work, part: Part) -> PartDone:
 
 
 def _tools(protocol: Protocol, sender: str) -> tuple[Tables, SenderSpec[Any, Any]]:
-    """What decoding needs; made once in a process."""
+    """Tables and codec of a sender; made once in a process."""
     return _tools_of(pickle.dumps(protocol), sender)
 
 
@@ -170,5 +170,5 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
 
 
 def lead_of(tables: Tables) -> int:
-    """How many bytes before a range the decoder begins that is to guess its entry."""
+    """Bytes before a range at which the decoder begins that is to guess its entry."""
     return max(_LEAST_LEAD, 4 * tables.sender.framing.greatest)

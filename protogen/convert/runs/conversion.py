@@ -22,7 +22,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.codec import Protocol as RuntimeProtocol
 
 _ORIGIN = ("capture", "protocol", "sender")
-"""Of a stamp, what tables are made of, whatever becomes of it."""
+"""Keys of a stamp that say what tables are made of, whatever becomes of it."""
 PART_SIZE = 256_000_000
 """Bytes of a capture in a part, unless somebody says otherwise."""
 Complain = Callable[[str], None]
@@ -31,7 +31,7 @@ Advance = Callable[[int], None]
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What is wanted: whose bytes, written in what, converted to what, and where it goes."""
+    """Order for a conversion: whose bytes, from which format to which, and where they go."""
 
     protocol: Protocol
     runtime: RuntimeProtocol[Any, Any]
@@ -41,9 +41,9 @@ class Job:
     input: InputKind | None = None
     """None: what the capture turns out to be."""
     force: bool = False
-    """Whether files that no earlier run made may be replaced, and what is done is done again."""
+    """True if files that no earlier run made may be replaced, and what is done is done again."""
     engine: str | None = None
-    """What decodes: `native`, `python`, or `events`, which needs no NumPy; None: the fastest."""
+    """Decoder: `native`, `python`, or `events`, which needs no NumPy; None: the fastest."""
     tables: Tables = field(init=False)
 
     def __post_init__(self) -> None:
@@ -73,7 +73,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """Who does the work: a scheduler's address, or None for workers on this machine."""
+    """Workers: those of a scheduler's address, or with None on this machine."""
 
     address: str | None = None
     workers: int | None = None
@@ -82,15 +82,15 @@ class Fleet:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What became of one capture."""
+    """Result of one capture."""
 
     place: str
     format: str
-    """What it was written in, in words."""
+    """Format of the capture, in words."""
     tally: Tally
     files: Sequence[str]
     was_done: bool = False
-    """Whether an earlier run did it."""
+    """True if an earlier run did it."""
     lost_lines: int = 0
     """Lines or records that could not be used."""
 

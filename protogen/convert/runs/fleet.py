@@ -42,9 +42,9 @@ LOCAL_CLUSTER: dict[str, Any] = {
     # Dask opens a port even so: any that is free, not one that it complains about.
     "scheduler_kwargs": {"dashboard_address": "127.0.0.1:0"},
 }
-"""How a cluster on this machine is set up, however many workers it has."""
+"""Settings of a cluster on this machine, however many workers it has."""
 _DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""What workers on this machine run at their start. Ctrl-C is for the command, which ends them; they
+"""Code that workers on this machine run first. Ctrl-C is for the command, which ends them; they
 would print a traceback each."""
 
 
@@ -60,7 +60,7 @@ class _Capture:
     parts: list[Part]
     done: dict[int, PartDone] = field(default_factory=dict)
     fitting: int = 0
-    """So many parts in front are done and right: they stay, and are not looked at again."""
+    """Number of parts in front that are done and right: they are not looked at again."""
 
     def wrong(self) -> Iterator[tuple[int, Part]]:
         """Parts that began elsewhere than where the part in front of them ended, with its end.
@@ -80,7 +80,7 @@ class _Capture:
 
     @property
     def is_done(self) -> bool:
-        """Whether all parts are there and fit each other."""
+        """True if all parts are there and fit each other."""
         return len(self.done) == len(self.parts) and not any(self.wrong())
 
 
@@ -217,7 +217,7 @@ def _client(fleet: Fleet, complain: Complain) -> Iterator[Any]:
 
 
 def _preloads() -> dict[str, Any]:
-    """What workers on this machine run at their start: what Dask's settings say, and then ours.
+    """Code that workers on this machine run first: that of Dask's settings, and then ours.
 
     A setting may be one text, as that of an environment variable is. Where arguments are given one
     by one, there are as many as there are preloads.

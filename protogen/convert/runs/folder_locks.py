@@ -60,7 +60,7 @@ def _opened(path: Path, flags: int) -> Iterator[int]:
 
 
 def _lock(descriptor: int, *, wait: bool) -> bool:
-    """Whether no other process has the lock now."""
+    """True if no other process has the lock now."""
     if _HAS_LOCKS:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
@@ -72,7 +72,7 @@ def _lock(descriptor: int, *, wait: bool) -> bool:
 
 
 def _is_still(path: Path, descriptor: int) -> bool:
-    """Whether the file has not been removed, by the run that had the lock, before it was locked."""
+    """True unless the run that had the lock removed the file before it was locked."""
     try:
         return os.path.samestat(path.stat(), os.fstat(descriptor))
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""What runs of a fleet have begun: the names of parts, and which of them may have left something.
+"""Journal of parts written by a fleet, used to clean up after an interrupted run.
 
 A run that was ended may have had other parts, smaller ones or any at all. So its files are known to
 whatever run comes next, which would otherwise leave their rows beside its own.
@@ -19,17 +19,17 @@ _DIGITS = 6
 
 
 def part_name(capture: str, number: int) -> str:
-    """What the files of a part of a capture are called."""
+    """Name of the files of a part of a capture."""
     return f"{capture}.{number:0{_DIGITS}}"
 
 
 def marker_of(folder: Path, part: str) -> Path:
-    """Where the marker of a part is."""
+    """Path of a part's marker."""
     return folder / MARKERS / f"{part}.json"
 
 
 def is_unfinished(folder: Path, capture: str) -> bool:
-    """Whether a fleet has begun with a capture, and not finished."""
+    """True if a fleet has begun with a capture, and not finished."""
     return _note(folder, capture).exists()
 
 
@@ -67,7 +67,7 @@ def _note(folder: Path, capture: str) -> Path:
 
 
 def _parts(folder: Path, capture: str) -> int:
-    """How many parts a capture had at most, as far as anybody has begun with it."""
+    """Most parts that a capture had in any run that began with it."""
     try:
         return int(_note(folder, capture).read_bytes() or b"0")
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""What earlier runs finished in a folder, so that a run that was interrupted can go on.
+"""Record of the captures that are done in a folder, so that an interrupted run can go on.
 
 A capture is done when its files stand in their places and this record says so; it is written last.
 What was not done is done again from the capture's start, so a resumed run gives what one run gives.
@@ -41,7 +41,7 @@ class State:
         self._version = _version(self._path)
         self._done = _read(self._path)
         self._texts: dict[str, str] = {}
-        """Of those in `_done`, what is written of them, where that is known."""
+        """Text of those in `_done`, as it is written, where that is known."""
 
     def refresh(self) -> None:
         """Take note of what other runs have done."""
@@ -52,7 +52,7 @@ class State:
             self._texts = {}
 
     def finished(self, key: str, stamp: Mapping[str, Any]) -> Done | None:
-        """What became of a capture, if nothing has changed since and its files are there.
+        """Result of a capture, if nothing has changed since and its files are there.
 
         Whether what comes through a pipe has changed can't be seen: it has no size.
         """
@@ -66,15 +66,15 @@ class State:
         return self._done[key].files if key in self._done else ()
 
     def origin(self, key: str) -> Mapping[str, Any]:
-        """What an earlier run made files of: a stamp, or of one that did not end some of it."""
+        """Stamp of what an earlier run made files of; of a run that did not end, some of it."""
         return self._done[key].stamp if key in self._done else {}
 
     def owns(self, file: str) -> bool:
-        """Whether a file is one that an earlier run made."""
+        """True if an earlier run made a file."""
         return any(file in done.files for done in self._done.values())
 
     def is_of_another(self, key: str, file: str) -> bool:
-        """Whether an earlier run made a file of another capture."""
+        """True if an earlier run made a file of another capture."""
         others = (done for name, done in self._done.items() if name != key)
         return any(file in done.files for done in others)
 
@@ -106,7 +106,7 @@ class State:
 
 
 def _version(path: Path) -> tuple[int, int] | None:
-    """What differs when somebody writes the record, which is a new file then."""
+    """Version of the record, which is a new file whenever somebody writes it."""
     try:
         status = path.stat()
     except OSError:

@@ -1,4 +1,4 @@
-"""What the tables of captures are called: as the captures' files, and no two of a run alike."""
+"""Names of captures' tables: those of the captures' files, and no two of a run alike."""
 
 from __future__ import annotations
 

@@ -56,9 +56,9 @@ class _Kept:
         self.bytes = 0
         self.sink: Sink | None = None
         self.files = 0
-        """How many files there are, with the one that is being written."""
+        """Number of files, with the one that is being written."""
         self.pieces = 0
-        """What is recorded of the file that is being written."""
+        """Record of the file that is being written."""
 
     def take(self, rows: Rows) -> None:
         """Keep rows."""
@@ -87,7 +87,7 @@ class ArrowWriter:
     SUFFIX = "arrow"
 
     def __init__(self, name: str, pending: Pending, capture: str | None = None) -> None:
-        """`name`: of the files; `capture`: the name in the metadata, where it is another one."""
+        """Write files called `name`; `capture` is the name in the metadata, where it differs."""
         needed("pyarrow", f"writing {self.SUFFIX} files")
         self._name = name
         self._capture = name if capture is None else capture

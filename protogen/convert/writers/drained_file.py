@@ -17,7 +17,7 @@ _STRETCH = 4 << 20
 """Bytes, or some more, after which the system is told. It begins to write a stretch when it is told
 the first time, and forgets what was written when it is told again."""
 _TOLD = 4
-"""How often it is told of a stretch, unless the file ends before."""
+"""Times that it is told of a stretch, unless the file ends before."""
 
 
 class Drain:
@@ -25,10 +25,10 @@ class Drain:
 
     def __init__(self) -> None:
         self._told = deque([0], maxlen=_TOLD)
-        """How far it was told at the last times."""
+        """Bytes up to which it was told, the last times."""
 
     def reach(self, descriptor: int, written: int) -> None:
-        """So many bytes are written; the system may drop them from its cache."""
+        """Tell that so many bytes are written: the system may drop them from its cache."""
         if written - self._told[-1] < _STRETCH:
             return
         start = self._told[0]

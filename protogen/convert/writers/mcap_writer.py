@@ -90,7 +90,7 @@ class McapWriter:
 
 
 def _line_time(link: Link) -> Callable[[int], int]:
-    """How many nanoseconds so many bytes take on the line."""
+    """Nanoseconds that so many bytes take on the line."""
     if link.baud is None:
         return lambda size: size * _MICROSECOND
     bits, baud = link.bits_per_byte, link.baud
@@ -129,7 +129,7 @@ def _present(value: Any) -> Any:
 
 
 def _may_miss(type: ColumnType) -> bool:
-    """Whether members of what a list holds may be missing."""
+    """True if members of what a list holds may be missing."""
     match type:
         case Record(members=members, gaps=gaps):
             return gaps or any(_may_miss(member) for _, member in members)

@@ -1,4 +1,4 @@
-"""How a Parquet file spells numbers: which columns are differences, and which are compressed.
+"""Encodings of numbers in Parquet files: which columns are differences, and which compressed.
 
 Parquet has no numbers of fewer than 32 bits. As differences (`DELTA_BINARY_PACKED`, which every
 reader of the format knows) those of sensors and counters take a fraction of that, and less time
@@ -30,16 +30,16 @@ _LITTLE = 9 / 10
 
 @dataclass(slots=True)
 class Spelling:
-    """How columns are written, by their paths."""
+    """Encodings of columns, by their paths."""
 
     encodings: dict[str, str] = field(default_factory=dict)
-    """Of those that are not written as they are."""
+    """Encodings of those that are not written as they are."""
     compression: dict[str, str] = field(default_factory=dict)
-    """Of all."""
+    """Compressions of all."""
 
 
 def spelling_of(rows: pa.Table) -> Spelling:
-    """What suits a file whose first rows are these."""
+    """Choose encodings that suit a file whose first rows are these."""
     found = Spelling()
     for name, column in zip(rows.schema.names, rows.columns, strict=True):
         for path, values in _leaves(name, column.chunk(0)):
@@ -55,7 +55,7 @@ def spelling_of(rows: pa.Table) -> Spelling:
 
 
 def _leaves(path: str, values: pa.Array) -> Iterator[tuple[str, pa.Array]]:
-    """What a column is made of, each with its path as Parquet has it."""
+    """Parts of a column, each with its path as Parquet has it."""
     import pyarrow as pa
 
     if pa.types.is_struct(values.type):
@@ -80,7 +80,7 @@ def _numbers(values: pa.Array) -> Any:
 
 
 def _are_close(numbers: Any) -> bool:
-    """Whether numbers are near those in front. Where all are the same, they shrink to nothing."""
+    """True if numbers are near those in front. Where all are the same, they shrink to nothing."""
     steps = np.diff(numbers.astype("i8"))
     blocks = steps[: len(steps) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
     if not blocks.any():

@@ -14,7 +14,7 @@ _CONTINUED = re.compile(r"\.part-[0-9]{4,}(?=\.[^.]+$)")
 
 
 def continuation(relative: str, number: int) -> str:
-    """What a file is called that goes on, as the `number`th, where the first one ended; 0: that."""
+    """Name of the `number`th file that goes on where the first one ended; 0: that itself."""
     stem, dot, suffix = relative.rpartition(".")
     return f"{stem}.part-{number:04}{dot}{suffix}" if number else relative
 
@@ -26,13 +26,13 @@ class Pending:
     """
 
     def __init__(self, folder: Path, token: str = "") -> None:
-        """With a `token`, the hidden names are of this run alone."""
+        """Use hidden names that are of this run alone, where there is a `token`."""
         self._folder = folder
         self._token = token
         self._paths: list[Path] = []
 
     def path(self, relative: str) -> Path:
-        """Where to write what is to become the file at `relative`. Raises OSError."""
+        """Path to write to what is to become the file at `relative`. Raises OSError."""
         path = self._folder / relative
         path.parent.mkdir(parents=True, exist_ok=True)
         self._paths.append(path)

@@ -58,7 +58,7 @@ class RowPrinter:
             yield tables.invalid, _printed(batch, invalid, filled.invalid)
 
     def _differs(self, batch: ColumnBatch, name: str, rows: Any) -> Array | None:
-        """For each row, whether an encoder makes other bytes of it."""
+        """Mask of the rows of which an encoder makes other bytes."""
         if self._library is None:
             return None
         line, start = batch.data, batch.filled.offset
