@@ -25,7 +25,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 import compiled  # noqa: E402
 import corpus  # noqa: E402
-import owed  # noqa: E402
+import recovery_oracle  # noqa: E402
 
 from protogen.runtime.frame import FrameSpec  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
@@ -85,11 +85,11 @@ def measure(subject: Subject, seeds: Iterable[int]) -> Figures:
         material = subject.material(dice)
         stream = corpus.stream_of(material, dice, PIECES)
         events = subject.decode(stream.data)
-        fates = owed.fates(subject.spec, stream, events)
+        fates = recovery_oracle.fates(subject.spec, stream, events)
         figures.undamaged += len(fates)
-        figures.due += sum(fate is not owed.Fate.NOT_DUE for fate in fates)
-        figures.found += fates.count(owed.Fate.FOUND)
-        figures.false += len(owed.false_frames(subject.spec, material.frames, events))
+        figures.due += sum(fate is not recovery_oracle.Fate.NOT_DUE for fate in fates)
+        figures.found += fates.count(recovery_oracle.Fate.FOUND)
+        figures.false += len(recovery_oracle.false_frames(subject.spec, material.frames, events))
         figures.sizes += sum(len(frame) for _, frame in stream.frames)
     return figures
 

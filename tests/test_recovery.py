@@ -1,7 +1,7 @@
 """Streams of frames, noise and damage: what a decoder loses, keeps and holds back.
 
 For every framing there is: the five documents, the dialects, and those of `tests/framings`. What is
-owed to an undamaged frame is stated in `owed`.
+due of an undamaged frame is stated in `recovery_oracle`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from corpus import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from owed import Fate, fates, is_protected
+from recovery_oracle import Fate, fates, is_protected
 
 from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 

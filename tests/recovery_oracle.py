@@ -1,4 +1,4 @@
-"""What a decoder owes to the undamaged frames of a stream, and what became of each of them.
+"""Oracle of recovery: which undamaged frames a decoder has to find, and what became of each.
 
 The design promises that every frame that was not itself damaged is found. Exactly:
 
