@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 import sys
 from array import array
+from copy import copy
 from decimal import Decimal
 from enum import IntEnum
 from fractions import Fraction
@@ -28,13 +29,13 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from protogen.runtime import bulk_cut, fast, pairs
 from protogen.runtime import decoder as runtime_decoder
-from protogen.runtime import fast, pairs, runs
 from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.machine import Candidate, Cut, verdict_on
 from protogen.runtime.number import Number
-from protogen.runtime.pairs import PairLists, Pairs, Unclear, pair_codes
+from protogen.runtime.pairs import NeedsReference, PairLists, Pairs, pair_codes
 from protogen.runtime.values import replace
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -427,10 +428,16 @@ def damaged(frames: list[bytes], random: Random) -> list[bytes]:
     return [b"".join([*frames[:place], one, *frames[place + 1 :]]) for one in wrong]
 
 
+def codec_at(path: Path) -> ModuleType:
+    """The machine text of a schema's module."""
+    module = module_at(path)
+    return sys.modules[f"{module.__package__}._{module.PROTOCOL.name}_codec"]
+
+
 @EVERY_SENDER
 def test_runs_of_one_message(path: Path, sender: str) -> None:
     """They are taken all at once, as long as they are in order and alike."""
-    if not hasattr(module_at(path), "_RUNS_0"):
+    if not hasattr(codec_at(path), "_BULK_0"):
         return
     random = Random(11)
     by_name = {event.message.NAME: event.raw for event in decoded(path, sender)}
@@ -439,12 +446,6 @@ def test_runs_of_one_message(path: Path, sender: str) -> None:
         for data in damaged(frames, random):
             due = shown(events_of(path, sender, "construct", [data]))
             assert shown(events_of(path, sender, "fast", [data])) == due
-
-
-def codec_at(path: Path) -> ModuleType:
-    """The machine text of a schema's module."""
-    module = module_at(path)
-    return sys.modules[f"{module.__package__}._{path.stem}_codec"]
 
 
 class TestRuns:
@@ -473,13 +474,13 @@ class TestRuns:
     def taken(self, data: bytes) -> tuple[int, list[Any]]:
         esp = codec_at(MATTY)
         events: list[Any] = []
-        end = esp._RUNS_0.take(data, 0, 0, events, esp._cut_esp, esp._ESP_HEADS)
+        end = esp._BULK_0.take(data, 0, 0, events, esp._cut_esp, esp._ESP_HEADS)
         return end, events
 
     def test_they_are_taken(self) -> None:
         data = b"".join(self.frames(900))
         end, events = self.taken(data)
-        assert len(data) - end <= runs.LONG
+        assert len(data) - end <= bulk_cut.MIN_DATA
         assert b"".join(event.raw for event in events) == data[:end]
         assert shown(events) == shown(events_of(MATTY, "esp", "construct", [data]))[: len(events)]
 
@@ -499,7 +500,8 @@ class TestRuns:
     def test_longer_frames_than_there_are_are_left(self) -> None:
         data = b"".join(self.frames(200))
         esp = codec_at(MATTY)
-        short = runs.StuffedRuns(**{**esp._RUNS_0.given, "greatest": 20})
+        short = copy(esp._BULK_0)
+        short.greatest = 20
         assert short.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) == 0
 
     @pytest.mark.parametrize("seed", range(6))
@@ -515,8 +517,8 @@ class TestRuns:
         esp = codec_at(MATTY)
         data = b"".join(self.frames(200))
         others: dict[bytes, Any] = {bytes((number,)): [] for number in range(40)}
-        remembering = runs.StuffedRuns(**esp._RUNS_0.given)
-        remembering.numbers.update(others)
+        remembering = copy(esp._BULK_0)
+        remembering.numbers = others
         assert remembering.take(data, 0, 0, [], esp._cut_esp, esp._ESP_HEADS) > 0
         assert len(remembering.numbers) == 1
 
@@ -941,7 +943,7 @@ def test_lists_of_pairs_are_read_as_their_numbers_are(
     try:
         due = [number.decode(data[place : place + 2]) for place in range(0, len(data), 2)]
     except ByteError:
-        with pytest.raises(Unclear):
+        with pytest.raises(NeedsReference):
             lists.decode(data)
         return
     assert lists.decode(data) == due
@@ -978,7 +980,7 @@ def test_lists_of_pairs_are_written_as_their_numbers_are(
     outside = data.draw(
         st.integers().filter(lambda value: not number.least <= value <= number.greatest)
     )
-    with pytest.raises((Unclear, struct.error)):
+    with pytest.raises((NeedsReference, struct.error)):
         lists.encode([*values, outside])
     with pytest.raises(ValueError, match="is not in"):
         number.encode(outside)

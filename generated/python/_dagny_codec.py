@@ -78,99 +78,99 @@ _PACK_0 = _struct.Struct("<B").pack
 
 def _read_sonar(data: bytes) -> Sonar:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Sonar)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Gps)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_bump(data: bytes) -> Bump:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Bump)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_odometry(data: bytes) -> Odometry:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Odometry)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_speed(data: bytes) -> Speed:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Speed)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_wheel_slip(data: bytes) -> WheelSlip:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(WheelSlip)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_battery(data: bytes) -> Battery:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Battery)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_reflex_settings(data: bytes) -> ReflexSettings:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(ReflexSettings)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
 
 def _read_hardware_status(data: bytes) -> HardwareStatus:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(HardwareStatus)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
@@ -198,7 +198,7 @@ def _read_power_down(data: bytes) -> PowerDown:
     (v1,) = _UNPACK_0(data)
     item.code = _MEMBERS_0[v1]
     if item.code != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return item
 
 
@@ -211,11 +211,11 @@ def _read_power(data: bytes) -> Power:
 
 def _read_laser(data: bytes) -> Laser:
     if not 0 <= len(data) <= 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Laser)
     n1, left2 = divmod(len(data) - 0, 1)
     if left2 or n1 > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
     item.readings = v3
     return item
@@ -223,11 +223,11 @@ def _read_laser(data: bytes) -> Laser:
 
 def _read_command(data: bytes) -> Command:
     if not 0 <= len(data) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Command)
     v1 = data
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
@@ -293,35 +293,35 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
 
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.startswith(b"\x0a"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload_size, read, _ = _HOST_KINDS[data[0]]
     if payload_size < 0:
         end = data.find(b"\x0a", 1)
         if end < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         end += 1
     elif payload_size:
         end = 3 + payload_size
     else:
         end = 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 515:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.endswith(b"\x0a"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if len(content) <= 2:
         if len(content) != 1:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         payload = b""
     else:
         payload = content[1:-1]
     if payload:
         if _checksum.xor_of(content):
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     return read(payload)
 
 
@@ -423,35 +423,35 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
 
 def _decode_robot(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.startswith(b"\x0a"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload_size, read, _ = _ROBOT_KINDS[data[0]]
     if payload_size < 0:
         end = data.find(b"\x0a", 1)
         if end < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         end += 1
     elif payload_size:
         end = 3 + payload_size
     else:
         end = 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 515:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.endswith(b"\x0a"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if len(content) <= 2:
         if len(content) != 1:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         payload = b""
     else:
         payload = content[1:-1]
     if payload:
         if _checksum.xor_of(content):
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     return read(payload)
 
 
@@ -490,15 +490,15 @@ def _frame_robot(payload: bytes, id_: int | None) -> bytes:
 
 def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(83) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -511,15 +511,15 @@ def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
 
 def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(71) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -532,15 +532,15 @@ def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
 
 def _encode_bump(item: Bump, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(66) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -553,15 +553,15 @@ def _encode_bump(item: Bump, module: object, sender: str | None) -> bytes:
 
 def _encode_odometry(item: Odometry, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(79) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -574,15 +574,15 @@ def _encode_odometry(item: Odometry, module: object, sender: str | None) -> byte
 
 def _encode_speed(item: Speed, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(79) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -595,15 +595,15 @@ def _encode_speed(item: Speed, module: object, sender: str | None) -> bytes:
 
 def _encode_wheel_slip(item: WheelSlip, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(87) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -616,15 +616,15 @@ def _encode_wheel_slip(item: WheelSlip, module: object, sender: str | None) -> b
 
 def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(98) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -637,15 +637,15 @@ def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
 
 def _encode_reflex_settings(item: ReflexSettings, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(82) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -658,15 +658,15 @@ def _encode_reflex_settings(item: ReflexSettings, module: object, sender: str | 
 
 def _encode_hardware_status(item: HardwareStatus, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if payload:
         content = _PACK_0(72) + payload
         content += _BYTES[_checksum.xor_of(content)]
@@ -679,7 +679,7 @@ def _encode_hardware_status(item: HardwareStatus, module: object, sender: str | 
 
 def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.s
     payload = _PACK_0(v1)
     if payload:
@@ -694,7 +694,7 @@ def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
 
 def _encode_steering(item: Steering, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.s
     payload = _PACK_0(v1)
     if payload:
@@ -709,7 +709,7 @@ def _encode_steering(item: Steering, module: object, sender: str | None) -> byte
 
 def _encode_reflex(item: Reflex, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.reflex
     payload = _PACK_0(v1)
     if payload:
@@ -724,10 +724,10 @@ def _encode_reflex(item: Reflex, module: object, sender: str | None) -> bytes:
 
 def _encode_power_down(item: PowerDown, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.code
     if v1 != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = _PACK_0(v1)
     if payload:
         content = _PACK_0(80) + payload
@@ -741,7 +741,7 @@ def _encode_power_down(item: PowerDown, module: object, sender: str | None) -> b
 
 def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.code
     payload = _PACK_0(v1)
     if payload:
@@ -756,36 +756,36 @@ def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
 
 def _encode_laser(item: Laser, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.readings
     if type(v1) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = _struct.pack(f"<{len(v1)}B", *v1)
     if sender == "host":
         return _frame_host(payload, 76)
     if sender == "robot":
         return _frame_robot(payload, 76)
-    raise _fast.Unclear
+    raise _fast.NeedsReference
 
 
 def _encode_command(item: Command, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 0 <= len(payload) <= 128:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if sender == "host":
         return _frame_host(payload, 67)
     if sender == "robot":
         return _frame_robot(payload, 67)
-    raise _fast.Unclear
+    raise _fast.NeedsReference
 
 
 _ENCODERS.update(

@@ -88,7 +88,7 @@ _PACK_9 = _struct.Struct("<7s").pack
 
 def _read_sonar(data: bytes) -> Sonar:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Sonar)
     item.distances = list(_UNPACK_0(data, 0))
     return item
@@ -96,11 +96,11 @@ def _read_sonar(data: bytes) -> Sonar:
 
 def _read_gps(data: bytes) -> Gps:
     if not 0 <= len(data) <= 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Gps)
     v1 = data
     if len(v1) > 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.nmea = v1.decode("latin-1")
     return item
 
@@ -164,11 +164,11 @@ def _read_gps_position(data: bytes) -> GpsPosition:
 
 def _read_laser(data: bytes) -> Laser:
     if not 0 <= len(data) <= 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Laser)
     n1, left2 = divmod(len(data) - 0, 1)
     if left2 or n1 > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = list(_struct.unpack_from(f"<{n1}B", data, 0))
     item.readings = v3
     return item
@@ -179,7 +179,7 @@ def _read_shutdown(data: bytes) -> Shutdown:
     (v1,) = _UNPACK_8(data)
     item.confirmation = v1.rstrip(b"\0").decode("latin-1")
     if item.confirmation != "ZZZZZZZ":
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return item
 
 
@@ -188,7 +188,7 @@ def _choose_host_77(data: bytes) -> Motor | Drive:
         return _read_motor(data)
     if len(data) in Drive.SIZES:
         return _read_drive(data)
-    raise _fast.Unclear
+    raise _fast.NeedsReference
 
 
 def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
@@ -250,15 +250,15 @@ _HOST_HEADS = _fast.Heads(_head_host)
 
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x0d", 0)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 1027:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if 0x0D in content or 0x1B in content:
         stuffed = content
@@ -267,13 +267,13 @@ def _decode_host(data: bytes) -> _typing.Any:
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x0d", b"\x1b\x16")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     if len(content) < 1:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = content[1:]
     _, payload_size, read = _HOST_HEADS[content[0:1]]
     if 0 <= payload_size != len(payload):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -375,15 +375,15 @@ _ROBOT_HEADS = _fast.Heads(_head_robot)
 
 def _decode_robot(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x0d", 0)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 1027:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if 0x0D in content or 0x1B in content:
         stuffed = content
@@ -392,13 +392,13 @@ def _decode_robot(data: bytes) -> _typing.Any:
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x0d", b"\x1b\x16")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     if len(content) < 1:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = content[1:]
     _, payload_size, read = _ROBOT_HEADS[content[0:1]]
     if 0 <= payload_size != len(payload):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -442,12 +442,12 @@ def _frame_robot(payload: bytes, id_: int | None) -> bytes:
 
 def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.distances
     if type(v1) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_0(83), _PACK_1(*v1)))
     if 0x0D in content or 0x1B in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -457,14 +457,14 @@ def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
 
 def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.nmea
     v2 = v1.encode("ascii")
     if len(v2) > 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v2
     if not 0 <= len(payload) <= 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(71) + payload
     if 0x0D in content or 0x1B in content:
         content = content.replace(b"\x1b", b"\x1b\x00")
@@ -474,7 +474,7 @@ def _encode_gps(item: Gps, module: object, sender: str | None) -> bytes:
 
 def _encode_odometry(item: Odometry, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.right_count
     v2 = item.left_count
     v3 = item.quad_count
@@ -491,7 +491,7 @@ def _encode_odometry(item: Odometry, module: object, sender: str | None) -> byte
 
 def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.main_battery
     v2 = item.motor_battery
     v3 = item.idle
@@ -504,7 +504,7 @@ def _encode_battery(item: Battery, module: object, sender: str | None) -> bytes:
 
 def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "robot"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.x
     v2 = item.y
     content = _PACK_4(67, v1, v2)
@@ -516,7 +516,7 @@ def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
 
 def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     content = _PACK_5(77, v1)
     if 0x0D in content or 0x1B in content:
@@ -527,7 +527,7 @@ def _encode_motor(item: Motor, module: object, sender: str | None) -> bytes:
 
 def _encode_drive(item: Drive, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     v2 = item.steer
     content = _PACK_6(77, v1, v2)
@@ -539,7 +539,7 @@ def _encode_drive(item: Drive, module: object, sender: str | None) -> bytes:
 
 def _encode_steering(item: Steering, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.position
     content = _PACK_7(83, v1)
     if 0x0D in content or 0x1B in content:
@@ -550,7 +550,7 @@ def _encode_steering(item: Steering, module: object, sender: str | None) -> byte
 
 def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.code
     content = _PACK_7(80, v1)
     if 0x0D in content or 0x1B in content:
@@ -561,7 +561,7 @@ def _encode_power(item: Power, module: object, sender: str | None) -> bytes:
 
 def _encode_gps_position(item: GpsPosition, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.latitude
     v2 = item.longitude
     content = _PACK_8(71, v1, v2)
@@ -573,35 +573,35 @@ def _encode_gps_position(item: GpsPosition, module: object, sender: str | None) 
 
 def _encode_laser(item: Laser, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.readings
     if type(v1) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = _struct.pack(f"<{len(v1)}B", *v1)
     if sender == "host":
         return _frame_host(payload, 76)
     if sender == "robot":
         return _frame_robot(payload, 76)
-    raise _fast.Unclear
+    raise _fast.NeedsReference
 
 
 def _encode_shutdown(item: Shutdown, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.confirmation
     v2 = v1.encode("ascii")
     if len(v2) > 7 or v2.endswith(b"\0"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if v1 != "ZZZZZZZ":
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = _PACK_9(v2)
     if sender == "host":
         return _frame_host(payload, 90)
     if sender == "robot":
         return _frame_robot(payload, 90)
-    raise _fast.Unclear
+    raise _fast.NeedsReference
 
 
 _ENCODERS.update(

@@ -73,7 +73,7 @@ _UNPACK_2 = _struct.Struct("<3xHHx").unpack
 _MEMBERS_1 = _TABLES.members(GpsModeMode, 8)
 _UNPACK_3 = _struct.Struct("<3xBBHHhhHHHHx").unpack
 _MEMBERS_2 = _TABLES.members(StatusStatus, 8)
-_RUNS_0 = _fast.Runs(
+_BULK_0 = _fast.BulkCutter(
     start=b"\x55",
     end=b"",
     greatest=250,
@@ -94,14 +94,14 @@ _PACK_4 = _struct.Struct("<BBBBBHHhhHHHH").pack
 
 def _read_stop(data: bytes) -> Stop:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Stop)
     return item
 
 
 def _read_reset(data: bytes) -> Reset:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Reset)
     return item
 
@@ -140,14 +140,14 @@ def _read_gps_mode(data: bytes) -> GpsMode:
 
 def _read_ack(data: bytes) -> Ack:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Ack)
     return item
 
 
 def _read_nack(data: bytes) -> Nack:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Nack)
     return item
 
@@ -174,11 +174,11 @@ def _read_status(data: bytes) -> Status:
 def _read_gps(data: bytes) -> Gps:
     data = data[3:-1]
     if not 0 <= len(data) <= 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Gps)
     v1 = data
     if len(v1) > 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.nmea = v1.decode("latin-1")
     return item
 
@@ -188,7 +188,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:
@@ -255,30 +255,30 @@ _PC_HEADS = _fast.Heads(_head_pc)
 
 def _decode_pc(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x55:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.find(b"\x55", 1) > 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:]
     if 0x56 in content:
         if len(data) > 250:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")
         again = content.replace(b"\x56", b"\x56\xa9")
         again = again.replace(b"\x55", b"\x56\xaa")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[0]
     if not 4 <= len(content) == length + 2 <= 125:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _adler32(content, 0) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _PC_HEADS[content[1:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -328,7 +328,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:
@@ -392,30 +392,30 @@ _ESP_HEADS = _fast.Heads(_head_esp)
 
 def _decode_esp(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x55:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.find(b"\x55", 1) > 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:]
     if 0x56 in content:
         if len(data) > 250:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")
         again = content.replace(b"\x56", b"\x56\xa9")
         again = again.replace(b"\x55", b"\x56\xaa")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[0]
     if not 4 <= len(content) == length + 2 <= 125:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _adler32(content, 0) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _ESP_HEADS[content[1:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -462,7 +462,7 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
 
 def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 83)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -473,7 +473,7 @@ def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int |
 
 def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -484,7 +484,7 @@ def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int
 
 def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.mode
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -496,7 +496,7 @@ def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int |
 
 def _encode_go(item: Go, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     v2 = item.steer
     content = _PACK_2(6, counter_, 71, v1, v2)
@@ -509,7 +509,7 @@ def _encode_go(item: Go, module: object, sender: str | None, counter_: int | Non
 
 def _encode_limits(item: Limits, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.max_speed
     v2 = item.max_steer
     content = _PACK_2(6, counter_, 76, v1, v2)
@@ -522,7 +522,7 @@ def _encode_limits(item: Limits, module: object, sender: str | None, counter_: i
 
 def _encode_timing(item: Timing, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.period
     v2 = item.timeout
     content = _PACK_3(6, counter_, 84, v1, v2)
@@ -537,7 +537,7 @@ def _encode_gps_mode(
     item: GpsMode, module: object, sender: str | None, counter_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.mode
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -549,7 +549,7 @@ def _encode_gps_mode(
 
 def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -560,7 +560,7 @@ def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | N
 
 def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -571,7 +571,7 @@ def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int |
 
 def _encode_status(item: Status, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     v2 = item.mode
     v3 = item.voltage
@@ -592,14 +592,14 @@ def _encode_status(item: Status, module: object, sender: str | None, counter_: i
 
 def _encode_gps(item: Gps, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.nmea
     v2 = v1.encode("ascii")
     if len(v2) > 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v2
     if not 0 <= len(payload) <= 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(len(payload) + 2, counter_, 80) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:

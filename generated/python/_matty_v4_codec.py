@@ -85,7 +85,7 @@ _NUMBER_0 = _rt.Number(24, False, "little", False)
 _UNPACK_4 = _struct.Struct("<3xBBHHhhHHHHhhhx").unpack
 _MEMBERS_3 = _TABLES.members(StatusStatus, 8)
 _UNPACK_5 = _struct.Struct("<3xBBx").unpack
-_RUNS_0 = _fast.Runs(
+_BULK_0 = _fast.BulkCutter(
     start=b"\x55",
     end=b"",
     greatest=252,
@@ -115,7 +115,7 @@ def _read_stop(data: bytes) -> Stop:
 
 def _read_reset(data: bytes) -> Reset:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Reset)
     return item
 
@@ -154,7 +154,7 @@ def _read_gps_mode(data: bytes) -> GpsMode:
 
 def _read_version_query(data: bytes) -> VersionQuery:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(VersionQuery)
     return item
 
@@ -168,14 +168,14 @@ def _read_led(data: bytes) -> Led:
 
 def _read_ack(data: bytes) -> Ack:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Ack)
     return item
 
 
 def _read_nack(data: bytes) -> Nack:
     if len(data) != 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Nack)
     return item
 
@@ -205,11 +205,11 @@ def _read_status(data: bytes) -> Status:
 def _read_gps(data: bytes) -> Gps:
     data = data[3:-1]
     if not 0 <= len(data) <= 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Gps)
     v1 = data
     if len(v1) > 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.nmea = v1.decode("latin-1")
     return item
 
@@ -225,7 +225,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_pc, _PC_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:
@@ -294,30 +294,30 @@ _PC_HEADS = _fast.Heads(_head_pc)
 
 def _decode_pc(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x55:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.find(b"\x55", 1) > 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:]
     if 0x56 in content:
         if len(data) > 252:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")
         again = content.replace(b"\x56", b"\x56\xa9")
         again = again.replace(b"\x55", b"\x56\xaa")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[0]
     if not 4 <= len(content) == length + 2 <= 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _adler32(content, 0) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _PC_HEADS[content[1:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -367,7 +367,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_esp, _ESP_HEADS)
     add = events.append
     try:
         if data[at] != 0x55:
@@ -432,30 +432,30 @@ _ESP_HEADS = _fast.Heads(_head_esp)
 
 def _decode_esp(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x55:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data.find(b"\x55", 1) > 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:]
     if 0x56 in content:
         if len(data) > 252:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x56\xaa", b"\x55")
         content = content.replace(b"\x56\xa9", b"\x56")
         again = content.replace(b"\x56", b"\x56\xa9")
         again = again.replace(b"\x55", b"\x56\xaa")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[0]
     if not 4 <= len(content) == length + 2 <= 126:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _adler32(content, 0) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _ESP_HEADS[content[1:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -502,7 +502,7 @@ def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> by
 
 def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.mode
     content = _PACK_1(3, counter_, 83, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -514,7 +514,7 @@ def _encode_stop(item: Stop, module: object, sender: str | None, counter_: int |
 
 def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 82)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -525,7 +525,7 @@ def _encode_reset(item: Reset, module: object, sender: str | None, counter_: int
 
 def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.mode
     content = _PACK_1(3, counter_, 77, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -537,7 +537,7 @@ def _encode_mode(item: Mode, module: object, sender: str | None, counter_: int |
 
 def _encode_go(item: Go, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     v2 = item.steer
     content = _PACK_2(6, counter_, 71, v1, v2)
@@ -550,7 +550,7 @@ def _encode_go(item: Go, module: object, sender: str | None, counter_: int | Non
 
 def _encode_limits(item: Limits, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.max_speed
     v2 = item.max_steer
     content = _PACK_2(6, counter_, 76, v1, v2)
@@ -563,7 +563,7 @@ def _encode_limits(item: Limits, module: object, sender: str | None, counter_: i
 
 def _encode_timing(item: Timing, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.period
     v2 = item.timeout
     content = _PACK_3(6, counter_, 84, v1, v2)
@@ -578,7 +578,7 @@ def _encode_gps_mode(
     item: GpsMode, module: object, sender: str | None, counter_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.mode
     content = _PACK_1(3, counter_, 80, v1)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -592,7 +592,7 @@ def _encode_version_query(
     item: VersionQuery, module: object, sender: str | None, counter_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 86)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -603,11 +603,11 @@ def _encode_version_query(
 
 def _encode_led(item: Led, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "pc"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.index
     v2 = item.rgb
     if type(v2) is not int:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_4(6, counter_, 68, v1, _NUMBER_0.encode(v2))
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -618,7 +618,7 @@ def _encode_led(item: Led, module: object, sender: str | None, counter_: int | N
 
 def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 65)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -629,7 +629,7 @@ def _encode_ack(item: Ack, module: object, sender: str | None, counter_: int | N
 
 def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(2, counter_, 78)
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -640,7 +640,7 @@ def _encode_nack(item: Nack, module: object, sender: str | None, counter_: int |
 
 def _encode_status(item: Status, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     v2 = item.mode
     v3 = item.voltage
@@ -664,14 +664,14 @@ def _encode_status(item: Status, module: object, sender: str | None, counter_: i
 
 def _encode_gps(item: Gps, module: object, sender: str | None, counter_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.nmea
     v2 = v1.encode("ascii")
     if len(v2) > 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v2
     if not 0 <= len(payload) <= 121:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_0(len(payload) + 2, counter_, 80) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
     if 0x55 in content or 0x56 in content:
@@ -684,7 +684,7 @@ def _encode_version(
     item: Version, module: object, sender: str | None, counter_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "esp"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.serial_number
     v2 = item.version
     content = _PACK_6(4, counter_, 86, v1, v2)

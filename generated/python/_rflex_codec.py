@@ -119,7 +119,7 @@ _UNPACK_9 = _struct.Struct(">4xIx").unpack
 _UNPACK_10 = _struct.Struct(">4xIBHx").unpack
 _MEMBERS_6 = _fast.Members(IoValue)
 _UNPACK_11 = _struct.Struct(">4xIIIx").unpack
-_RUNS_0 = _fast.Runs(
+_BULK_0 = _fast.BulkCutter(
     start=b"\x1b\x02",
     end=b"\x1b\x03",
     greatest=782,
@@ -156,7 +156,7 @@ def _read_sonar_data_readings(data: bytes, at: int) -> SonarDataReadings:
 
 def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
     if type(item) is not SonarDataReadings:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.cluster
     v2 = item.distance
     return _PACK_0(v1, v2)
@@ -164,7 +164,7 @@ def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
 
 def _read_request_system_status(data: bytes) -> RequestSystemStatus:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(RequestSystemStatus)
     return item
 
@@ -199,14 +199,14 @@ def _read_confirm_motor_command(data: bytes) -> ConfirmMotorCommand:
 
 def _read_motor_0a(data: bytes) -> Motor0a:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Motor0a)
     return item
 
 
 def _read_motor_0c(data: bytes) -> Motor0c:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Motor0c)
     return item
 
@@ -247,7 +247,7 @@ def _read_confirm_start_stop_motor_packets(data: bytes) -> ConfirmStartStopMotor
 
 def _read_request_joystick_data(data: bytes) -> RequestJoystickData:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(RequestJoystickData)
     return item
 
@@ -275,7 +275,7 @@ def _read_confirm_start_stop_sonar_packets(data: bytes) -> ConfirmStartStopSonar
 def _read_sonar_data(data: bytes) -> SonarData:
     data = data[4:-1]
     if not 8 <= len(data) <= 254 or (len(data) - 8) % 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(SonarData)
     item.unknown, item.timestamp = _UNPACK_8(data, 0)
     v1: list[_typing.Any] = []
@@ -331,7 +331,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     together = 4
@@ -426,29 +426,29 @@ _LINUX_HEADS = _fast.Heads(_head_linux)
 
 def _decode_linux(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.startswith(b"\x1b\x02"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x1b\x03", 2)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
         if len(data) > 782:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x7c", b"\x7c\x1b\x01")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[3]
     if len(content) != length + 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     folded = _FROM_BYTES_0(content[4:], "little")
     if len(content) > 36:
         folded ^= folded >> 1024
@@ -459,10 +459,10 @@ def _decode_linux(data: bytes) -> _typing.Any:
     folded ^= folded >> 32
     folded ^= folded >> 16
     if (folded ^ folded >> 8) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _LINUX_HEADS[content[0:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -518,7 +518,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     together = 4
@@ -615,29 +615,29 @@ _FLEX_HEADS = _fast.Heads(_head_flex)
 
 def _decode_flex(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.startswith(b"\x1b\x02"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x1b\x03", 2)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
         if len(data) > 782:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x7c", b"\x7c\x1b\x01")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[3]
     if len(content) != length + 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     folded = _FROM_BYTES_0(content[4:], "little")
     if len(content) > 36:
         folded ^= folded >> 1024
@@ -648,10 +648,10 @@ def _decode_flex(data: bytes) -> _typing.Any:
     folded ^= folded >> 32
     folded ^= folded >> 16
     if (folded ^ folded >> 8) & 0xFF:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _FLEX_HEADS[content[0:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -706,7 +706,7 @@ def _encode_request_system_status(
     item: RequestSystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     content = _PACK_1(1, number_, 1, 0)
@@ -722,7 +722,7 @@ def _encode_system_status(
     item: SystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
@@ -744,7 +744,7 @@ def _encode_motor_00(
     item: Motor00, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -761,7 +761,7 @@ def _encode_motor_command(
     item: MotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.axis
@@ -785,7 +785,7 @@ def _encode_confirm_motor_command(
     item: ConfirmMotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -807,7 +807,7 @@ def _encode_motor_0a(
     item: Motor0a, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     content = _PACK_1(2, number_, 10, 0)
@@ -823,7 +823,7 @@ def _encode_motor_0c(
     item: Motor0c, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     content = _PACK_1(2, number_, 12, 0)
@@ -839,7 +839,7 @@ def _encode_motor_0c_answer(
     item: Motor0cAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -859,7 +859,7 @@ def _encode_read_motor(
     item: ReadMotor, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -886,7 +886,7 @@ def _encode_start_stop_motor_packets(
     item: StartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
@@ -906,7 +906,7 @@ def _encode_confirm_start_stop_motor_packets(
     item: ConfirmStartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -926,7 +926,7 @@ def _encode_request_joystick_data(
     item: RequestJoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     content = _PACK_1(3, number_, 0, 0)
@@ -942,7 +942,7 @@ def _encode_joystick_data(
     item: JoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
@@ -965,7 +965,7 @@ def _encode_start_stop_sonar_packets(
     item: StartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.frequency
@@ -988,7 +988,7 @@ def _encode_confirm_start_stop_sonar_packets(
     item: ConfirmStartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -1008,18 +1008,18 @@ def _encode_sonar_data(
     item: SonarData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.unknown
     v2 = item.timestamp
     v3 = item.readings
     if type(v3) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v3) > 82:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     values4: list[_typing.Any] = [v1, v2]
     for each in v3:
         if type(each) is not SonarDataReadings:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         values4 += (each.cluster, each.distance)
     payload = _PACKERS_0[len(v3)](*values4)
     if number_ is None:
@@ -1045,7 +1045,7 @@ def _encode_initialize_digital_io(
     item: InitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -1063,7 +1063,7 @@ def _encode_confirm_initialize_digital_io(
     item: ConfirmInitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -1083,7 +1083,7 @@ def _encode_changed_bumpers(
     item: ChangedBumpers, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
@@ -1104,7 +1104,7 @@ def _encode_check_io_changed(
     item: CheckIoChanged, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp
@@ -1122,7 +1122,7 @@ def _encode_check_io_changed_answer(
     item: CheckIoChangedAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.unknown
@@ -1144,7 +1144,7 @@ def _encode_changed_byte(
     item: ChangedByte, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 255
     v1 = item.timestamp

@@ -129,7 +129,7 @@ _UNPACK_11 = _struct.Struct(">4xIBHx").unpack
 _UNPACK_12 = _struct.Struct(">4xIIIx").unpack
 _UNPACK_13 = _struct.Struct(">4xIIIIIBx").unpack
 _MEMBERS_6 = _TABLES.members(IrRunMode, 8)
-_RUNS_0 = _fast.Runs(
+_BULK_0 = _fast.BulkCutter(
     start=b"\x1b\x02",
     end=b"\x1b\x03",
     greatest=780,
@@ -167,7 +167,7 @@ def _read_sonar_data_readings(data: bytes, at: int) -> SonarDataReadings:
 
 def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
     if type(item) is not SonarDataReadings:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.cluster
     v2 = item.distance
     return _PACK_0(v1, v2)
@@ -175,7 +175,7 @@ def _write_sonar_data_readings(item: SonarDataReadings) -> bytes:
 
 def _read_request_system_status(data: bytes) -> RequestSystemStatus:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(RequestSystemStatus)
     return item
 
@@ -190,19 +190,19 @@ def _read_system_status(data: bytes) -> SystemStatus:
 def _read_lcd_dump(data: bytes) -> LcdDump:
     data = data[4:-1]
     if not 6 <= len(data) <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(LcdDump)
     item.timestamp, item.row, item.byte_count = _UNPACK_2(data, 0)
     if item.byte_count < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end2 = 6 + item.byte_count
     if end2 > len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = data[6:end2]
     at = end2
     item.pixels = v1
     if at != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return item
 
 
@@ -230,21 +230,21 @@ def _read_confirm_motor_command(data: bytes) -> ConfirmMotorCommand:
 
 def _read_set_defaults(data: bytes) -> SetDefaults:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(SetDefaults)
     return item
 
 
 def _read_brake_set(data: bytes) -> BrakeSet:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(BrakeSet)
     return item
 
 
 def _read_brake_release(data: bytes) -> BrakeRelease:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(BrakeRelease)
     return item
 
@@ -285,7 +285,7 @@ def _read_confirm_start_stop_motor_packets(data: bytes) -> ConfirmStartStopMotor
 
 def _read_request_joystick_data(data: bytes) -> RequestJoystickData:
     if len(data) != 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(RequestJoystickData)
     return item
 
@@ -313,7 +313,7 @@ def _read_confirm_start_stop_sonar_packets(data: bytes) -> ConfirmStartStopSonar
 def _read_sonar_data(data: bytes) -> SonarData:
     data = data[4:-1]
     if not 8 <= len(data) <= 254 or (len(data) - 8) % 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(SonarData)
     item.retval, item.timestamp = _UNPACK_9(data, 0)
     v1: list[_typing.Any] = []
@@ -379,11 +379,11 @@ def _read_ir_run(data: bytes) -> IrRun:
 def _read_ir_report(data: bytes) -> IrReport:
     data = data[4:-1]
     if not 1 <= len(data) <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(IrReport)
     v1 = data
     if len(v1) > 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.data = v1
     return item
 
@@ -393,7 +393,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     together = 4
@@ -481,34 +481,34 @@ _LINUX_HEADS = _fast.Heads(_head_linux)
 
 def _decode_linux(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.startswith(b"\x1b\x02"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x1b\x03", 2)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
         if len(data) > 780:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x7c", b"\x7c\x1b\x01")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[3]
     if len(content) != length + 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _checksum.xor_of(content):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _LINUX_HEADS[content[0:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -564,7 +564,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     if not _TABLES.are_filled:
         _TABLES.fill()
     if size - at > 2048:
-        at = _RUNS_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
+        at = _BULK_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
     unchecked: list[bytes] = []
     together = 4
@@ -654,34 +654,34 @@ _FLEX_HEADS = _fast.Heads(_head_flex)
 
 def _decode_flex(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not data.startswith(b"\x1b\x02"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x1b\x03", 2)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[2:-2]
     if 0x1B in content or 0x7C in content:
         if len(data) > 780:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         stuffed = content
         content = content.replace(b"\x7c\x1b\x01", b"\x7c")
         content = content.replace(b"\x1b\x00", b"\x1b")
         again = content.replace(b"\x1b", b"\x1b\x00")
         again = again.replace(b"\x7c", b"\x7c\x1b\x01")
         if again != stuffed:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
     length = content[3]
     if len(content) != length + 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if _checksum.xor_of(content):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _FLEX_HEADS[content[0:3]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -736,7 +736,7 @@ def _encode_request_system_status(
     item: RequestSystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(1, number_, 1, 0)
@@ -751,7 +751,7 @@ def _encode_system_status(
     item: SystemStatus, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.timestamp
@@ -769,18 +769,18 @@ def _encode_lcd_dump(
     item: LcdDump, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.timestamp
     v2 = item.row
     v3 = item.byte_count
     v4 = item.pixels
     if type(v4) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v4) != v3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = b"".join((_PACK_3(v1, v2, v3), v4))
     if not 6 <= len(payload) <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(1, number_, 0, len(payload)) + payload
@@ -795,7 +795,7 @@ def _encode_axis_get_system(
     item: AxisGetSystem, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.axis
@@ -811,7 +811,7 @@ def _encode_motor_command(
     item: MotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.axis
@@ -831,7 +831,7 @@ def _encode_confirm_motor_command(
     item: ConfirmMotorCommand, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -849,7 +849,7 @@ def _encode_set_defaults(
     item: SetDefaults, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(2, number_, 10, 0)
@@ -864,7 +864,7 @@ def _encode_brake_set(
     item: BrakeSet, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(2, number_, 11, 0)
@@ -879,7 +879,7 @@ def _encode_brake_release(
     item: BrakeRelease, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(2, number_, 12, 0)
@@ -894,7 +894,7 @@ def _encode_brake_release_answer(
     item: BrakeReleaseAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -911,7 +911,7 @@ def _encode_read_motor(
     item: ReadMotor, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -933,7 +933,7 @@ def _encode_start_stop_motor_packets(
     item: StartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.period
@@ -950,7 +950,7 @@ def _encode_confirm_start_stop_motor_packets(
     item: ConfirmStartStopMotorPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -967,7 +967,7 @@ def _encode_request_joystick_data(
     item: RequestJoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(3, number_, 0, 0)
@@ -982,7 +982,7 @@ def _encode_joystick_data(
     item: JoystickData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.timestamp
@@ -1001,7 +1001,7 @@ def _encode_start_stop_sonar_packets(
     item: StartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.echo_delay
@@ -1020,7 +1020,7 @@ def _encode_confirm_start_stop_sonar_packets(
     item: ConfirmStartStopSonarPackets, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -1037,18 +1037,18 @@ def _encode_sonar_data(
     item: SonarData, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.retval
     v2 = item.timestamp
     v3 = item.readings
     if type(v3) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v3) > 82:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     values4: list[_typing.Any] = [v1, v2]
     for each in v3:
         if type(each) is not SonarDataReadings:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         values4 += (each.cluster, each.distance)
     payload = _PACKERS_0[len(v3)](*values4)
     if number_ is None:
@@ -1065,7 +1065,7 @@ def _encode_initialize_digital_io(
     item: InitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.period
@@ -1081,7 +1081,7 @@ def _encode_confirm_initialize_digital_io(
     item: ConfirmInitializeDigitalIo, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -1098,7 +1098,7 @@ def _encode_changed_bumpers(
     item: ChangedBumpers, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.timestamp
@@ -1116,7 +1116,7 @@ def _encode_check_io_changed(
     item: CheckIoChanged, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.timestamp
@@ -1132,7 +1132,7 @@ def _encode_check_io_changed_answer(
     item: CheckIoChangedAnswer, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.retval
@@ -1150,7 +1150,7 @@ def _encode_changed_byte(
     item: ChangedByte, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.timestamp
@@ -1166,7 +1166,7 @@ def _encode_changed_byte(
 
 def _encode_ir_run(item: IrRun, module: object, sender: str | None, number_: int | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "linux"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     v1 = item.unknown_1
@@ -1187,15 +1187,15 @@ def _encode_ir_report(
     item: IrReport, module: object, sender: str | None, number_: int | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "flex"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.data
     if type(v1) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) > 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = v1
     if not 1 <= len(payload) <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if number_ is None:
         number_ = 0
     content = _PACK_1(6, number_, 1, len(payload)) + payload

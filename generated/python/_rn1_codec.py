@@ -118,10 +118,10 @@ def _read_maintenance_argument_reconfig_uart(
 
 def _write_maintenance_argument_reconfig_uart(item: MaintenanceArgumentReconfigUart) -> bytes:
     if type(item) is not MaintenanceArgumentReconfigUart:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.baud_rate_register
     if type(v1) is not int:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return _PACK_0(_NUMBER_0.encode(v1))
 
 
@@ -131,7 +131,7 @@ def _read_maintenance_argument_run_motor_controller_flasher(
     item = _new(MaintenanceArgumentRunMotorControllerFlasher)
     v1 = data[at]
     if v1 >> 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.motor_controller = v1
     return item
 
@@ -140,12 +140,12 @@ def _write_maintenance_argument_run_motor_controller_flasher(
     item: MaintenanceArgumentRunMotorControllerFlasher
 ) -> bytes:
     if type(item) is not MaintenanceArgumentRunMotorControllerFlasher:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return _PACK_1(v1)
 
 
@@ -175,11 +175,11 @@ def _read_move_relative_arc(data: bytes) -> MoveRelativeArc:
 
 def _read_maintenance(data: bytes) -> Maintenance:
     if not 4 <= len(data) <= 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Maintenance)
     item.magic = list(_UNPACK_3(data, 0))
     if item.magic != [66, 17, 122]:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = data[3]
     item.operation = _MEMBERS_0[v3]
     at = 4
@@ -197,13 +197,13 @@ def _read_maintenance(data: bytes) -> Maintenance:
     else:
         case4 = data[at :]
         if len(case4) > 3:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if not case4.isascii():
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         at = len(data)
     item.argument = case4
     if at != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return item
 
 
@@ -249,26 +249,26 @@ def _read_optflow(data: bytes) -> Optflow:
 
 def _read_lidar(data: bytes) -> Lidar:
     if len(data) != 721:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Lidar)
     v1 = data[0]
     item.status = _MEMBERS_4[v1]
     v2 = _PAIR_LIST_0(data[1 : 721])
     if len(v2) != 360:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.distances = v2
     return item
 
 
 def _read_sonar(data: bytes) -> Sonar:
     if len(data) != 15:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Sonar)
     v1 = data[0]
     item.status = _MEMBERS_5[v1]
     v2 = _PAIR_LIST_0(data[1 : 15])
     if len(v2) != 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.distances = v2
     return item
 
@@ -335,26 +335,26 @@ _HOST_HEADS = _fast.Heads(_head_host)
 
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not 0x80 <= data[0] <= 0xFE:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\xff", 0)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 9:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if len(content) < 1:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = content[1:]
     if not payload.isascii():
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, payload_size, read = _HOST_HEADS[content[0:1]]
     if 0 <= payload_size != len(payload):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -428,14 +428,14 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
 
 def _decode_brain(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     frame_size, read, _ = _BRAIN_KINDS[data[0]]
     end = frame_size
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = data[1:]
     if not payload.isascii():
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -464,13 +464,13 @@ def _frame_brain(payload: bytes, start_: int | None) -> bytes:
 
 def _encode_move_manual(item: MoveManual, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     if v1 < -64 or v1 > 63:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.arc
     if v2 < -64 or v2 > 63:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_3(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
@@ -479,202 +479,202 @@ def _encode_move_relative_twostep(
     item: MoveRelativeTwostep, module: object, sender: str | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.angle
     if v1 < -8192 or v1 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.forward
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_4(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
 def _encode_move_relative_arc(item: MoveRelativeArc, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.angle
     if v1 < -8192 or v1 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.forward
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_4(130, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
 
 def _encode_maintenance(item: Maintenance, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.magic
     if type(v1) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2: list[bytes] = []
     for each3 in v1:
         if each3 < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         v2.append(_PACK_1(each3))
     if v1 != [66, 17, 122]:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.operation
     if v4 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v5 = item.argument
     if v4 in (81, 82):
         if v5 is not None:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = b""
     elif v4 == 65:
         if type(v5) is not MaintenanceArgumentReconfigUart:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         v7 = v5.baud_rate_register
         if type(v7) is not int:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = _PACK_0(_NUMBER_0.encode(v7))
     elif v4 == 83:
         if type(v5) is not MaintenanceArgumentRunMotorControllerFlasher:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         v8 = v5.motor_controller
         if not 1 <= v8 <= 4:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if v8 < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = _PACK_1(v8)
     else:
         if type(v5) is not bytes:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if len(v5) > 3:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if not v5.isascii():
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = v5
     payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
     if not 4 <= len(payload) <= 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_2(254) + payload
     return content + b"\xff"
 
 
 def _encode_gyro(item: Gyro, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.int_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.int_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.int_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_xcel(item: Xcel, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.int_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.int_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.int_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.avg_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.avg_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.avg_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_optflow(item: Optflow, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.dx
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.dy
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.q
     if v4 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_6(131, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], v4)
     return content
 
 
 def _encode_lidar(item: Lidar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.distances
     if type(v2) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v2) != 360:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_7(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.distances
     if type(v2) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v2) != 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_7(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_facing(item: Facing, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.heading
     if v2 < 0 or v2 > 16383:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.speed
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_8(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 

@@ -120,7 +120,7 @@ def _read_maintenance_argument_run_motor_controller_flasher(
     item = _new(MaintenanceArgumentRunMotorControllerFlasher)
     v1 = data[at]
     if v1 >> 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.motor_controller = v1
     return item
 
@@ -129,12 +129,12 @@ def _write_maintenance_argument_run_motor_controller_flasher(
     item: MaintenanceArgumentRunMotorControllerFlasher
 ) -> bytes:
     if type(item) is not MaintenanceArgumentRunMotorControllerFlasher:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.motor_controller
     if not 1 <= v1 <= 4:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return _PACK_0(v1)
 
 
@@ -170,11 +170,11 @@ def _read_increase_phase_angle(data: bytes) -> IncreasePhaseAngle:
 
 def _read_maintenance(data: bytes) -> Maintenance:
     if not 4 <= len(data) <= 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Maintenance)
     item.magic = list(_UNPACK_3(data, 0))
     if item.magic != [66, 17, 122]:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = data[3]
     item.operation = _MEMBERS_0[v3]
     at = 4
@@ -188,13 +188,13 @@ def _read_maintenance(data: bytes) -> Maintenance:
     else:
         case4 = data[at :]
         if len(case4) > 1:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if not case4.isascii():
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         at = len(data)
     item.argument = case4
     if at != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return item
 
 
@@ -230,26 +230,26 @@ def _read_compass(data: bytes) -> Compass:
 
 def _read_lidar(data: bytes) -> Lidar:
     if len(data) != 721:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Lidar)
     v1 = data[0]
     item.status = _MEMBERS_4[v1]
     v2 = _PAIR_LIST_0(data[1 : 721])
     if len(v2) != 360:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.distances = v2
     return item
 
 
 def _read_sonar(data: bytes) -> Sonar:
     if len(data) != 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(Sonar)
     v1 = data[0]
     item.status = _MEMBERS_5[v1]
     v2 = _PAIR_LIST_0(data[1 : 7])
     if len(v2) != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item.distances = v2
     return item
 
@@ -343,26 +343,26 @@ _HOST_HEADS = _fast.Heads(_head_host)
 
 def _decode_host(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not 0x80 <= data[0] <= 0xFE:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\xff", 0)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 7:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[:-1]
     if len(content) < 1:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = content[1:]
     if not payload.isascii():
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, payload_size, read = _HOST_HEADS[content[0:1]]
     if 0 <= payload_size != len(payload):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -438,14 +438,14 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
 
 def _decode_brain(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     frame_size, read, _ = _BRAIN_KINDS[data[0]]
     end = frame_size
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     payload = data[1:]
     if not payload.isascii():
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(payload)
 
 
@@ -474,13 +474,13 @@ def _frame_brain(payload: bytes, start_: int | None) -> bytes:
 
 def _encode_move_manual(item: MoveManual, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.speed
     if v1 < -64 or v1 > 63:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.arc
     if v2 < -64 or v2 > 63:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_2(128, _BYTE_CODES_0[v1], _BYTE_CODES_0[v2])
     return content + b"\xff"
 
@@ -489,13 +489,13 @@ def _encode_move_relative_twostep(
     item: MoveRelativeTwostep, module: object, sender: str | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.angle
     if v1 < -8192 or v1 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.forward
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_3(129, _BYTE_CODES_1[v1], _BYTE_CODES_1[v2])
     return content + b"\xff"
 
@@ -504,10 +504,10 @@ def _encode_decrease_phase_angle(
     item: DecreasePhaseAngle, module: object, sender: str | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.ignored
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_4(209, v1)
     return content + b"\xff"
 
@@ -516,176 +516,176 @@ def _encode_increase_phase_angle(
     item: IncreasePhaseAngle, module: object, sender: str | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.ignored
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_4(210, v1)
     return content + b"\xff"
 
 
 def _encode_maintenance(item: Maintenance, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "host"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.magic
     if type(v1) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v1) != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2: list[bytes] = []
     for each3 in v1:
         if each3 < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         v2.append(_PACK_0(each3))
     if v1 != [66, 17, 122]:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.operation
     if v4 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v5 = item.argument
     if v4 in (82,):
         if v5 is not None:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = b""
     elif v4 == 83:
         if type(v5) is not MaintenanceArgumentRunMotorControllerFlasher:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         v7 = v5.motor_controller
         if not 1 <= v7 <= 4:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if v7 < 0:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = _PACK_0(v7)
     else:
         if type(v5) is not bytes:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if len(v5) > 1:
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         if not v5.isascii():
-            raise _fast.Unclear
+            raise _fast.NeedsReference
         case6 = v5
     payload = b"".join((b"".join(v2), _PACK_0(v4), case6))
     if not 4 <= len(payload) <= 5:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_1(254) + payload
     return content + b"\xff"
 
 
 def _encode_gyro(item: Gyro, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.int_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.int_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.int_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(128, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_xcel(item: Xcel, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.int_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.int_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.int_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(129, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_compass(item: Compass, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.avg_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.avg_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.avg_z
     if v4 < -8192 or v4 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_5(130, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3], _BYTE_CODES_1[v4])
     return content
 
 
 def _encode_lidar(item: Lidar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.distances
     if type(v2) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v2) != 360:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_4(132, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_sonar(item: Sonar, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.distances
     if type(v2) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v2) != 3:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_4(133, v1), _PAIR_LIST_1(v2)))
     return content
 
 
 def _encode_facing(item: Facing, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.heading
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.speed
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_6(160, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
 
 def _encode_optflow_integral(item: OptflowIntegral, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.status
     if v1 < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.int_x
     if v2 < -8192 or v2 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.int_y
     if v3 < -8192 or v3 > 8191:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_7(161, v1, _BYTE_CODES_1[v2], _BYTE_CODES_1[v3])
     return content
 
@@ -694,23 +694,23 @@ def _encode_motor_controller_message(
     item: MotorControllerMessage, module: object, sender: str | None
 ) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.last_msg
     if v1 < 0 or v1 > 16383:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_8(209, _BYTE_CODES_1[v1])
     return content
 
 
 def _encode_debug_numbers(item: DebugNumbers, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "brain"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.dbg1
     v2 = item.dbg2
     v3 = item.dbg3
     v4 = item.dbg4
     if not (type(v1) is type(v2) is type(v3) is type(v4) is int):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = _PACK_9(
         210,
         _NUMBER_0.encode(v1),

@@ -65,7 +65,7 @@ _PACK_5 = _struct.Struct(">BBhhh").pack
 def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
     data = data[2:]
     if len(data) != 21:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(MotorsServosLeds)
     item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
     item.servos = list(_UNPACK_1(data, 4))
@@ -77,7 +77,7 @@ def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
 def _read_motors_two_servos(data: bytes) -> MotorsTwoServos:
     data = data[2:]
     if len(data) != 8:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(MotorsTwoServos)
     item.motor_1, item.motor_2 = _UNPACK_0(data, 0)
     item.servos = list(_UNPACK_2(data, 4))
@@ -149,25 +149,25 @@ _DAEMON_HEADS = _fast.Heads(_head_daemon)
 
 def _decode_daemon(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x62:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x65", 1)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
     if not 2 <= len(content) == length <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _DAEMON_HEADS[content[1:2]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -253,25 +253,25 @@ _BOARD_HEADS = _fast.Heads(_head_board)
 
 def _decode_board(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x62:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x65", 1)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
     if not 2 <= len(content) == length <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _BOARD_HEADS[content[1:2]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -308,14 +308,14 @@ def _frame_board(payload: bytes, type_: int | None) -> bytes:
 
 def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "daemon"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.motor_1
     v2 = item.motor_2
     v3 = item.servos
     if type(v3) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v3) != 8:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.leds
     content = b"".join((_PACK_2(23, 0, v1, v2), _PACK_1(*v3), _PACK_3(v4)))
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
@@ -323,21 +323,21 @@ def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: s
 
 def _encode_motors_two_servos(item: MotorsTwoServos, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "daemon"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.motor_1
     v2 = item.motor_2
     v3 = item.servos
     if type(v3) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v3) != 2:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = b"".join((_PACK_2(10, 1, v1, v2), _PACK_4(*v3)))
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
 
 
 def _encode_motor_test(item: MotorTest, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "daemon"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.motor_1
     v2 = item.motor_2
     content = _PACK_2(6, 3, v1, v2)
@@ -346,7 +346,7 @@ def _encode_motor_test(item: MotorTest, module: object, sender: str | None) -> b
 
 def _encode_status(item: Status, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "board"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.voltage
     v2 = item.current
     v3 = item.temperature

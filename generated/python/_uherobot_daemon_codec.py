@@ -58,7 +58,7 @@ _PACK_4 = _struct.Struct(">BBhhHHHH").pack
 def _read_motors_servos_leds(data: bytes) -> MotorsServosLeds:
     data = data[2:]
     if len(data) != 21:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     item = _new(MotorsServosLeds)
     item.right_motor, item.left_motor = _UNPACK_0(data, 0)
     item.servos = list(_UNPACK_1(data, 4))
@@ -131,25 +131,25 @@ _DAEMON_HEADS = _fast.Heads(_head_daemon)
 
 def _decode_daemon(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x62:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x0a", 1)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 1
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 512:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:-1]
     content = _STUFFING_0.decode(content)
     length = content[0]
     if not 2 <= len(content) == length <= 255:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _DAEMON_HEADS[content[1:2]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -235,25 +235,25 @@ _BOARD_HEADS = _fast.Heads(_head_board)
 
 def _decode_board(data: bytes) -> _typing.Any:
     if type(data) is not bytes:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if data[0] != 0x62:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end = data.find(b"\x0d\x0a", 1)
     if end < 0:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     end += 2
     if end != len(data):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(data) > 517:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     content = data[1:-2]
     content = _STUFFING_0.decode(content)
     length = content[1]
     if len(content) != length + 2:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     _, read = _BOARD_HEADS[content[0:1]]
     if read is None:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     return read(content)
 
 
@@ -289,20 +289,20 @@ def _frame_board(payload: bytes, type_: int | None) -> bytes:
 
 def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "daemon"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.right_motor
     if not -3200 <= v1 <= 3200:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v2 = item.left_motor
     if not -3200 <= v2 <= 3200:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v3 = item.servos
     if type(v3) is not list:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if len(v3) != 8:
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     if not all(0 <= each <= 250 for each in v3):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v4 = item.leds
     content = b"".join((_PACK_2(23, 0, v1, v2), _PACK_1(*v3), _PACK_3(v4)))
     return b"\x62" + _STUFFING_0.encode(content) + b"\x0a"
@@ -310,7 +310,7 @@ def _encode_motors_servos_leds(item: MotorsServosLeds, module: object, sender: s
 
 def _encode_status(item: Status, module: object, sender: str | None) -> bytes:
     if module is not _ENCODERS or (sender is not None and sender != "board"):
-        raise _fast.Unclear
+        raise _fast.NeedsReference
     v1 = item.reserved
     v2 = item.pcb_temperature
     v3 = item.cpu_current

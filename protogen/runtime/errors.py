@@ -68,7 +68,7 @@ class PayloadFault(Exception):  # noqa: N818 - `constructs.PayloadError` is the 
     missing: int
 
 
-class Unclear(Exception):  # noqa: N818 - it is no error: the reference decides
+class NeedsReference(Exception):  # noqa: N818 - it is no error: the reference decides
     """These bytes or values are not plainly in order."""
 
 

@@ -10,9 +10,10 @@ import struct
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol, TypeVar
 
+from protogen.runtime.bulk_cut import BulkCutter
 from protogen.runtime.decoder import octets
 from protogen.runtime.enums import KEPT, Flags, OpenEnum
-from protogen.runtime.errors import ANYTHING, Unclear
+from protogen.runtime.errors import ANYTHING, NeedsReference
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.extraction import payload_of
 from protogen.runtime.formats import frame_formats
@@ -33,15 +34,15 @@ AnyT = TypeVar("AnyT")
 __all__ = [
     "ANYTHING",
     "BYTES",
+    "BulkCutter",
     "Heads",
     "Members",
+    "NeedsReference",
     "Packers",
     "PairLists",
     "Pairs",
-    "Runs",
     "SevenBitFloat",
     "Tables",
-    "Unclear",
     "add_encoders",
     "add_readers",
     "add_writers",
@@ -71,13 +72,13 @@ def unknown(
 
 
 def checked(wire: bytes, cut: Cutter) -> bytes:
-    """The frame, if a decoder takes exactly these bytes for it. Raises Unclear.
+    """The frame, if a decoder takes exactly these bytes for it. Raises NeedsReference.
 
     Then it finds the same payload in them, for all other parts have their sizes.
     """
     events: list[Any] = []
     if cut(wire, 0, 0, events) != len(wire) or len(events) != 1:
-        raise Unclear
+        raise NeedsReference
     return wire
 
 
@@ -116,7 +117,7 @@ def _reader(
 
     def read_payload(payload: bytes) -> Any:
         if len(payload) not in sizes or (is_ascii and not payload.isascii()):
-            raise Unclear
+            raise NeedsReference
         if tables is not None and not tables.are_filled:
             tables.fill()
         return read(front + payload + behind)
@@ -159,24 +160,6 @@ def _writer(
         return payload_of(sender, message.__encode__(encoders, sender.name, *parts))
 
     return write_payload
-
-
-class Runs:
-    """Runs of frames of one message, which are taken by `runs.py`: imported with the first."""
-
-    def __init__(self, **given: Any) -> None:
-        self.given = given
-        """What `StuffedRuns` is given."""
-
-    def take(
-        self, data: bytes, at: int, base: int, events: list[Any], cut: Cutter, heads: Heads
-    ) -> int:
-        """Add the events of runs from `at` on; the place of the first byte that is in none."""
-        from protogen.runtime.runs import StuffedRuns
-
-        runs = StuffedRuns(**self.given)
-        self.take = runs.take  # type: ignore[method-assign]
-        return runs.take(data, at, base, events, cut, heads)
 
 
 # --- named values -------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from contextlib import suppress
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from protogen.runtime.errors import DecodeError, EncodeError, PayloadFault, Unclear
+from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
 from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class Message(Record):
         A module gives each of its messages its own. Mocks, which have whatever they are asked for,
         have nothing that is called in this way.
         """
-        raise Unclear
+        raise NeedsReference
 
     def to_payload(self, strict: bool = True) -> bytes:
         """The payload's bytes.

@@ -8,7 +8,7 @@ from array import array
 from collections.abc import Sequence
 from functools import lru_cache
 
-from protogen.runtime.errors import Unclear
+from protogen.runtime.errors import NeedsReference
 from protogen.runtime.number import ByteOrder, Number
 from protogen.runtime.values import Frozen
 
@@ -83,15 +83,15 @@ class PairLists(Frozen):
         self._set(bits, signed, order)
 
     def decode(self, data: bytes) -> list[int]:
-        """The integers of an even number of bytes. Raises Unclear."""
+        """The integers of an even number of bytes. Raises NeedsReference."""
         if not data.isascii():
-            raise Unclear
+            raise NeedsReference
         count = len(data) // 2
         low, _, above, sign = _lanes(self.bits, count)
         great = int.from_bytes(data if self.order == "little" else _exchanged(data), "little")
         lanes = great + (great & low) >> 1  # Twice the lower 7 bits, and 256 times the upper.
         if self.bits < 14 and lanes & above:
-            raise Unclear
+            raise NeedsReference
         if self.signed:
             # The sign bit is copied into all bits above it.
             lanes += (lanes & sign) * ((0x10000 >> self.bits - 1) - 2)
@@ -103,7 +103,7 @@ class PairLists(Frozen):
         return values.tolist()
 
     def encode(self, values: Sequence[int]) -> bytes:
-        """The bytes of integers. Raises Unclear, or struct.error."""
+        """The bytes of integers. Raises NeedsReference, or struct.error."""
         count = len(values)
         plain = struct.pack(f"<{count}{'h' if self.signed else 'H'}", *values)
         _, high, above, _ = _lanes(self.bits, count)
@@ -115,7 +115,7 @@ class PairLists(Frozen):
         else:
             beside = lanes & above
         if beside:
-            raise Unclear
+            raise NeedsReference
         great = lanes + (lanes & high)  # The upper 7 bits once more.
         data = great.to_bytes(2 * count, "little")
         return data if self.order == "little" else _exchanged(data)

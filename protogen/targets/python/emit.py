@@ -10,7 +10,7 @@ from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
 from protogen.targets.printing import environment
-from protogen.targets.python.fast.view import fast_view
+from protogen.targets.python.engine.view import fast_view
 from protogen.targets.python.kept import Kept
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring

@@ -22,8 +22,8 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Octets, Struct
-from protogen.targets.python.fast.converting import Converter
-from protogen.targets.python.fast.layout import (
+from protogen.targets.python.engine.converting import Converter
+from protogen.targets.python.engine.layout import (
     array_code,
     code_of,
     common_order,
@@ -34,8 +34,8 @@ from protogen.targets.python.fast.layout import (
     outer_names,
     outside,
 )
-from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.fast.place import Place
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.place import Place
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import tuple_of
 from protogen.targets.python.spelling import class_name
@@ -314,7 +314,7 @@ class _Reader(Converter):
 
     def _rest(self, target: str, rest: RestStep | None) -> None:
         if rest is None:
-            self.lines.add("raise _fast.Unclear")
+            self.lines.add("raise _fast.NeedsReference")
             return
         self.lines.add(f"{target} = data[{self.place.text} :]")
         self.lines.refuse_if(f"len({target}) > {rest.greatest}")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from protogen.model.frame import LengthPart, LiteralPart, NumberPart
 from protogen.model.framing import StartSet
 from protogen.model.types import Integer
-from protogen.targets.python.fast.frames import FastFrame
-from protogen.targets.python.fast.lines import Lines
-from protogen.targets.python.fast.place import Place
+from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.lines import Lines
+from protogen.targets.python.engine.place import Place
 
 
 class FrameFunction:

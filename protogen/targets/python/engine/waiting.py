@@ -9,9 +9,9 @@ from __future__ import annotations
 from protogen.model.frame import LengthPart, LiteralPart, NumberPart, Part
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
 from protogen.targets.python import frames as tables
-from protogen.targets.python.fast.frames import FastFrame
-from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.fast.numbers import FrameFunction
+from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.targets.python.fast import cutting, framing, waiting
-from protogen.targets.python.fast.frames import FastFrame, Kin
-from protogen.targets.python.fast.layout import outer_names
-from protogen.targets.python.fast.lines import Constants
-from protogen.targets.python.fast.reading import message_reader, struct_reader
-from protogen.targets.python.fast.writing import struct_writer
+from protogen.targets.python.engine import cutting, framing, waiting
+from protogen.targets.python.engine.frames import FastFrame, Kin
+from protogen.targets.python.engine.layout import outer_names
+from protogen.targets.python.engine.lines import Constants
+from protogen.targets.python.engine.reading import message_reader, struct_reader
+from protogen.targets.python.engine.writing import struct_writer
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, mapping, text, tuple_of
 from protogen.targets.python.spelling import class_name
@@ -230,7 +230,7 @@ def _overload(frame: FastFrame, kin: Kin) -> Function:
     for message in kin.messages:
         body.append(f"if {size} in {class_name(message.name)}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
-    body.append("raise _fast.Unclear")
+    body.append("raise _fast.NeedsReference")
     return _function(cutting.reader_of(frame, kin), "data: bytes", given, tuple(body))
 
 

@@ -74,7 +74,7 @@ class Lines:
     def refuse_if(self, condition: str) -> None:
         """Leave it to the reference where the condition holds."""
         self.add(f"if {condition}:")
-        self.add(f"{_INDENT}raise _fast.Unclear")
+        self.add(f"{_INDENT}raise _fast.NeedsReference")
 
     def local(self, kind: str = "v") -> str:
         """A fresh local name."""

@@ -1,7 +1,7 @@
-"""Frames of one message, one behind another, taken all at once.
+"""Cut runs of equal frames in one step. Frames that differ go to the one-by-one cutter.
 
-The first of them is cut as any other; the rest has to be like it in all but its payload and a
-counter of one byte. What is not plainly so is left to the cutter, which takes it frame by frame.
+Equal frames have the same content but for payload, checksum and a counter of one byte. The cutter
+takes the first frame of a run; the others are compared with it.
 """
 
 from __future__ import annotations
@@ -12,49 +12,49 @@ from typing import Any
 from zlib import adler32
 
 from protogen.runtime.checksum import are_sound
-from protogen.runtime.errors import ANYTHING, Unclear
+from protogen.runtime.errors import ANYTHING, NeedsReference
 from protogen.runtime.events import MessageEvent
 from protogen.runtime.number import BYTES
 from protogen.runtime.sender import Cutter
 
-LONG = 2048
-"""In so many bytes it is worth looking for runs."""
+MIN_DATA = 2048
+"""Bytes of input below which no run is looked for."""
 
-_FIRST, _WINDOW = 1024, 8192
-"""So many bytes are looked at together at first, and at most: twice as many after each run.
+_FIRST_WINDOW, _MAX_WINDOW = 1024, 8192
+"""Bytes that are searched for a run at once.
 
-So what is done in vain, where they are no run, is in proportion to what was not, and bounded.
+The window doubles after each run, so wasted work stays proportional to useful work.
 """
 
-_KEPT = 32
-"""So many heads are remembered; what comes off a wire must not fill the memory."""
+_MAX_HEADS = 32
+"""Heads whose numbers are remembered: a wire must not fill the memory."""
 
-_LEAST = 8
-"""Fewer frames are left to the cutter."""
+MIN_RUN = 8
+"""Shorter runs are cut one frame at a time."""
 
 
-class StuffedRuns:
-    """Runs of frames in which all that is between start and end is stuffed."""
+class BulkCutter:
+    """Cutter of runs of frames in which everything between start and end is stuffed."""
 
     start: bytes
     end: bytes
     """Empty where the next start ends a frame."""
     codes: tuple[tuple[bytes, bytes], ...]
-    """Bytes and what stands for them, in an order in which an encoder can replace them."""
+    """Bytes and the codes that stand for them, in an order in which they can be replaced."""
     greatest: int
     """Bytes of the longest frame."""
     specials: bytes
-    """Without these bytes, a content stands for itself."""
+    """Content without these bytes stands for itself."""
     head: slice
-    """The bytes of a content that tell the numbers of its event."""
+    """Bytes of a content that tell the numbers of its event."""
     alike: tuple[int, ...]
-    """The places of the bytes in front of the payload that are the same all through a run."""
+    """Places of the bytes in front of the payload that are the same throughout a run."""
     counter: int | None
-    """The place of the byte among them that is not."""
+    """Place of the counter, the one byte in front of the payload that may differ."""
     xor_from: int | None
-    """Where the bytes begin whose exclusive or is 0. None: the sum of all bytes is 0."""
+    """Place from which the XOR of all bytes is 0. None: the sum of all bytes is 0."""
     numbers: dict[bytes, list[tuple[int, ...]]]
-    """The numbers of events by the value of the counter, for each head but for that."""
+    """Numbers of events by the value of the counter, for each head without it."""
 
     def __init__(  # noqa: PLR0913 - an argument for each field
         self,
@@ -82,28 +82,28 @@ class StuffedRuns:
     def take(
         self, data: bytes, at: int, base: int, events: list[Any], cut: Cutter, heads: Any
     ) -> int:
-        """Add the events of runs from `at` on; the place of the first byte that is in none.
+        """Add the events of runs from `at` on; return the place of the first byte in no run.
 
         `cut` takes frames one by one; `heads` has the numbers and the reader for a content's head.
         """
-        window = _FIRST
+        window = _FIRST_WINDOW
         try:
-            while len(data) - at > LONG:
+            while len(data) - at > MIN_DATA:
                 found, end = self._run(data[at : at + window], base + at, cut, heads)
                 events += found
                 at += end
-                window = min(2 * window, _WINDOW)
+                window = min(2 * window, _MAX_WINDOW)
         except ANYTHING:  # The cutter comes to what is not in order.
             return at
         return at
 
     def _run(self, data: bytes, base: int, cut: Cutter, heads: Any) -> tuple[list[Any], int]:
-        """The events of one run, and the place behind it. Raises Unclear, or anything."""
+        """Events of one run, and the place behind it. Raises NeedsReference, or anything."""
         begun = len(self.start)
         parts = data[begun:].split(self.end + self.start)
         parts.pop()  # It may go on.
-        if len(parts) < _LEAST or not data.startswith(self.start):
-            raise Unclear
+        if len(parts) < MIN_RUN or not data.startswith(self.start):
+            raise NeedsReference
         codec = self._codec(data[: begun + len(parts[0]) + len(self.end)], cut)
         contents = self._contents(parts)
         first = contents[0]
@@ -127,30 +127,30 @@ class StuffedRuns:
 
     @staticmethod
     def _codec(frame: bytes, cut: Cutter) -> Any:
-        """What the cutter says of the first frame, which has to be in order."""
+        """Sender of the first frame. Raises NeedsReference if the cutter leaves that."""
         events: list[Any] = []
         if cut(frame, 0, 0, events) != len(frame) or events[0].kind != "message":
-            raise Unclear
+            raise NeedsReference
         return events[0].codec
 
     def _contents(self, parts: Sequence[bytes]) -> list[bytes]:
-        """All contents, of one size, without stuffing. Raises Unclear."""
+        """All contents, unstuffed. Raises NeedsReference unless they have one size."""
         size = len(self._unstuffed(parts[0]))
         plain = [part for part in parts if len(part) == size]
         joined = b"".join(plain)
         if any(special in joined for special in self.specials):
-            raise Unclear
+            raise NeedsReference
         if len(plain) == len(parts):
             return plain
         contents = [part if len(part) == size else self._unstuffed(part) for part in parts]
         if set(map(len, contents)) != {size}:
-            raise Unclear
+            raise NeedsReference
         return contents
 
     def _unstuffed(self, part: bytes) -> bytes:
-        """A content. Raises Unclear unless an encoder would stuff it so."""
+        """Content of a frame. Raises NeedsReference unless an encoder would stuff it so."""
         if len(self.start) + len(part) + len(self.end) > self.greatest:
-            raise Unclear
+            raise NeedsReference
         content = part
         for byte, code in reversed(self.codes):
             content = content.replace(code, byte)
@@ -158,26 +158,26 @@ class StuffedRuns:
         for byte, code in self.codes:
             again = again.replace(byte, code)
         if again != part:
-            raise Unclear
+            raise NeedsReference
         return content
 
     def _check(self, first: bytes, contents: list[bytes]) -> None:
-        """Raise Unclear unless all heads are alike and all checksums right."""
+        """Raise NeedsReference unless all heads are alike and all checksums right."""
         size, count = len(first), len(contents)
         joined = b"".join(contents)
         for place in self.alike:
             if joined[place::size] != first[place : place + 1] * count:
-                raise Unclear
+                raise NeedsReference
         if self.xor_from is not None:
             if not are_sound(contents, self.xor_from):
-                raise Unclear
+                raise NeedsReference
             return
         sums = [adler32(content, 0) & 0xFF for content in contents]
         if any(sums):
-            raise Unclear
+            raise NeedsReference
 
     def _shown(self, first: bytes, contents: list[bytes], heads: Any) -> list[Any]:
-        """The numbers of all events, where they have a counter."""
+        """Numbers of all events; empty if frames have no counter."""
         place = self.counter
         if place is None:
             return []
@@ -186,7 +186,7 @@ class StuffedRuns:
         key = front + b"\0" + behind
         known = self.numbers.get(key)
         if known is None:
-            if len(self.numbers) >= _KEPT:
+            if len(self.numbers) >= _MAX_HEADS:
                 self.numbers.clear()
             # There when it is whole: others may look for it at the same time.
             known = [heads[front + BYTES[value] + behind][0] for value in range(256)]

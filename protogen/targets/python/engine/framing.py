@@ -19,10 +19,10 @@ from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
-from protogen.targets.python.fast.cutting import FOLDED, checksum, folded
-from protogen.targets.python.fast.frames import FastFrame
-from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.fast.writing import (
+from protogen.targets.python.engine.cutting import FOLDED, checksum, folded
+from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.writing import (
     Packed,
     content_writer,
     is_of_one_size,
@@ -75,7 +75,7 @@ def encoder(
         call = f"_frame_{frame.sender.name}({', '.join(['payload', *values])})"
         with lines.block(f"if sender == {text(frame.sender.name)}:"):
             lines.add(f"return {call}")
-    lines.add("raise _fast.Unclear")
+    lines.add("raise _fast.NeedsReference")
     return lines.text
 
 

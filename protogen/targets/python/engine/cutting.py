@@ -6,12 +6,12 @@ from contextlib import nullcontext
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
-from protogen.runtime.runs import LONG
+from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python import frames as tables
-from protogen.targets.python.fast.frames import FastFrame, Kin
-from protogen.targets.python.fast.lines import Constants, Lines
-from protogen.targets.python.fast.numbers import FrameFunction
-from protogen.targets.python.fast.place import Place
+from protogen.targets.python.engine.frames import FastFrame, Kin
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import FrameFunction
+from protogen.targets.python.engine.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
 
@@ -178,8 +178,8 @@ class _Cutter(FrameFunction):
             "xor_from": first,
         }
         arguments = ", ".join(f"{name}={value}" for name, value in given.items())
-        runs = self.lines.constants.named("RUNS", f"_fast.Runs({arguments})")
-        with self.lines.block(f"if size - at > {LONG}:"):
+        runs = self.lines.constants.named("BULK", f"_fast.BulkCutter({arguments})")
+        with self.lines.block(f"if size - at > {MIN_DATA}:"):
             of_sender = f"_cut_{self.name}, _{self.name.upper()}_HEADS"
             self.lines.add(f"at = {runs}.take(data, at, base, events, {of_sender})")
 
@@ -665,7 +665,7 @@ class _Decoder(_Cutter):
     at = ""
     raw = "data"
     numbers = "_"
-    stop = "raise _fast.Unclear"
+    stop = "raise _fast.NeedsReference"
 
     def body(self) -> tuple[str, ...]:
         self.lines.refuse_if("type(data) is not bytes")
@@ -709,7 +709,7 @@ class _Decoder(_Cutter):
             self._stop_if("end != len(data)")
 
     def _unknown(self) -> None:
-        self.lines.add("raise _fast.Unclear")
+        self.lines.add("raise _fast.NeedsReference")
 
 
 class _Header(FrameFunction):

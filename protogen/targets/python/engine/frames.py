@@ -23,7 +23,7 @@ from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.model.wire import fixed_size
-from protogen.runtime.runs import LONG
+from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order
 from protogen.targets.python.literals import octets_in_class
 
@@ -272,7 +272,7 @@ class FastFrame:
             and self.remembered is not None
             and len(self.checksums) == 1
             and self.tail == self.checksums
-            and self.framing.greatest < LONG
+            and self.framing.greatest < MIN_DATA
         )
 
     @property

@@ -21,7 +21,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.types import Field, Integer, Struct, Text
-from protogen.targets.python.fast.layout import (
+from protogen.targets.python.engine.layout import (
     array_code,
     code_of,
     common_order,
@@ -33,7 +33,7 @@ from protogen.targets.python.fast.layout import (
     outer_names,
     outside,
 )
-from protogen.targets.python.fast.lines import Constants, Lines
+from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import number, tuple_of
 from protogen.targets.python.spelling import class_name
@@ -370,7 +370,7 @@ class _Writer:
             word = "elif"
         with self.lines.block("else:"):
             if step.rest is None:
-                self.lines.add("raise _fast.Unclear")
+                self.lines.add("raise _fast.NeedsReference")
             else:
                 self._rest(value, step.rest)
                 self.lines.add(f"{data} = {value}")

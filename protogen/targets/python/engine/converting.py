@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from protogen.model.payload_plan import AnyStep, BytesStep, FloatStep, IntegerStep, without_constant
 from protogen.model.types import Float, Integer, Octets
-from protogen.targets.python.fast.layout import code_of, is_named, is_native, is_pair
-from protogen.targets.python.fast.lines import Lines
+from protogen.targets.python.engine.layout import code_of, is_named, is_native, is_pair
+from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.spelling import class_name
 
 
