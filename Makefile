@@ -7,8 +7,10 @@ INSTALLED := $(VENV)/.installed
 CACHE := .cache
 EXTRAS ?= dev
 LOG := $(CACHE)/test.log
+tested = mkdir -p $(CACHE) && { $(BIN)/python -m pytest -n auto --dist worksteal $(1) >$(LOG) 2>&1 \
+	|| { cat $(LOG); exit 1; }; } && tail -n 1 $(LOG)
 
-.PHONY: generate check test coverage fuzz bench docs format clean
+.PHONY: generate check test test-rest test-all coverage fuzz bench docs format clean
 
 # What is made from schemas and from the compiler itself, and is checked in.
 generate: $(INSTALLED)
@@ -22,13 +24,19 @@ check: $(INSTALLED)
 	@$(BIN)/ruff format --check --quiet || { $(BIN)/ruff format --check; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 
-# Everything that must hold. Prints the closing line of pytest, and more only if something fails.
+# What to wait for: style, types, and tests that touch every module, in some five minutes on two
+# cores. Prints the closing line of pytest, and more only if something fails.
 test: check
-	@mkdir -p $(CACHE)
-	@$(BIN)/python -m pytest -n auto --dist worksteal >$(LOG) 2>&1 || { cat $(LOG); exit 1; }
-	@tail -n 1 $(LOG)
+	@$(call tested,-m "not slow")
 
-# The same, with the lines and branches that no test reaches. Watching them takes twice the time.
+# The tests that `make test` leaves out: the same on more schemas, machines and seeds.
+test-rest: $(INSTALLED)
+	@$(call tested,-m slow)
+
+# Everything that must hold.
+test-all: test test-rest
+
+# All tests, with the lines and branches that no test reaches. Watching them takes twice the time.
 coverage: check
 	@mkdir -p $(CACHE)
 	@$(BIN)/python -m pytest -n auto --dist worksteal --cov --cov-report= >$(LOG) 2>&1 || { cat $(LOG); exit 1; }

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+import selection
 import tooling
 from hypothesis import HealthCheck, settings
 
@@ -41,12 +42,14 @@ SLOW = (
 """The files that take longest, most of it in single tests."""
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with what takes long.
+    """Mark what `make test` leaves out, and begin with what takes long.
 
     Workers that have nothing left take over what stands last in another's list. Where those are
     short tests, all workers end together.
     """
+    selection.mark(items)
     ranks = {name: rank for rank, name in enumerate(SLOW)}
     items.sort(key=lambda item: ranks.get(item.path.name, len(SLOW)))
 

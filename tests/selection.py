@@ -1,0 +1,100 @@
+"""Selection of tests that `make test` runs; the others are marked `slow`.
+
+Many files try the same on all schemas, machines or seeds, which takes most of the time. The
+selection has some of each, so that a fault in any module still shows. `make test-all` has all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDERS = (
+    "schemas",
+    "schemas/dialects",
+    "tests/framings",
+    "tests/c_schemas",
+    "tests/stuffed_schemas",
+)
+KEPT = {"matty", "rn1", "cobs", "sync_length_crc"}
+"""Schemas that stand for the others: stuffed, of 7-bit bytes, encoded, with a start in the data."""
+
+THINNED = (
+    "test_c_*.py",
+    "test_capture*.py",
+    "test_convert*.py",
+    "test_fast_*.py",
+    "test_frame_plan.py",
+    "test_live_streams.py",
+    "test_native*.py",
+    "test_printer.py",
+    "test_recovery.py",
+    "test_round_trips.py",
+    "test_runtime_decoder.py",
+    "test_struct_sizes.py",
+)
+"""Files of which only the tests of the kept schemas are selected, and those of no schema."""
+
+ONLY = {
+    "test_bench_python.py": r"\[0-|in_order|reference",
+    "test_c_fuzz.py": r"^$",
+    "test_c_proof.py": r"^$",
+    "test_c_schemas.py": r"\[0\]",
+    "test_ci.py": "TestCommands",
+    "test_evolution_random.py": r"^$",
+    "test_lower_bounds.py": "has_a_lower_bound",
+}
+"""Regular expressions over names of tests: only these are selected of a file."""
+
+WITHOUT = {
+    "test_c_lint.py": "clang_tidy|misra.*(rn1|cobs|sync)",
+    "test_c_packages.py": "cmake",
+    "test_convert_fleet.py": "fleet|killed|scheduler|this_machine|numpy",
+    "test_docs.py": r"shows\[(docs/(howto|reference|background)|bench)",
+    "test_layout.py": "in_any_style",
+    "test_lock.py": "against_a_lock",
+    "test_native.py": "two_processes|builds_ahead|odd_frames|random_schemas|many_shapes",
+    "test_packaging.py": "TestWheel",
+    "test_passes_robust.py": "of_a_base",
+    "test_project_record.py": "hundred",
+    "test_python_target.py": "strangers",
+    "test_runtime_decoder.py": "whatever_the_bytes.*length",
+    "test_schema_fuzzing.py": "codec_works|nearly_every",
+    "test_struct_sizes.py": "random",
+}
+"""Regular expressions over names of tests: all but these are selected of a file."""
+
+
+def is_slow(item: pytest.Item) -> bool:
+    """True if `make test` leaves a test out."""
+    if any(item.path.match(pattern) for pattern in THINNED) and not is_of_kept_schema(item.name):
+        return True
+    only, without = ONLY.get(item.path.name, ""), WITHOUT.get(item.path.name)
+    if without is not None and re.search(without, item.nodeid):
+        return True
+    return not re.search(only, item.nodeid)
+
+
+def is_of_kept_schema(name: str) -> bool:
+    """True if a test is about no schema, or about one of those that are kept."""
+    _, _, parameters = name.partition("[")
+    schemas = schema_names().intersection(parameters.rstrip("]").split("-"))
+    return not schemas or bool(schemas & KEPT)
+
+
+@cache
+def schema_names() -> frozenset[str]:
+    """Names of all schemas that tests go through."""
+    return frozenset(path.stem for folder in FOLDERS for path in (ROOT / folder).glob("*.yaml"))
+
+
+def mark(items: Iterable[pytest.Item]) -> None:
+    """Mark the tests that `make test` leaves out."""
+    for item in items:
+        if is_slow(item):
+            item.add_marker("slow")
