@@ -11,16 +11,16 @@ static void dagny_copy(void *to, const void *from, size_t size) {
     }
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
 static size_t dagny_sonar_measure(const struct dagny_sonar *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_sonar_validate(const struct dagny_sonar *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -48,7 +48,7 @@ enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message, uint8_t 
 static enum dagny_result dagny_sonar_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -69,16 +69,16 @@ enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t 
     return DAGNY_OK;
 }
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 static size_t dagny_gps_measure(const struct dagny_gps *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_gps_validate(const struct dagny_gps *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -106,7 +106,7 @@ enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *pay
 static enum dagny_result dagny_gps_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -126,16 +126,16 @@ enum dagny_result dagny_gps_decode(struct dagny_gps *message, const uint8_t *pay
     return DAGNY_OK;
 }
 
-/* --- bump -------------------------------------------------------------------------------------- */
+/* --- bump ------------------------------------------------------------------------------------- */
 
 static size_t dagny_bump_measure(const struct dagny_bump *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_bump_validate(const struct dagny_bump *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -163,7 +163,7 @@ enum dagny_result dagny_bump_encode(const struct dagny_bump *message, uint8_t *p
 static enum dagny_result dagny_bump_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -184,16 +184,16 @@ enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *p
     return DAGNY_OK;
 }
 
-/* --- odometry ---------------------------------------------------------------------------------- */
+/* --- odometry --------------------------------------------------------------------------------- */
 
 static size_t dagny_odometry_measure(const struct dagny_odometry *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_odometry_validate(const struct dagny_odometry *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -221,7 +221,7 @@ enum dagny_result dagny_odometry_encode(const struct dagny_odometry *message, ui
 static enum dagny_result dagny_odometry_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -242,16 +242,16 @@ enum dagny_result dagny_odometry_decode(struct dagny_odometry *message, const ui
     return DAGNY_OK;
 }
 
-/* --- speed ------------------------------------------------------------------------------------- */
+/* --- speed ------------------------------------------------------------------------------------ */
 
 static size_t dagny_speed_measure(const struct dagny_speed *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_speed_validate(const struct dagny_speed *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -279,7 +279,7 @@ enum dagny_result dagny_speed_encode(const struct dagny_speed *message, uint8_t 
 static enum dagny_result dagny_speed_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -300,16 +300,16 @@ enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t 
     return DAGNY_OK;
 }
 
-/* --- wheel_slip -------------------------------------------------------------------------------- */
+/* --- wheel_slip ------------------------------------------------------------------------------- */
 
 static size_t dagny_wheel_slip_measure(const struct dagny_wheel_slip *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_wheel_slip_validate(const struct dagny_wheel_slip *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -337,7 +337,7 @@ enum dagny_result dagny_wheel_slip_encode(const struct dagny_wheel_slip *message
 static enum dagny_result dagny_wheel_slip_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -358,16 +358,16 @@ enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *message, cons
     return DAGNY_OK;
 }
 
-/* --- battery ----------------------------------------------------------------------------------- */
+/* --- battery ---------------------------------------------------------------------------------- */
 
 static size_t dagny_battery_measure(const struct dagny_battery *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_battery_validate(const struct dagny_battery *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -395,7 +395,7 @@ enum dagny_result dagny_battery_encode(const struct dagny_battery *message, uint
 static enum dagny_result dagny_battery_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -416,16 +416,17 @@ enum dagny_result dagny_battery_decode(struct dagny_battery *message, const uint
     return DAGNY_OK;
 }
 
-/* --- reflex_settings --------------------------------------------------------------------------- */
+/* --- reflex_settings -------------------------------------------------------------------------- */
 
 static size_t dagny_reflex_settings_measure(const struct dagny_reflex_settings *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
-static enum dagny_result dagny_reflex_settings_validate(const struct dagny_reflex_settings *message) {
-    if (message->data_size > 128u) {
+static enum dagny_result dagny_reflex_settings_validate(
+    const struct dagny_reflex_settings *message) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -455,7 +456,7 @@ static enum dagny_result dagny_reflex_settings_check(const uint8_t *payload, siz
                                                      size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -477,16 +478,17 @@ enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_settings *mes
     return DAGNY_OK;
 }
 
-/* --- hardware_status --------------------------------------------------------------------------- */
+/* --- hardware_status -------------------------------------------------------------------------- */
 
 static size_t dagny_hardware_status_measure(const struct dagny_hardware_status *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
-static enum dagny_result dagny_hardware_status_validate(const struct dagny_hardware_status *message) {
-    if (message->data_size > 128u) {
+static enum dagny_result dagny_hardware_status_validate(
+    const struct dagny_hardware_status *message) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -516,7 +518,7 @@ static enum dagny_result dagny_hardware_status_check(const uint8_t *payload, siz
                                                      size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -538,7 +540,7 @@ enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *mes
     return DAGNY_OK;
 }
 
-/* --- motor ------------------------------------------------------------------------------------- */
+/* --- motor ------------------------------------------------------------------------------------ */
 
 static void dagny_motor_store(const struct dagny_motor *message, uint8_t *payload) {
     payload[0] = message->s;
@@ -546,11 +548,11 @@ static void dagny_motor_store(const struct dagny_motor *message, uint8_t *payloa
 
 enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t *payload,
                                      size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_motor_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_OK;
 }
 
@@ -560,14 +562,14 @@ void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
 
 enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                      size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_ERROR_SIZE;
     }
     dagny_motor_load(message, payload);
     return DAGNY_OK;
 }
 
-/* --- steering ---------------------------------------------------------------------------------- */
+/* --- steering --------------------------------------------------------------------------------- */
 
 static void dagny_steering_store(const struct dagny_steering *message, uint8_t *payload) {
     payload[0] = message->s;
@@ -575,11 +577,11 @@ static void dagny_steering_store(const struct dagny_steering *message, uint8_t *
 
 enum dagny_result dagny_steering_encode(const struct dagny_steering *message, uint8_t *payload,
                                         size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_steering_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_OK;
 }
 
@@ -589,14 +591,14 @@ void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload)
 
 enum dagny_result dagny_steering_decode(struct dagny_steering *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_ERROR_SIZE;
     }
     dagny_steering_load(message, payload);
     return DAGNY_OK;
 }
 
-/* --- reflex ------------------------------------------------------------------------------------ */
+/* --- reflex ----------------------------------------------------------------------------------- */
 
 static void dagny_reflex_store(const struct dagny_reflex *message, uint8_t *payload) {
     payload[0] = message->reflex;
@@ -604,11 +606,11 @@ static void dagny_reflex_store(const struct dagny_reflex *message, uint8_t *payl
 
 enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_t *payload,
                                       size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_reflex_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_OK;
 }
 
@@ -618,36 +620,36 @@ void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
 
 enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_t *payload,
                                       size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_ERROR_SIZE;
     }
     dagny_reflex_load(message, payload);
     return DAGNY_OK;
 }
 
-/* --- power_down -------------------------------------------------------------------------------- */
+/* --- power_down ------------------------------------------------------------------------------- */
 
 static void dagny_power_down_store(const struct dagny_power_down *message, uint8_t *payload) {
     (void)message;
-    payload[0] = 0x03u;
+    payload[0] = 0x03U;
 }
 
 enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message, uint8_t *payload,
                                           size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_power_down_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_OK;
 }
 
 static enum dagny_result dagny_power_down_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_ERROR_SIZE;
     }
-    if (payload[0] != 0x03u) {
+    if (payload[0] != 0x03U) {
         return DAGNY_ERROR_VALUE;
     }
     return DAGNY_OK;
@@ -655,7 +657,7 @@ static enum dagny_result dagny_power_down_check(const uint8_t *payload, size_t s
 
 void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, const uint8_t *payload,
@@ -668,7 +670,7 @@ enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, cons
     return DAGNY_OK;
 }
 
-/* --- power ------------------------------------------------------------------------------------- */
+/* --- power ------------------------------------------------------------------------------------ */
 
 static void dagny_power_store(const struct dagny_power *message, uint8_t *payload) {
     payload[0] = message->code;
@@ -676,11 +678,11 @@ static void dagny_power_store(const struct dagny_power *message, uint8_t *payloa
 
 enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t *payload,
                                      size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_power_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_OK;
 }
 
@@ -690,23 +692,23 @@ void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
 
 enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
                                      size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_ERROR_SIZE;
     }
     dagny_power_load(message, payload);
     return DAGNY_OK;
 }
 
-/* --- laser ------------------------------------------------------------------------------------- */
+/* --- laser ------------------------------------------------------------------------------------ */
 
 static size_t dagny_laser_measure(const struct dagny_laser *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->readings_count;
     return size;
 }
 
 static enum dagny_result dagny_laser_validate(const struct dagny_laser *message) {
-    if (message->readings_count > 512u) {
+    if (message->readings_count > 512U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -735,7 +737,7 @@ static enum dagny_result dagny_laser_check(const uint8_t *payload, size_t size, 
     (void)payload;
     (void)need;
     size_t at = 0;
-    if (size - at > 512u) {
+    if (size - at > 512U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -756,16 +758,16 @@ enum dagny_result dagny_laser_decode(struct dagny_laser *message, const uint8_t 
     return DAGNY_OK;
 }
 
-/* --- command ----------------------------------------------------------------------------------- */
+/* --- command ---------------------------------------------------------------------------------- */
 
 static size_t dagny_command_measure(const struct dagny_command *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
 static enum dagny_result dagny_command_validate(const struct dagny_command *message) {
-    if (message->data_size > 128u) {
+    if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
@@ -793,7 +795,7 @@ enum dagny_result dagny_command_encode(const struct dagny_command *message, uint
 static enum dagny_result dagny_command_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 128u) {
+    if (size > 128U) {
         return DAGNY_ERROR_SIZE;
     }
     return DAGNY_OK;
@@ -814,7 +816,7 @@ enum dagny_result dagny_command_decode(struct dagny_command *message, const uint
     return DAGNY_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     DAGNY_SEEKING,
@@ -824,11 +826,11 @@ enum {
 
 enum {
     DAGNY_KNOWN = 1,     /* The payload's size is known. */
-    DAGNY_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    DAGNY_OPEN = 2,      /* Only what follows the payload tells its size. */
     DAGNY_SEARCHING = 4, /* A delimiter is looked for. */
-    DAGNY_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    DAGNY_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     DAGNY_EMPTY = 16,    /* The stuffed region holds nothing. */
-    DAGNY_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    DAGNY_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -837,7 +839,8 @@ enum {
     DAGNY_AFTER
 };
 
-#define DAGNY_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define DAGNY_FRAME 0xFFU
 
 /* xor-8 */
 static inline uint8_t dagny_xor_8_step(uint8_t sum, uint8_t byte) {
@@ -857,12 +860,12 @@ static uint8_t dagny_xor_8_final(uint8_t sum) {
     return sum;
 }
 
-/* --- what host sends: frames -------------------------------------------------------------- */
+/* --- what host sends: frames ------------------------------------------------------------------ */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t dagny_host_room(size_t payload) {
-    const size_t content = 1u + payload + (payload == 0u ? 0u : 1u);
-    return content + 1u;
+    const size_t content = 1U + payload + (payload == 0U ? 0U : 1U);
+    return content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -874,33 +877,33 @@ static uint8_t *dagny_host_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     uint8_t *const content = dagny_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + (payload == 0u ? 0u : 1u);
+    uint8_t *const tail = &content[1U + payload];
+    size_t size = 1U + payload + (payload == 0U ? 0U : 1U);
     (void)tail;
-    content[0u] = (uint8_t)id;
-    if (payload != 0u) {
-        uint8_t sum = 0x00;
+    content[0U] = (uint8_t)id;
+    if (payload != 0U) {
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + payload) - (size_t)(0U));
         due = dagny_xor_8_final(sum);
-        tail[0u] = (uint8_t)due;
+        tail[0U] = (uint8_t)due;
     }
-    frame[size + 0u] = 0x0A;
-    return size + 1u;
+    frame[size + 0U] = 0x0AU;
+    return size + 1U;
 }
 
 /* Whether a decoder would end the frame before its end. */
 static bool dagny_host_ends_early(const uint8_t *frame, size_t size) {
     size_t index;
-    for (index = 1; index + 1u < size; index++) {
-        if (frame[index] == 0x0A) {
+    for (index = 1; index + 1U < size; index++) {
+        if (frame[index] == 0x0AU) {
             return true;
         }
     }
     return false;
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct dagny_writer {
     dagny_put put;
@@ -914,7 +917,7 @@ enum { DAGNY_STUFFED = 128 };
 
 /* The next byte of content. */
 static void dagny_host_write(struct dagny_writer *writer, uint8_t byte) {
-    if ((writer->flags & 1u) != 0u) {
+    if ((writer->flags & 1U) != 0U) {
         writer->host_checksum = dagny_xor_8_step(writer->host_checksum, byte);
     }
     writer->put(writer->user, byte);
@@ -924,8 +927,8 @@ static void dagny_host_send_head(struct dagny_writer *writer, size_t payload, ui
     (void)writer;
     (void)payload;
     (void)id;
-    writer->host_checksum = 0x00;
-    writer->flags = 1u;
+    writer->host_checksum = 0x00U;
+    writer->flags = 1U;
     dagny_host_write(writer, (uint8_t)id);
 }
 
@@ -933,12 +936,12 @@ static void dagny_host_send_tail(struct dagny_writer *writer, size_t payload, ui
     (void)writer;
     (void)payload;
     (void)id;
-    writer->flags = 0u;
-    if (payload != 0u) {
+    writer->flags = 0U;
+    if (payload != 0U) {
         const uint8_t due = dagny_xor_8_final(writer->host_checksum);
         dagny_host_write(writer, (uint8_t)due);
     }
-    writer->put(writer->user, 0x0A);
+    writer->put(writer->user, 0x0AU);
 }
 
 static void dagny_write(struct dagny_writer *writer, uint8_t byte) {
@@ -974,7 +977,7 @@ enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *
         return DAGNY_ERROR_SPACE;
     }
     dagny_sonar_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x53);
+    wire = dagny_host_wrap(frame, payload, 0x53U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -995,7 +998,7 @@ enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *fram
         return DAGNY_ERROR_SPACE;
     }
     dagny_gps_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x47);
+    wire = dagny_host_wrap(frame, payload, 0x47U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1016,7 +1019,7 @@ enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *fr
         return DAGNY_ERROR_SPACE;
     }
     dagny_bump_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x42);
+    wire = dagny_host_wrap(frame, payload, 0x42U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1037,7 +1040,7 @@ enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uin
         return DAGNY_ERROR_SPACE;
     }
     dagny_odometry_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4F);
+    wire = dagny_host_wrap(frame, payload, 0x4FU);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1058,7 +1061,7 @@ enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *
         return DAGNY_ERROR_SPACE;
     }
     dagny_speed_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4F);
+    wire = dagny_host_wrap(frame, payload, 0x4FU);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1079,7 +1082,7 @@ enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message,
         return DAGNY_ERROR_SPACE;
     }
     dagny_wheel_slip_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x57);
+    wire = dagny_host_wrap(frame, payload, 0x57U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1100,7 +1103,7 @@ enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8
         return DAGNY_ERROR_SPACE;
     }
     dagny_battery_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x62);
+    wire = dagny_host_wrap(frame, payload, 0x62U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1121,7 +1124,7 @@ enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings
         return DAGNY_ERROR_SPACE;
     }
     dagny_reflex_settings_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x52);
+    wire = dagny_host_wrap(frame, payload, 0x52U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1142,7 +1145,7 @@ enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status
         return DAGNY_ERROR_SPACE;
     }
     dagny_hardware_status_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x48);
+    wire = dagny_host_wrap(frame, payload, 0x48U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1152,86 +1155,86 @@ enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status
 
 enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
                                     size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_motor_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x4D);
+    *size = dagny_host_wrap(frame, payload, 0x4DU);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user) {
     struct dagny_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_host_send_head(&writer, payload, 0x4D);
+    dagny_host_send_head(&writer, payload, 0x4DU);
     dagny_motor_put(message, &writer);
-    dagny_host_send_tail(&writer, payload, 0x4D);
+    dagny_host_send_tail(&writer, payload, 0x4DU);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
                                        size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_steering_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x53);
+    *size = dagny_host_wrap(frame, payload, 0x53U);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
                                       void *user) {
     struct dagny_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_host_send_head(&writer, payload, 0x53);
+    dagny_host_send_head(&writer, payload, 0x53U);
     dagny_steering_put(message, &writer);
-    dagny_host_send_tail(&writer, payload, 0x53);
+    dagny_host_send_tail(&writer, payload, 0x53U);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
                                      size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_reflex_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x52);
+    *size = dagny_host_wrap(frame, payload, 0x52U);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user) {
     struct dagny_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_host_send_head(&writer, payload, 0x52);
+    dagny_host_send_head(&writer, payload, 0x52U);
     dagny_reflex_put(message, &writer);
-    dagny_host_send_tail(&writer, payload, 0x52);
+    dagny_host_send_tail(&writer, payload, 0x52U);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message, uint8_t *frame,
                                          size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     size_t wire;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_power_down_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x50);
+    wire = dagny_host_wrap(frame, payload, 0x50U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1241,25 +1244,25 @@ enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message,
 
 enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
                                     size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
     dagny_power_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x50);
+    *size = dagny_host_wrap(frame, payload, 0x50U);
     return DAGNY_OK;
 }
 
 enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user) {
     struct dagny_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_host_send_head(&writer, payload, 0x50);
+    dagny_host_send_head(&writer, payload, 0x50U);
     dagny_power_put(message, &writer);
-    dagny_host_send_tail(&writer, payload, 0x50);
+    dagny_host_send_tail(&writer, payload, 0x50U);
     return DAGNY_OK;
 }
 
@@ -1276,7 +1279,7 @@ enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *
         return DAGNY_ERROR_SPACE;
     }
     dagny_laser_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4C);
+    wire = dagny_host_wrap(frame, payload, 0x4CU);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1297,7 +1300,7 @@ enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8
         return DAGNY_ERROR_SPACE;
     }
     dagny_command_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x43);
+    wire = dagny_host_wrap(frame, payload, 0x43U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
     }
@@ -1305,7 +1308,7 @@ enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8
     return DAGNY_OK;
 }
 
-/* --- what host sends: the decoder --------------------------------------------------------- */
+/* --- what host sends: the decoder ------------------------------------------------------------- */
 
 /* Events. */
 
@@ -1343,29 +1346,46 @@ static void dagny_host_add_noise(struct dagny_host_decoder *decoder, uint16_t si
 
 /* The message of a valid frame. */
 
-static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const uint8_t *payload,
+                                   uint16_t size, uint8_t *message) {
     *message = DAGNY_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->id) {
-    case UINT8_C(0x4D):
+    case 0x4DU:
         *message = DAGNY_MESSAGE_MOTOR;
-        return size == 1U ? DAGNY_NO_REASON : DAGNY_SIZE;
-    case UINT8_C(0x53):
+        if (size != 1U) {
+            return DAGNY_SIZE;
+        }
+        return DAGNY_NO_REASON;
+    case 0x53U:
         *message = DAGNY_MESSAGE_STEERING;
-        return size == 1U ? DAGNY_NO_REASON : DAGNY_SIZE;
-    case UINT8_C(0x52):
+        if (size != 1U) {
+            return DAGNY_SIZE;
+        }
+        return DAGNY_NO_REASON;
+    case 0x52U:
         *message = DAGNY_MESSAGE_REFLEX;
-        return size == 1U ? DAGNY_NO_REASON : DAGNY_SIZE;
-    case UINT8_C(0x50):
+        if (size != 1U) {
+            return DAGNY_SIZE;
+        }
+        return DAGNY_NO_REASON;
+    case 0x50U:
         *message = DAGNY_MESSAGE_POWER;
-        return size == 1U ? DAGNY_NO_REASON : DAGNY_SIZE;
-    case UINT8_C(0x4C):
+        if (size != 1U) {
+            return DAGNY_SIZE;
+        }
+        return DAGNY_NO_REASON;
+    case 0x4CU:
         *message = DAGNY_MESSAGE_LASER;
-        return (uint8_t)((size <= 512U) ? (int)dagny_laser_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x43):
+        if (size > 512U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_laser_check(payload, size, NULL);
+    case 0x43U:
         *message = DAGNY_MESSAGE_COMMAND;
-        return (uint8_t)((size <= 128U) ? (int)dagny_command_check(payload, size, NULL) : (int)DAGNY_SIZE);
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_command_check(payload, size, NULL);
     default:
         return DAGNY_NO_REASON;
     }
@@ -1378,7 +1398,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     if (decoder->payload != 0U) {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + decoder->payload) - (size_t)(0U));
         due = dagny_xor_8_final(sum);
@@ -1424,22 +1444,22 @@ static void dagny_host_set_payload(struct dagny_host_decoder *decoder, uint16_t 
 /* What the identity says of the payload's size. */
 static uint8_t dagny_host_find_size(struct dagny_host_decoder *decoder, uint8_t key) {
     switch (key) {
-    case UINT8_C(0x4D):
+    case 0x4DU:
         dagny_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x53):
+    case 0x53U:
         dagny_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x52):
+    case 0x52U:
         dagny_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x50):
+    case 0x50U:
         dagny_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x4C):
+    case 0x4CU:
         decoder->limit = 514U;
         break;
-    case UINT8_C(0x43):
+    case 0x43U:
         decoder->limit = 130U;
         break;
     default:
@@ -1457,11 +1477,10 @@ static uint8_t dagny_host_enter_payload(struct dagny_host_decoder *decoder) {
 }
 
 /* A byte in front of the payload. */
-static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t index,
+                                    uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1482,7 +1501,8 @@ static uint8_t dagny_host_cross(struct dagny_host_decoder *decoder) {
         if ((decoder->flags & DAGNY_SEARCHING) == 0U) {
             decoder->end_left = 1;
         }
-    } else if ((decoder->flags & DAGNY_OPEN) != 0U && (decoder->flags & DAGNY_KNOWN) == 0U && (decoder->flags & DAGNY_SEARCHING) == 0U) {
+    } else if ((decoder->flags & DAGNY_OPEN) != 0U && (decoder->flags & DAGNY_KNOWN) == 0U &&
+               (decoder->flags & DAGNY_SEARCHING) == 0U) {
         decoder->flags |= DAGNY_SEARCHING;
     } else {
         /* The part goes on. */
@@ -1515,7 +1535,7 @@ static uint8_t dagny_host_accept(struct dagny_host_decoder *decoder, uint8_t byt
 /* A byte that begins no delimiter. */
 static uint8_t dagny_host_pass(struct dagny_host_decoder *decoder, uint8_t byte) {
     if (decoder->end_left != 0U) {
-        if (byte != 0x0A) {
+        if (byte != 0x0AU) {
             return dagny_host_surplus(decoder);
         }
         decoder->end_left--;
@@ -1559,7 +1579,7 @@ static uint8_t dagny_host_close(struct dagny_host_decoder *decoder) {
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t dagny_host_search(struct dagny_host_decoder *decoder, uint8_t byte) {
-    if (byte == 0x0A) {
+    if (byte == 0x0AU) {
         return dagny_host_close(decoder);
     }
     return dagny_host_pass(decoder, byte);
@@ -1569,10 +1589,11 @@ static uint8_t dagny_host_search(struct dagny_host_decoder *decoder, uint8_t byt
 static uint8_t dagny_host_take(struct dagny_host_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (decoder->wire == 1U && byte == 0x0A) {
+    if (decoder->wire == 1U && byte == 0x0AU) {
         reason = DAGNY_NOISE;
     } else {
-        reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_host_search(decoder, byte) : dagny_host_pass(decoder, byte);
+        reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_host_search(decoder, byte)
+                                                          : dagny_host_pass(decoder, byte);
     }
     if (reason == DAGNY_NO_REASON && decoder->wire >= 515U) {
         reason = DAGNY_LENGTH;
@@ -1606,7 +1627,8 @@ static void dagny_host_drop(struct dagny_host_decoder *decoder, uint16_t size) {
     const size_t count = decoder->count;
     size_t to = 0;
     size_t from;
-    for (from = size; from < count && to <= from; from++) { /* `to` is never greater; the proof sees it. */
+    for (from = size; from < count && to <= from; from++) { /* `to` is never greater;
+                                                           the proof sees it. */
         decoder->buffer[to] = decoder->buffer[from];
         to++;
     }
@@ -1629,7 +1651,7 @@ static void dagny_host_judge(struct dagny_host_decoder *decoder, uint8_t reason)
 
 /* A byte that no candidate has. */
 static void dagny_host_seek(struct dagny_host_decoder *decoder, uint8_t byte) {
-    decoder->match = (byte == 0x0A) ? (uint8_t)1U : (uint8_t)0U;
+    decoder->match = (byte == 0x0AU) ? (uint8_t)1U : (uint8_t)0U;
     dagny_host_add_noise(decoder, 1);
     if (decoder->match == 1U) {
         dagny_host_drop(decoder, decoder->next);
@@ -1643,16 +1665,16 @@ static void dagny_host_seek(struct dagny_host_decoder *decoder, uint8_t byte) {
 
 /* Go on behind a failed candidate's first byte, where the next frame may start. False: the bytes
    that are there do not tell yet where that is. */
-static bool dagny_host_resume(struct dagny_host_decoder *decoder, bool final) {
+static bool dagny_host_resume(struct dagny_host_decoder *decoder, bool is_end) {
     const uint16_t failed = decoder->failed;
     const uint16_t high = failed < decoder->count ? failed : decoder->count;
     uint16_t place;
     bool found = false;
     for (place = 0; place < high && !found; place++) {
-        decoder->match = (decoder->buffer[place] == 0x0A) ? (uint8_t)1U : (uint8_t)0U;
+        decoder->match = (decoder->buffer[place] == 0x0AU) ? (uint8_t)1U : (uint8_t)0U;
         found = decoder->match == 1U && place + 1U < high;
     }
-    (void) final;
+    (void)is_end;
     dagny_host_invalid(decoder, decoder->reason, place);
     dagny_host_drop(decoder, place);
     if (found) {
@@ -1664,11 +1686,11 @@ static bool dagny_host_resume(struct dagny_host_decoder *decoder, bool final) {
 }
 
 /* Read what is kept, until more bytes are needed. */
-static void dagny_host_run(struct dagny_host_decoder *decoder, bool final) {
+static void dagny_host_run(struct dagny_host_decoder *decoder, bool is_end) {
     bool goes_on = true;
     while (goes_on) {
         if (decoder->state == DAGNY_FAILED) {
-            goes_on = dagny_host_resume(decoder, final);
+            goes_on = dagny_host_resume(decoder, is_end);
         } else if (decoder->next >= decoder->count) {
             goes_on = false;
         } else {
@@ -1709,7 +1731,8 @@ static void dagny_host_reset(struct dagny_host_decoder *decoder) {
     dagny_host_open(decoder);
 }
 
-void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler, void *user) {
+void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
+                             void *user) {
     decoder->handler = handler;
     decoder->user = user;
     decoder->offset = 0;
@@ -1726,11 +1749,12 @@ void dagny_host_decoder_flush(struct dagny_host_decoder *decoder) {
     dagny_host_reset(decoder);
 }
 
-/* --- what robot sends: the decoder --------------------------------------------------------- */
+/* --- what robot sends: the decoder ------------------------------------------------------------ */
 
 /* Events. */
 
-static void dagny_robot_invalid(struct dagny_robot_decoder *decoder, uint8_t reason, uint16_t size) {
+static void dagny_robot_invalid(struct dagny_robot_decoder *decoder, uint8_t reason,
+                                uint16_t size) {
     struct dagny_robot_event event;
     event.kind = DAGNY_INVALID;
     event.reason = (enum dagny_reason)reason;
@@ -1764,41 +1788,70 @@ static void dagny_robot_add_noise(struct dagny_robot_decoder *decoder, uint16_t 
 
 /* The message of a valid frame. */
 
-static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const uint8_t *payload,
+                                    uint16_t size, uint8_t *message) {
     *message = DAGNY_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->id) {
-    case UINT8_C(0x53):
+    case 0x53U:
         *message = DAGNY_MESSAGE_SONAR;
-        return (uint8_t)((size <= 128U) ? (int)dagny_sonar_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x47):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_sonar_check(payload, size, NULL);
+    case 0x47U:
         *message = DAGNY_MESSAGE_GPS;
-        return (uint8_t)((size <= 128U) ? (int)dagny_gps_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x42):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_gps_check(payload, size, NULL);
+    case 0x42U:
         *message = DAGNY_MESSAGE_BUMP;
-        return (uint8_t)((size <= 128U) ? (int)dagny_bump_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x4F):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_bump_check(payload, size, NULL);
+    case 0x4FU:
         *message = DAGNY_MESSAGE_ODOMETRY;
-        return (uint8_t)((size <= 128U) ? (int)dagny_odometry_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x57):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_odometry_check(payload, size, NULL);
+    case 0x57U:
         *message = DAGNY_MESSAGE_WHEEL_SLIP;
-        return (uint8_t)((size <= 128U) ? (int)dagny_wheel_slip_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x62):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_wheel_slip_check(payload, size, NULL);
+    case 0x62U:
         *message = DAGNY_MESSAGE_BATTERY;
-        return (uint8_t)((size <= 128U) ? (int)dagny_battery_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x52):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_battery_check(payload, size, NULL);
+    case 0x52U:
         *message = DAGNY_MESSAGE_REFLEX_SETTINGS;
-        return (uint8_t)((size <= 128U) ? (int)dagny_reflex_settings_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x48):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_reflex_settings_check(payload, size, NULL);
+    case 0x48U:
         *message = DAGNY_MESSAGE_HARDWARE_STATUS;
-        return (uint8_t)((size <= 128U) ? (int)dagny_hardware_status_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x4C):
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_hardware_status_check(payload, size, NULL);
+    case 0x4CU:
         *message = DAGNY_MESSAGE_LASER;
-        return (uint8_t)((size <= 512U) ? (int)dagny_laser_check(payload, size, NULL) : (int)DAGNY_SIZE);
-    case UINT8_C(0x43):
+        if (size > 512U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_laser_check(payload, size, NULL);
+    case 0x43U:
         *message = DAGNY_MESSAGE_COMMAND;
-        return (uint8_t)((size <= 128U) ? (int)dagny_command_check(payload, size, NULL) : (int)DAGNY_SIZE);
+        if (size > 128U) {
+            return DAGNY_SIZE;
+        }
+        return (uint8_t)dagny_command_check(payload, size, NULL);
     default:
         return DAGNY_NO_REASON;
     }
@@ -1811,7 +1864,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     if (decoder->payload != 0U) {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + decoder->payload) - (size_t)(0U));
         due = dagny_xor_8_final(sum);
@@ -1857,34 +1910,34 @@ static void dagny_robot_set_payload(struct dagny_robot_decoder *decoder, uint16_
 /* What the identity says of the payload's size. */
 static uint8_t dagny_robot_find_size(struct dagny_robot_decoder *decoder, uint8_t key) {
     switch (key) {
-    case UINT8_C(0x53):
+    case 0x53U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x47):
+    case 0x47U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x42):
+    case 0x42U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x4F):
+    case 0x4FU:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x57):
+    case 0x57U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x62):
+    case 0x62U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x52):
+    case 0x52U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x48):
+    case 0x48U:
         decoder->limit = 130U;
         break;
-    case UINT8_C(0x4C):
+    case 0x4CU:
         decoder->limit = 514U;
         break;
-    case UINT8_C(0x43):
+    case 0x43U:
         decoder->limit = 130U;
         break;
     default:
@@ -1902,11 +1955,10 @@ static uint8_t dagny_robot_enter_payload(struct dagny_robot_decoder *decoder) {
 }
 
 /* A byte in front of the payload. */
-static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16_t index,
+                                     uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1927,7 +1979,8 @@ static uint8_t dagny_robot_cross(struct dagny_robot_decoder *decoder) {
         if ((decoder->flags & DAGNY_SEARCHING) == 0U) {
             decoder->end_left = 1;
         }
-    } else if ((decoder->flags & DAGNY_OPEN) != 0U && (decoder->flags & DAGNY_KNOWN) == 0U && (decoder->flags & DAGNY_SEARCHING) == 0U) {
+    } else if ((decoder->flags & DAGNY_OPEN) != 0U && (decoder->flags & DAGNY_KNOWN) == 0U &&
+               (decoder->flags & DAGNY_SEARCHING) == 0U) {
         decoder->flags |= DAGNY_SEARCHING;
     } else {
         /* The part goes on. */
@@ -1960,7 +2013,7 @@ static uint8_t dagny_robot_accept(struct dagny_robot_decoder *decoder, uint8_t b
 /* A byte that begins no delimiter. */
 static uint8_t dagny_robot_pass(struct dagny_robot_decoder *decoder, uint8_t byte) {
     if (decoder->end_left != 0U) {
-        if (byte != 0x0A) {
+        if (byte != 0x0AU) {
             return dagny_robot_surplus(decoder);
         }
         decoder->end_left--;
@@ -2004,7 +2057,7 @@ static uint8_t dagny_robot_close(struct dagny_robot_decoder *decoder) {
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t dagny_robot_search(struct dagny_robot_decoder *decoder, uint8_t byte) {
-    if (byte == 0x0A) {
+    if (byte == 0x0AU) {
         return dagny_robot_close(decoder);
     }
     return dagny_robot_pass(decoder, byte);
@@ -2014,10 +2067,11 @@ static uint8_t dagny_robot_search(struct dagny_robot_decoder *decoder, uint8_t b
 static uint8_t dagny_robot_take(struct dagny_robot_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (decoder->wire == 1U && byte == 0x0A) {
+    if (decoder->wire == 1U && byte == 0x0AU) {
         reason = DAGNY_NOISE;
     } else {
-        reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_robot_search(decoder, byte) : dagny_robot_pass(decoder, byte);
+        reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_robot_search(decoder, byte)
+                                                          : dagny_robot_pass(decoder, byte);
     }
     if (reason == DAGNY_NO_REASON && decoder->wire >= 515U) {
         reason = DAGNY_LENGTH;
@@ -2051,7 +2105,8 @@ static void dagny_robot_drop(struct dagny_robot_decoder *decoder, uint16_t size)
     const size_t count = decoder->count;
     size_t to = 0;
     size_t from;
-    for (from = size; from < count && to <= from; from++) { /* `to` is never greater; the proof sees it. */
+    for (from = size; from < count && to <= from; from++) { /* `to` is never greater;
+                                                           the proof sees it. */
         decoder->buffer[to] = decoder->buffer[from];
         to++;
     }
@@ -2074,7 +2129,7 @@ static void dagny_robot_judge(struct dagny_robot_decoder *decoder, uint8_t reaso
 
 /* A byte that no candidate has. */
 static void dagny_robot_seek(struct dagny_robot_decoder *decoder, uint8_t byte) {
-    decoder->match = (byte == 0x0A) ? (uint8_t)1U : (uint8_t)0U;
+    decoder->match = (byte == 0x0AU) ? (uint8_t)1U : (uint8_t)0U;
     dagny_robot_add_noise(decoder, 1);
     if (decoder->match == 1U) {
         dagny_robot_drop(decoder, decoder->next);
@@ -2088,16 +2143,16 @@ static void dagny_robot_seek(struct dagny_robot_decoder *decoder, uint8_t byte) 
 
 /* Go on behind a failed candidate's first byte, where the next frame may start. False: the bytes
    that are there do not tell yet where that is. */
-static bool dagny_robot_resume(struct dagny_robot_decoder *decoder, bool final) {
+static bool dagny_robot_resume(struct dagny_robot_decoder *decoder, bool is_end) {
     const uint16_t failed = decoder->failed;
     const uint16_t high = failed < decoder->count ? failed : decoder->count;
     uint16_t place;
     bool found = false;
     for (place = 0; place < high && !found; place++) {
-        decoder->match = (decoder->buffer[place] == 0x0A) ? (uint8_t)1U : (uint8_t)0U;
+        decoder->match = (decoder->buffer[place] == 0x0AU) ? (uint8_t)1U : (uint8_t)0U;
         found = decoder->match == 1U && place + 1U < high;
     }
-    (void) final;
+    (void)is_end;
     dagny_robot_invalid(decoder, decoder->reason, place);
     dagny_robot_drop(decoder, place);
     if (found) {
@@ -2109,11 +2164,11 @@ static bool dagny_robot_resume(struct dagny_robot_decoder *decoder, bool final) 
 }
 
 /* Read what is kept, until more bytes are needed. */
-static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool final) {
+static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool is_end) {
     bool goes_on = true;
     while (goes_on) {
         if (decoder->state == DAGNY_FAILED) {
-            goes_on = dagny_robot_resume(decoder, final);
+            goes_on = dagny_robot_resume(decoder, is_end);
         } else if (decoder->next >= decoder->count) {
             goes_on = false;
         } else {
@@ -2139,7 +2194,8 @@ void dagny_robot_decoder_push(struct dagny_robot_decoder *decoder, uint8_t byte)
     dagny_robot_run(decoder, false);
 }
 
-void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data, size_t size) {
+void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data,
+                              size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         dagny_robot_decoder_push(decoder, data[index]);
@@ -2154,7 +2210,8 @@ static void dagny_robot_reset(struct dagny_robot_decoder *decoder) {
     dagny_robot_open(decoder);
 }
 
-void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler, void *user) {
+void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,
+                              void *user) {
     decoder->handler = handler;
     decoder->user = user;
     decoder->offset = 0;
@@ -2172,7 +2229,7 @@ void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder) {
 }
 #ifndef DAGNY_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void dagny_host_dispatch(void *user, const struct dagny_host_event *event) {
     switch (event->message) {

@@ -28,7 +28,7 @@ enum dagny_result {
     DAGNY_OK = 0,
     /** Too few or too many bytes. */
     DAGNY_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     DAGNY_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     DAGNY_ERROR_ENCODING,
@@ -59,7 +59,7 @@ enum dagny_message {
     DAGNY_NO_MESSAGE = 16
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** What to do with the reflex (lines 70-72). */
 enum dagny_reflex_reflex_command {
@@ -88,11 +88,11 @@ enum dagny_power_code {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
 #define DAGNY_SONAR_ID 'S'
-#define DAGNY_SONAR_PAYLOAD_MIN 0u
-#define DAGNY_SONAR_PAYLOAD_MAX 128u
+#define DAGNY_SONAR_PAYLOAD_MIN 0U
+#define DAGNY_SONAR_PAYLOAD_MAX 128U
 #define DAGNY_SONAR_SPEC_HASH "1d8f0ecb52f07e8b25e762dded2334c0cdbcf2d2368edc5476d8a15c0b2491f8"
 
 /** Sonar data (line 31). */
@@ -109,11 +109,11 @@ enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t 
                                      size_t size);
 void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size);
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 #define DAGNY_GPS_ID 'G'
-#define DAGNY_GPS_PAYLOAD_MIN 0u
-#define DAGNY_GPS_PAYLOAD_MAX 128u
+#define DAGNY_GPS_PAYLOAD_MIN 0U
+#define DAGNY_GPS_PAYLOAD_MAX 128U
 #define DAGNY_GPS_SPEC_HASH "a546def6a1843a89b10da5d9acf0a5dba091c6dfd3d56c61c9212807b261fd83"
 
 /**
@@ -133,11 +133,11 @@ enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *pay
 enum dagny_result dagny_gps_decode(struct dagny_gps *message, const uint8_t *payload, size_t size);
 void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size);
 
-/* --- bump -------------------------------------------------------------------------------------- */
+/* --- bump ------------------------------------------------------------------------------------- */
 
 #define DAGNY_BUMP_ID 'B'
-#define DAGNY_BUMP_PAYLOAD_MIN 0u
-#define DAGNY_BUMP_PAYLOAD_MAX 128u
+#define DAGNY_BUMP_PAYLOAD_MIN 0U
+#define DAGNY_BUMP_PAYLOAD_MAX 128U
 #define DAGNY_BUMP_SPEC_HASH "0bcb23ff115dc977a2c6ed7069dc23829b9471371a35a293ab967b0c7053529b"
 
 /** Bump sensor data (line 33). */
@@ -154,11 +154,11 @@ enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *p
                                     size_t size);
 void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size);
 
-/* --- odometry ---------------------------------------------------------------------------------- */
+/* --- odometry --------------------------------------------------------------------------------- */
 
 #define DAGNY_ODOMETRY_ID 'O'
-#define DAGNY_ODOMETRY_PAYLOAD_MIN 0u
-#define DAGNY_ODOMETRY_PAYLOAD_MAX 128u
+#define DAGNY_ODOMETRY_PAYLOAD_MIN 0U
+#define DAGNY_ODOMETRY_PAYLOAD_MAX 128U
 #define DAGNY_ODOMETRY_SPEC_HASH "73fbf497be6c49973a2adcc98943bbee67b1d0623fee25ef6471ceffa0aaa298"
 
 /** Odometry counts (line 34). */
@@ -175,11 +175,11 @@ enum dagny_result dagny_odometry_decode(struct dagny_odometry *message, const ui
                                         size_t size);
 void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload, size_t size);
 
-/* --- speed ------------------------------------------------------------------------------------- */
+/* --- speed ------------------------------------------------------------------------------------ */
 
 #define DAGNY_SPEED_ID 'O'
-#define DAGNY_SPEED_PAYLOAD_MIN 0u
-#define DAGNY_SPEED_PAYLOAD_MAX 128u
+#define DAGNY_SPEED_PAYLOAD_MIN 0U
+#define DAGNY_SPEED_PAYLOAD_MAX 128U
 #define DAGNY_SPEED_SPEC_HASH "42a81a41aa8aece16309c416ff488fe433d24e8f80bdb1ed100d58c7e736640d"
 
 /** Speed readings (line 35). */
@@ -196,11 +196,11 @@ enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t 
                                      size_t size);
 void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size);
 
-/* --- wheel_slip -------------------------------------------------------------------------------- */
+/* --- wheel_slip ------------------------------------------------------------------------------- */
 
 #define DAGNY_WHEEL_SLIP_ID 'W'
-#define DAGNY_WHEEL_SLIP_PAYLOAD_MIN 0u
-#define DAGNY_WHEEL_SLIP_PAYLOAD_MAX 128u
+#define DAGNY_WHEEL_SLIP_PAYLOAD_MIN 0U
+#define DAGNY_WHEEL_SLIP_PAYLOAD_MAX 128U
 #define DAGNY_WHEEL_SLIP_SPEC_HASH "e5b7c0a5805d12a4b344010eccbdd6f7250c75e69f4d26ced5931c366aaebe54"
 
 /**
@@ -221,11 +221,11 @@ enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *message, cons
                                           size_t size);
 void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload, size_t size);
 
-/* --- battery ----------------------------------------------------------------------------------- */
+/* --- battery ---------------------------------------------------------------------------------- */
 
 #define DAGNY_BATTERY_ID 'b'
-#define DAGNY_BATTERY_PAYLOAD_MIN 0u
-#define DAGNY_BATTERY_PAYLOAD_MAX 128u
+#define DAGNY_BATTERY_PAYLOAD_MIN 0U
+#define DAGNY_BATTERY_PAYLOAD_MAX 128U
 #define DAGNY_BATTERY_SPEC_HASH "6980cc1698fa4bfbcaf06b727d2bc5d26fd4dbb4dc8ad1f9542984313a50d80d"
 
 /**
@@ -246,11 +246,11 @@ enum dagny_result dagny_battery_decode(struct dagny_battery *message, const uint
                                        size_t size);
 void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, size_t size);
 
-/* --- reflex_settings --------------------------------------------------------------------------- */
+/* --- reflex_settings -------------------------------------------------------------------------- */
 
 #define DAGNY_REFLEX_SETTINGS_ID 'R'
-#define DAGNY_REFLEX_SETTINGS_PAYLOAD_MIN 0u
-#define DAGNY_REFLEX_SETTINGS_PAYLOAD_MAX 128u
+#define DAGNY_REFLEX_SETTINGS_PAYLOAD_MIN 0U
+#define DAGNY_REFLEX_SETTINGS_PAYLOAD_MAX 128U
 #define DAGNY_REFLEX_SETTINGS_SPEC_HASH "c00e8945f7a5381745cc2f7046ff1e8856ee4fb3a7dc9389ca4dad922859f0f0"
 
 /** Settings of the reflexes (line 38). */
@@ -268,11 +268,11 @@ enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_settings *mes
 void dagny_reflex_settings_load(struct dagny_reflex_settings *message, const uint8_t *payload,
                                 size_t size);
 
-/* --- hardware_status --------------------------------------------------------------------------- */
+/* --- hardware_status -------------------------------------------------------------------------- */
 
 #define DAGNY_HARDWARE_STATUS_ID 'H'
-#define DAGNY_HARDWARE_STATUS_PAYLOAD_MIN 0u
-#define DAGNY_HARDWARE_STATUS_PAYLOAD_MAX 128u
+#define DAGNY_HARDWARE_STATUS_PAYLOAD_MIN 0U
+#define DAGNY_HARDWARE_STATUS_PAYLOAD_MAX 128U
 #define DAGNY_HARDWARE_STATUS_SPEC_HASH "c1bd4bfff65a044f16fa2f96318ee7a877a9166c09a20cfa9f1b595e9bcf0f1f"
 
 /** Whether the hardware sleeps or is awake (line 39). */
@@ -290,12 +290,12 @@ enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *mes
 void dagny_hardware_status_load(struct dagny_hardware_status *message, const uint8_t *payload,
                                 size_t size);
 
-/* --- motor ------------------------------------------------------------------------------------- */
+/* --- motor ------------------------------------------------------------------------------------ */
 
 #define DAGNY_MOTOR_ID 'M'
-#define DAGNY_MOTOR_PAYLOAD_SIZE 1u
-#define DAGNY_MOTOR_PAYLOAD_MIN 1u
-#define DAGNY_MOTOR_PAYLOAD_MAX 1u
+#define DAGNY_MOTOR_PAYLOAD_SIZE 1U
+#define DAGNY_MOTOR_PAYLOAD_MIN 1U
+#define DAGNY_MOTOR_PAYLOAD_MAX 1U
 #define DAGNY_MOTOR_SPEC_HASH "7e0d557d16b783f9ed86efcc75cabc819b3666002c41c0195e3a60ff0620d20e"
 
 /** Motor command (line 42). */
@@ -310,12 +310,12 @@ enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t 
                                      size_t size);
 void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
 
-/* --- steering ---------------------------------------------------------------------------------- */
+/* --- steering --------------------------------------------------------------------------------- */
 
 #define DAGNY_STEERING_ID 'S'
-#define DAGNY_STEERING_PAYLOAD_SIZE 1u
-#define DAGNY_STEERING_PAYLOAD_MIN 1u
-#define DAGNY_STEERING_PAYLOAD_MAX 1u
+#define DAGNY_STEERING_PAYLOAD_SIZE 1U
+#define DAGNY_STEERING_PAYLOAD_MIN 1U
+#define DAGNY_STEERING_PAYLOAD_MAX 1U
 #define DAGNY_STEERING_SPEC_HASH "9cafc9953be9e3a2cc62b845be69876aa2d6edcb7fa9f4d204926d18d0c1f073"
 
 /** Steering command (line 43). */
@@ -330,12 +330,12 @@ enum dagny_result dagny_steering_decode(struct dagny_steering *message, const ui
                                         size_t size);
 void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
 
-/* --- reflex ------------------------------------------------------------------------------------ */
+/* --- reflex ----------------------------------------------------------------------------------- */
 
 #define DAGNY_REFLEX_ID 'R'
-#define DAGNY_REFLEX_PAYLOAD_SIZE 1u
-#define DAGNY_REFLEX_PAYLOAD_MIN 1u
-#define DAGNY_REFLEX_PAYLOAD_MAX 1u
+#define DAGNY_REFLEX_PAYLOAD_SIZE 1U
+#define DAGNY_REFLEX_PAYLOAD_MIN 1U
+#define DAGNY_REFLEX_PAYLOAD_MAX 1U
 #define DAGNY_REFLEX_SPEC_HASH "6158249bb8c2d3fc8899e935ae500c53b4fa025ee894404c5c2dc3f075fe68cf"
 
 /**
@@ -356,33 +356,35 @@ enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_
 void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
-#define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0u
-#define DAGNY_REFLEX_REFLEX_COMMAND_SHIFT 6u
+#define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0U
+#define DAGNY_REFLEX_REFLEX_COMMAND_SHIFT 6U
 static inline uint8_t dagny_reflex_reflex_command_get(uint8_t raw) {
     return (uint8_t)((raw & DAGNY_REFLEX_REFLEX_COMMAND_MASK) >> DAGNY_REFLEX_REFLEX_COMMAND_SHIFT);
 }
 static inline uint8_t dagny_reflex_reflex_command_set(uint8_t raw, uint8_t value) {
     const uint8_t bits = (uint8_t)(value << DAGNY_REFLEX_REFLEX_COMMAND_SHIFT);
-    return (uint8_t)((raw & ~DAGNY_REFLEX_REFLEX_COMMAND_MASK) | (bits & DAGNY_REFLEX_REFLEX_COMMAND_MASK));
+    return (uint8_t)((raw & ~DAGNY_REFLEX_REFLEX_COMMAND_MASK) |
+                     (bits & DAGNY_REFLEX_REFLEX_COMMAND_MASK));
 }
 
 /** Number of the reflex; the document lists none; bits 0 to 5 of reflex. */
-#define DAGNY_REFLEX_REFLEX_NUMBER_MASK 0x3Fu
-#define DAGNY_REFLEX_REFLEX_NUMBER_SHIFT 0u
+#define DAGNY_REFLEX_REFLEX_NUMBER_MASK 0x3FU
+#define DAGNY_REFLEX_REFLEX_NUMBER_SHIFT 0U
 static inline uint8_t dagny_reflex_reflex_number_get(uint8_t raw) {
     return (uint8_t)((raw & DAGNY_REFLEX_REFLEX_NUMBER_MASK) >> DAGNY_REFLEX_REFLEX_NUMBER_SHIFT);
 }
 static inline uint8_t dagny_reflex_reflex_number_set(uint8_t raw, uint8_t value) {
     const uint8_t bits = (uint8_t)(value << DAGNY_REFLEX_REFLEX_NUMBER_SHIFT);
-    return (uint8_t)((raw & ~DAGNY_REFLEX_REFLEX_NUMBER_MASK) | (bits & DAGNY_REFLEX_REFLEX_NUMBER_MASK));
+    return (uint8_t)((raw & ~DAGNY_REFLEX_REFLEX_NUMBER_MASK) |
+                     (bits & DAGNY_REFLEX_REFLEX_NUMBER_MASK));
 }
 
-/* --- power_down -------------------------------------------------------------------------------- */
+/* --- power_down ------------------------------------------------------------------------------- */
 
 #define DAGNY_POWER_DOWN_ID 'P'
-#define DAGNY_POWER_DOWN_PAYLOAD_SIZE 1u
-#define DAGNY_POWER_DOWN_PAYLOAD_MIN 1u
-#define DAGNY_POWER_DOWN_PAYLOAD_MAX 1u
+#define DAGNY_POWER_DOWN_PAYLOAD_SIZE 1U
+#define DAGNY_POWER_DOWN_PAYLOAD_MIN 1U
+#define DAGNY_POWER_DOWN_PAYLOAD_MAX 1U
 #define DAGNY_POWER_DOWN_SPEC_HASH "13a4180e0f1232a178cee31890cbd72b734a9385f3d624b927788c1731bd3086"
 
 /** Powers the robot down after a time (line 45). */
@@ -397,12 +399,12 @@ enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, cons
                                           size_t size);
 void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload);
 
-/* --- power ------------------------------------------------------------------------------------- */
+/* --- power ------------------------------------------------------------------------------------ */
 
 #define DAGNY_POWER_ID 'P'
-#define DAGNY_POWER_PAYLOAD_SIZE 1u
-#define DAGNY_POWER_PAYLOAD_MIN 1u
-#define DAGNY_POWER_PAYLOAD_MAX 1u
+#define DAGNY_POWER_PAYLOAD_SIZE 1U
+#define DAGNY_POWER_PAYLOAD_MIN 1U
+#define DAGNY_POWER_PAYLOAD_MAX 1U
 #define DAGNY_POWER_SPEC_HASH "bad46df4053037bf37c65a4f9d46abd26c95f7896e68ec524d32680b48c2b1ff"
 
 /** Puts the hardware to sleep, wakes it, or asks for its state (lines 46, 77-82). */
@@ -417,11 +419,11 @@ enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t 
                                      size_t size);
 void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
 
-/* --- laser ------------------------------------------------------------------------------------- */
+/* --- laser ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LASER_ID 'L'
-#define DAGNY_LASER_PAYLOAD_MIN 0u
-#define DAGNY_LASER_PAYLOAD_MAX 512u
+#define DAGNY_LASER_PAYLOAD_MIN 0U
+#define DAGNY_LASER_PAYLOAD_MAX 512U
 #define DAGNY_LASER_SPEC_HASH "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
 #define DAGNY_LASER_READINGS_SCALE_NUM 2
 #define DAGNY_LASER_READINGS_SCALE_DEN 1
@@ -452,11 +454,11 @@ static inline uint8_t dagny_laser_readings_at(const uint8_t *payload, size_t ind
     return at[0];
 }
 
-/* --- command ----------------------------------------------------------------------------------- */
+/* --- command ---------------------------------------------------------------------------------- */
 
 #define DAGNY_COMMAND_ID 'C'
-#define DAGNY_COMMAND_PAYLOAD_MIN 0u
-#define DAGNY_COMMAND_PAYLOAD_MAX 128u
+#define DAGNY_COMMAND_PAYLOAD_MIN 0U
+#define DAGNY_COMMAND_PAYLOAD_MAX 128U
 #define DAGNY_COMMAND_SPEC_HASH "2eea58598c00d9405b8d62b654f8781b2cc7060fd8da4c14b5f7d57e778a6904"
 
 /** Commands, passed through (line 50). */
@@ -473,7 +475,7 @@ enum dagny_result dagny_command_decode(struct dagny_command *message, const uint
                                        size_t size);
 void dagny_command_load(struct dagny_command *message, const uint8_t *payload, size_t size);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -487,107 +489,107 @@ void dagny_command_load(struct dagny_command *message, const uint8_t *payload, s
 typedef void (*dagny_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_SONAR_FRAME_MAX 131u
-#define DAGNY_SONAR_FRAME_ROOM 131u
+#define DAGNY_SONAR_FRAME_MAX 131U
+#define DAGNY_SONAR_FRAME_ROOM 131U
 enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
                                     size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_GPS_FRAME_MAX 131u
-#define DAGNY_GPS_FRAME_ROOM 131u
+#define DAGNY_GPS_FRAME_MAX 131U
+#define DAGNY_GPS_FRAME_ROOM 131U
 enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity,
                                   size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_BUMP_FRAME_MAX 131u
-#define DAGNY_BUMP_FRAME_ROOM 131u
+#define DAGNY_BUMP_FRAME_MAX 131U
+#define DAGNY_BUMP_FRAME_ROOM 131U
 enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
                                    size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_ODOMETRY_FRAME_MAX 131u
-#define DAGNY_ODOMETRY_FRAME_ROOM 131u
+#define DAGNY_ODOMETRY_FRAME_MAX 131U
+#define DAGNY_ODOMETRY_FRAME_ROOM 131U
 enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
                                        size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_SPEED_FRAME_MAX 131u
-#define DAGNY_SPEED_FRAME_ROOM 131u
+#define DAGNY_SPEED_FRAME_MAX 131U
+#define DAGNY_SPEED_FRAME_ROOM 131U
 enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
                                     size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_WHEEL_SLIP_FRAME_MAX 131u
-#define DAGNY_WHEEL_SLIP_FRAME_ROOM 131u
+#define DAGNY_WHEEL_SLIP_FRAME_MAX 131U
+#define DAGNY_WHEEL_SLIP_FRAME_ROOM 131U
 enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
                                          size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_BATTERY_FRAME_MAX 131u
-#define DAGNY_BATTERY_FRAME_ROOM 131u
+#define DAGNY_BATTERY_FRAME_MAX 131U
+#define DAGNY_BATTERY_FRAME_ROOM 131U
 enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
                                       size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131u
-#define DAGNY_REFLEX_SETTINGS_FRAME_ROOM 131u
+#define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131U
+#define DAGNY_REFLEX_SETTINGS_FRAME_ROOM 131U
 enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
                                               uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_HARDWARE_STATUS_FRAME_MAX 131u
-#define DAGNY_HARDWARE_STATUS_FRAME_ROOM 131u
+#define DAGNY_HARDWARE_STATUS_FRAME_MAX 131U
+#define DAGNY_HARDWARE_STATUS_FRAME_ROOM 131U
 enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
                                               uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_MOTOR_FRAME_MAX 4u
-#define DAGNY_MOTOR_FRAME_ROOM 4u
+#define DAGNY_MOTOR_FRAME_MAX 4U
+#define DAGNY_MOTOR_FRAME_ROOM 4U
 enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
                                     size_t capacity, size_t *size);
 enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_STEERING_FRAME_MAX 4u
-#define DAGNY_STEERING_FRAME_ROOM 4u
+#define DAGNY_STEERING_FRAME_MAX 4U
+#define DAGNY_STEERING_FRAME_ROOM 4U
 enum dagny_result dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
                                        size_t capacity, size_t *size);
 enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_REFLEX_FRAME_MAX 4u
-#define DAGNY_REFLEX_FRAME_ROOM 4u
+#define DAGNY_REFLEX_FRAME_MAX 4U
+#define DAGNY_REFLEX_FRAME_ROOM 4U
 enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
                                      size_t capacity, size_t *size);
 enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_POWER_DOWN_FRAME_MAX 4u
-#define DAGNY_POWER_DOWN_FRAME_ROOM 4u
+#define DAGNY_POWER_DOWN_FRAME_MAX 4U
+#define DAGNY_POWER_DOWN_FRAME_ROOM 4U
 enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message, uint8_t *frame,
                                          size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_POWER_FRAME_MAX 4u
-#define DAGNY_POWER_FRAME_ROOM 4u
+#define DAGNY_POWER_FRAME_MAX 4U
+#define DAGNY_POWER_FRAME_ROOM 4U
 enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
                                     size_t capacity, size_t *size);
 enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LASER_FRAME_MAX 515u
-#define DAGNY_LASER_FRAME_ROOM 515u
+#define DAGNY_LASER_FRAME_MAX 515U
+#define DAGNY_LASER_FRAME_ROOM 515U
 enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
                                     size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_COMMAND_FRAME_MAX 131u
-#define DAGNY_COMMAND_FRAME_ROOM 131u
+#define DAGNY_COMMAND_FRAME_MAX 131U
+#define DAGNY_COMMAND_FRAME_ROOM 131U
 enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
                                       size_t capacity, size_t *size);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum dagny_event_kind {
@@ -609,7 +611,7 @@ enum dagny_reason {
     DAGNY_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what host sends -------------------------------------------------------------------- */
+/* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
 #define DAGNY_HOST_FRAME_MAX 515U
@@ -646,26 +648,43 @@ typedef void (*dagny_host_handler)(void *user, const struct dagny_host_event *ev
 struct dagny_host_decoder {
     dagny_host_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Bytes in the buffer. */
     uint16_t count;
+    /** Place in the buffer of the byte to read next. */
     uint16_t next;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of the end that are due. */
     uint8_t end_left;
+    /** Bytes of the candidate. */
     uint8_t buffer[515];
 };
 
 /** Start at the beginning of an input. */
-void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler, void *user);
+void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
+                             void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void dagny_host_decoder_push(struct dagny_host_decoder *decoder, uint8_t byte);
@@ -676,7 +695,7 @@ void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_host_decoder_flush(struct dagny_host_decoder *decoder);
 
-/* --- what robot sends -------------------------------------------------------------------- */
+/* --- what robot sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of robot on the wire, in bytes. */
 #define DAGNY_ROBOT_FRAME_MAX 515U
@@ -713,43 +732,61 @@ typedef void (*dagny_robot_handler)(void *user, const struct dagny_robot_event *
 struct dagny_robot_decoder {
     dagny_robot_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Bytes in the buffer. */
     uint16_t count;
+    /** Place in the buffer of the byte to read next. */
     uint16_t next;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of the end that are due. */
     uint8_t end_left;
+    /** Bytes of the candidate. */
     uint8_t buffer[515];
 };
 
 /** Start at the beginning of an input. */
-void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler, void *user);
+void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,
+                              void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void dagny_robot_decoder_push(struct dagny_robot_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data, size_t size);
+void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data,
+                              size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * DAGNY_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining DAGNY_NO_HANDLERS for the source.
  */
 
 /** motor came from host. */

@@ -13,11 +13,11 @@ static void dagny_library_copy(void *to, const void *from, size_t size) {
 
 static bool dagny_library_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0u;
+    uint8_t all = 0U;
     for (size_t i = 0; i < size; i++) {
         all |= bytes[i];
     }
-    return all <= 0x7Fu;
+    return all <= 0x7FU;
 }
 
 static void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
@@ -37,49 +37,51 @@ static void dagny_library_store_u32le(uint8_t *at, uint32_t value) {
 }
 
 static uint32_t dagny_library_load_u32le(const uint8_t *at) {
-    return (uint32_t)(at[0] | ((uint32_t)at[1] << 8) | ((uint32_t)at[2] << 16) | ((uint32_t)at[3] << 24));
+    return (uint32_t)(at[0] | ((uint32_t)at[1] << 8) | ((uint32_t)at[2] << 16) |
+                      ((uint32_t)at[3] << 24));
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
 static void dagny_library_sonar_store(const struct dagny_library_sonar *message, uint8_t *payload) {
-    dagny_library_copy(payload, message->distances, 5u);
+    dagny_library_copy(payload, message->distances, 5U);
 }
 
 enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_sonar *message,
                                                      uint8_t *payload, size_t capacity,
                                                      size_t *size) {
-    if (capacity < 5u) {
+    if (capacity < 5U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_sonar_store(message, payload);
-    *size = 5u;
+    *size = 5U;
     return DAGNY_LIBRARY_OK;
 }
 
 void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload) {
-    dagny_library_copy(message->distances, payload, 5u);
+    dagny_library_copy(message->distances, payload, 5U);
 }
 
 enum dagny_library_result dagny_library_sonar_decode(struct dagny_library_sonar *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 5u) {
+    if (size != 5U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_sonar_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 static size_t dagny_library_gps_measure(const struct dagny_library_gps *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->nmea_size;
     return size;
 }
 
-static enum dagny_library_result dagny_library_gps_validate(const struct dagny_library_gps *message) {
-    if (message->nmea_size > 126u) {
+static enum dagny_library_result dagny_library_gps_validate(
+    const struct dagny_library_gps *message) {
+    if (message->nmea_size > 126U) {
         return DAGNY_LIBRARY_ERROR_RANGE;
     }
     if (!dagny_library_is_seven_bit(message->nmea, message->nmea_size)) {
@@ -112,7 +114,7 @@ static enum dagny_library_result dagny_library_gps_check(const uint8_t *payload,
                                                          size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 126u) {
+    if (size > 126U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     return DAGNY_LIBRARY_OK;
@@ -134,7 +136,7 @@ enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *mes
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- odometry ---------------------------------------------------------------------------------- */
+/* --- odometry --------------------------------------------------------------------------------- */
 
 static void dagny_library_odometry_store(const struct dagny_library_odometry *message,
                                          uint8_t *payload) {
@@ -147,14 +149,13 @@ static void dagny_library_odometry_store(const struct dagny_library_odometry *me
     payload[12] = (uint8_t)message->steer;
 }
 
-enum dagny_library_result dagny_library_odometry_encode(const struct dagny_library_odometry *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 13u) {
+enum dagny_library_result dagny_library_odometry_encode(
+    const struct dagny_library_odometry *message, uint8_t *payload, size_t capacity, size_t *size) {
+    if (capacity < 13U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_odometry_store(message, payload);
-    *size = 13u;
+    *size = 13U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -170,14 +171,14 @@ void dagny_library_odometry_load(struct dagny_library_odometry *message, const u
 
 enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odometry *message,
                                                         const uint8_t *payload, size_t size) {
-    if (size != 13u) {
+    if (size != 13U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_odometry_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- battery ----------------------------------------------------------------------------------- */
+/* --- battery ---------------------------------------------------------------------------------- */
 
 static void dagny_library_battery_store(const struct dagny_library_battery *message,
                                         uint8_t *payload) {
@@ -189,11 +190,11 @@ static void dagny_library_battery_store(const struct dagny_library_battery *mess
 enum dagny_library_result dagny_library_battery_encode(const struct dagny_library_battery *message,
                                                        uint8_t *payload, size_t capacity,
                                                        size_t *size) {
-    if (capacity < 6u) {
+    if (capacity < 6U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_battery_store(message, payload);
-    *size = 6u;
+    *size = 6U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -205,14 +206,14 @@ void dagny_library_battery_load(struct dagny_library_battery *message, const uin
 
 enum dagny_library_result dagny_library_battery_decode(struct dagny_library_battery *message,
                                                        const uint8_t *payload, size_t size) {
-    if (size != 6u) {
+    if (size != 6U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_battery_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
 static void dagny_library_compass_store(const struct dagny_library_compass *message,
                                         uint8_t *payload) {
@@ -223,11 +224,11 @@ static void dagny_library_compass_store(const struct dagny_library_compass *mess
 enum dagny_library_result dagny_library_compass_encode(const struct dagny_library_compass *message,
                                                        uint8_t *payload, size_t capacity,
                                                        size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_compass_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -238,14 +239,14 @@ void dagny_library_compass_load(struct dagny_library_compass *message, const uin
 
 enum dagny_library_result dagny_library_compass_decode(struct dagny_library_compass *message,
                                                        const uint8_t *payload, size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_compass_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- motor ------------------------------------------------------------------------------------- */
+/* --- motor ------------------------------------------------------------------------------------ */
 
 static void dagny_library_motor_store(const struct dagny_library_motor *message, uint8_t *payload) {
     payload[0] = (uint8_t)message->speed;
@@ -254,11 +255,11 @@ static void dagny_library_motor_store(const struct dagny_library_motor *message,
 enum dagny_library_result dagny_library_motor_encode(const struct dagny_library_motor *message,
                                                      uint8_t *payload, size_t capacity,
                                                      size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_motor_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -268,14 +269,14 @@ void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t
 
 enum dagny_library_result dagny_library_motor_decode(struct dagny_library_motor *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_motor_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- drive ------------------------------------------------------------------------------------- */
+/* --- drive ------------------------------------------------------------------------------------ */
 
 static void dagny_library_drive_store(const struct dagny_library_drive *message, uint8_t *payload) {
     payload[0] = (uint8_t)message->speed;
@@ -285,11 +286,11 @@ static void dagny_library_drive_store(const struct dagny_library_drive *message,
 enum dagny_library_result dagny_library_drive_encode(const struct dagny_library_drive *message,
                                                      uint8_t *payload, size_t capacity,
                                                      size_t *size) {
-    if (capacity < 2u) {
+    if (capacity < 2U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_drive_store(message, payload);
-    *size = 2u;
+    *size = 2U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -300,28 +301,27 @@ void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t
 
 enum dagny_library_result dagny_library_drive_decode(struct dagny_library_drive *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 2u) {
+    if (size != 2U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_drive_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- steering ---------------------------------------------------------------------------------- */
+/* --- steering --------------------------------------------------------------------------------- */
 
 static void dagny_library_steering_store(const struct dagny_library_steering *message,
                                          uint8_t *payload) {
     payload[0] = message->position;
 }
 
-enum dagny_library_result dagny_library_steering_encode(const struct dagny_library_steering *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 1u) {
+enum dagny_library_result dagny_library_steering_encode(
+    const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size) {
+    if (capacity < 1U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_steering_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -331,14 +331,14 @@ void dagny_library_steering_load(struct dagny_library_steering *message, const u
 
 enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
                                                         const uint8_t *payload, size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_steering_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- power ------------------------------------------------------------------------------------- */
+/* --- power ------------------------------------------------------------------------------------ */
 
 static void dagny_library_power_store(const struct dagny_library_power *message, uint8_t *payload) {
     payload[0] = message->code;
@@ -347,11 +347,11 @@ static void dagny_library_power_store(const struct dagny_library_power *message,
 enum dagny_library_result dagny_library_power_encode(const struct dagny_library_power *message,
                                                      uint8_t *payload, size_t capacity,
                                                      size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_power_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -361,14 +361,14 @@ void dagny_library_power_load(struct dagny_library_power *message, const uint8_t
 
 enum dagny_library_result dagny_library_power_decode(struct dagny_library_power *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_power_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- gps_position ------------------------------------------------------------------------------ */
+/* --- gps_position ----------------------------------------------------------------------------- */
 
 static void dagny_library_gps_position_store(const struct dagny_library_gps_position *message,
                                              uint8_t *payload) {
@@ -376,14 +376,14 @@ static void dagny_library_gps_position_store(const struct dagny_library_gps_posi
     dagny_library_store_u32le(payload + 4, (uint32_t)message->longitude);
 }
 
-enum dagny_library_result dagny_library_gps_position_encode(const struct dagny_library_gps_position *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size) {
-    if (capacity < 8u) {
+enum dagny_library_result dagny_library_gps_position_encode(
+    const struct dagny_library_gps_position *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_gps_position_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return DAGNY_LIBRARY_OK;
 }
 
@@ -393,25 +393,26 @@ void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
     message->longitude = (int32_t)dagny_library_load_u32le(payload + 4);
 }
 
-enum dagny_library_result dagny_library_gps_position_decode(struct dagny_library_gps_position *message,
-                                                            const uint8_t *payload, size_t size) {
-    if (size != 8u) {
+enum dagny_library_result dagny_library_gps_position_decode(
+    struct dagny_library_gps_position *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     dagny_library_gps_position_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- laser ------------------------------------------------------------------------------------- */
+/* --- laser ------------------------------------------------------------------------------------ */
 
 static size_t dagny_library_laser_measure(const struct dagny_library_laser *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->readings_count;
     return size;
 }
 
-static enum dagny_library_result dagny_library_laser_validate(const struct dagny_library_laser *message) {
-    if (message->readings_count > 512u) {
+static enum dagny_library_result dagny_library_laser_validate(
+    const struct dagny_library_laser *message) {
+    if (message->readings_count > 512U) {
         return DAGNY_LIBRARY_ERROR_RANGE;
     }
     return DAGNY_LIBRARY_OK;
@@ -442,7 +443,7 @@ static enum dagny_library_result dagny_library_laser_check(const uint8_t *payloa
     (void)payload;
     (void)need;
     size_t at = 0;
-    if (size - at > 512u) {
+    if (size - at > 512U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
     return DAGNY_LIBRARY_OK;
@@ -464,56 +465,55 @@ enum dagny_library_result dagny_library_laser_decode(struct dagny_library_laser 
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- shutdown ---------------------------------------------------------------------------------- */
+/* --- shutdown --------------------------------------------------------------------------------- */
 
 static void dagny_library_shutdown_store(const struct dagny_library_shutdown *message,
                                          uint8_t *payload) {
     (void)message;
-    payload[0] = 0x5Au;
-    payload[1] = 0x5Au;
-    payload[2] = 0x5Au;
-    payload[3] = 0x5Au;
-    payload[4] = 0x5Au;
-    payload[5] = 0x5Au;
-    payload[6] = 0x5Au;
+    payload[0] = 0x5AU;
+    payload[1] = 0x5AU;
+    payload[2] = 0x5AU;
+    payload[3] = 0x5AU;
+    payload[4] = 0x5AU;
+    payload[5] = 0x5AU;
+    payload[6] = 0x5AU;
 }
 
-enum dagny_library_result dagny_library_shutdown_encode(const struct dagny_library_shutdown *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 7u) {
+enum dagny_library_result dagny_library_shutdown_encode(
+    const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size) {
+    if (capacity < 7U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_shutdown_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return DAGNY_LIBRARY_OK;
 }
 
 static enum dagny_library_result dagny_library_shutdown_check(const uint8_t *payload, size_t size,
                                                               size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return DAGNY_LIBRARY_ERROR_SIZE;
     }
-    if (payload[0] != 0x5Au) {
+    if (payload[0] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[1] != 0x5Au) {
+    if (payload[1] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[2] != 0x5Au) {
+    if (payload[2] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[3] != 0x5Au) {
+    if (payload[3] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[4] != 0x5Au) {
+    if (payload[4] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[5] != 0x5Au) {
+    if (payload[5] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
-    if (payload[6] != 0x5Au) {
+    if (payload[6] != 0x5AU) {
         return DAGNY_LIBRARY_ERROR_VALUE;
     }
     return DAGNY_LIBRARY_OK;
@@ -521,7 +521,7 @@ static enum dagny_library_result dagny_library_shutdown_check(const uint8_t *pay
 
 void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shutdown *message,
@@ -534,7 +534,7 @@ enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shu
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     DAGNY_LIBRARY_SEEKING,
@@ -544,11 +544,11 @@ enum {
 
 enum {
     DAGNY_LIBRARY_KNOWN = 1,     /* The payload's size is known. */
-    DAGNY_LIBRARY_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    DAGNY_LIBRARY_OPEN = 2,      /* Only what follows the payload tells its size. */
     DAGNY_LIBRARY_SEARCHING = 4, /* A delimiter is looked for. */
-    DAGNY_LIBRARY_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    DAGNY_LIBRARY_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     DAGNY_LIBRARY_EMPTY = 16,    /* The stuffed region holds nothing. */
-    DAGNY_LIBRARY_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    DAGNY_LIBRARY_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -557,26 +557,27 @@ enum {
     DAGNY_LIBRARY_AFTER
 };
 
-#define DAGNY_LIBRARY_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define DAGNY_LIBRARY_FRAME 0xFFU
 
-/* --- what host sends: frames -------------------------------------------------------------- */
+/* --- what host sends: frames ------------------------------------------------------------------ */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t dagny_library_host_room(size_t payload) {
-    const size_t content = 1u + payload + 0u;
-    return 2u * content + 1u;
+    const size_t content = 1U + payload + 0U;
+    return 2U * content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *dagny_library_host_payload(uint8_t *frame, size_t payload) {
-    return &frame[dagny_library_host_room(payload) - 0u - payload];
+    return &frame[dagny_library_host_room(payload) - 0U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t dagny_library_host_stuff(uint8_t *wire, uint8_t byte) {
-    if (byte == 0x0D || byte == 0x1B) {
-        wire[0] = 0x1B;
-        wire[1] = (uint8_t)(byte ^ 0x1Bu);
+    if (byte == 0x0DU || byte == 0x1BU) {
+        wire[0] = 0x1BU;
+        wire[1] = (uint8_t)(byte ^ 0x1BU);
         return 2;
     }
     wire[0] = byte;
@@ -586,29 +587,29 @@ static size_t dagny_library_host_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     uint8_t *const content = dagny_library_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    const uint16_t stuffed = (uint16_t)(1u + payload + 0u);
+    uint8_t *const tail = &content[1U + payload];
+    const uint16_t stuffed = (uint16_t)(1U + payload + 0U);
     uint16_t from = 0;
     uint8_t *to = frame;
     (void)tail;
-    content[0u] = (uint8_t)id;
+    content[0U] = (uint8_t)id;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     for (; from < stuffed; from++) {
         uint8_t byte = content[from];
-        if (byte == 0x0D || byte == 0x1B) {
-            *to = 0x1B;
+        if (byte == 0x0DU || byte == 0x1BU) {
+            *to = 0x1BU;
             to++;
-            byte = (uint8_t)(byte ^ 0x1Bu);
+            byte = (uint8_t)(byte ^ 0x1BU);
         }
         *to = byte;
         to++;
     }
-    *to = 0x0D;
+    *to = 0x0DU;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct dagny_library_writer {
     dagny_library_put put;
@@ -621,7 +622,7 @@ enum { DAGNY_LIBRARY_STUFFED = 128 };
 
 /* The next byte of content. */
 static void dagny_library_host_write(struct dagny_library_writer *writer, uint8_t byte) {
-    if ((writer->flags & DAGNY_LIBRARY_STUFFED) != 0u) {
+    if ((writer->flags & DAGNY_LIBRARY_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = dagny_library_host_stuff(wire, byte);
         size_t index;
@@ -633,19 +634,21 @@ static void dagny_library_host_write(struct dagny_library_writer *writer, uint8_
     writer->put(writer->user, byte);
 }
 
-static void dagny_library_host_send_head(struct dagny_library_writer *writer, size_t payload, uint8_t id) {
+static void dagny_library_host_send_head(struct dagny_library_writer *writer, size_t payload,
+                                         uint8_t id) {
     (void)writer;
     (void)payload;
     (void)id;
-    writer->flags = 128u;
+    writer->flags = 128U;
     dagny_library_host_write(writer, (uint8_t)id);
 }
 
-static void dagny_library_host_send_tail(struct dagny_library_writer *writer, size_t payload, uint8_t id) {
+static void dagny_library_host_send_tail(struct dagny_library_writer *writer, size_t payload,
+                                         uint8_t id) {
     (void)writer;
     (void)payload;
     (void)id;
-    writer->put(writer->user, 0x0D);
+    writer->put(writer->user, 0x0DU);
 }
 
 static void dagny_library_write(struct dagny_library_writer *writer, uint8_t byte) {
@@ -674,7 +677,7 @@ static void dagny_library_write_u32le(struct dagny_library_writer *writer, uint3
 
 static void dagny_library_sonar_put(const struct dagny_library_sonar *message,
                                     struct dagny_library_writer *writer) {
-    dagny_library_write_bytes(writer, message->distances, 5u);
+    dagny_library_write_bytes(writer, message->distances, 5U);
 }
 
 static void dagny_library_gps_put(const struct dagny_library_gps *message,
@@ -741,37 +744,37 @@ static void dagny_library_laser_put(const struct dagny_library_laser *message,
 static void dagny_library_shutdown_put(const struct dagny_library_shutdown *message,
                                        struct dagny_library_writer *writer) {
     (void)message;
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
-    dagny_library_write(writer, 0x5Au);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
+    dagny_library_write(writer, 0x5AU);
 }
 
 enum dagny_library_result dagny_library_sonar_frame(const struct dagny_library_sonar *message,
                                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_sonar_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x53);
+    *size = dagny_library_host_wrap(frame, payload, 0x53U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_sonar_send(const struct dagny_library_sonar *message,
                                                    dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x53);
+    dagny_library_host_send_head(&writer, payload, 0x53U);
     dagny_library_sonar_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x53);
+    dagny_library_host_send_tail(&writer, payload, 0x53U);
     return DAGNY_LIBRARY_OK;
 }
 
@@ -787,7 +790,7 @@ enum dagny_library_result dagny_library_gps_frame(const struct dagny_library_gps
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_gps_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x47);
+    *size = dagny_library_host_wrap(frame, payload, 0x47U);
     return DAGNY_LIBRARY_OK;
 }
 
@@ -804,214 +807,214 @@ enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps 
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x47);
+    dagny_library_host_send_head(&writer, payload, 0x47U);
     dagny_library_gps_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x47);
+    dagny_library_host_send_tail(&writer, payload, 0x47U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_odometry_frame(const struct dagny_library_odometry *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size) {
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_odometry_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4F);
+    *size = dagny_library_host_wrap(frame, payload, 0x4FU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_odometry_send(const struct dagny_library_odometry *message,
                                                       dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x4F);
+    dagny_library_host_send_head(&writer, payload, 0x4FU);
     dagny_library_odometry_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x4F);
+    dagny_library_host_send_tail(&writer, payload, 0x4FU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_battery_frame(const struct dagny_library_battery *message,
                                                       uint8_t *frame, size_t capacity,
                                                       size_t *size) {
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_battery_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x62);
+    *size = dagny_library_host_wrap(frame, payload, 0x62U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_battery_send(const struct dagny_library_battery *message,
                                                      dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x62);
+    dagny_library_host_send_head(&writer, payload, 0x62U);
     dagny_library_battery_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x62);
+    dagny_library_host_send_tail(&writer, payload, 0x62U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_compass_frame(const struct dagny_library_compass *message,
                                                       uint8_t *frame, size_t capacity,
                                                       size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_compass_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x43);
+    *size = dagny_library_host_wrap(frame, payload, 0x43U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_compass_send(const struct dagny_library_compass *message,
                                                      dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x43);
+    dagny_library_host_send_head(&writer, payload, 0x43U);
     dagny_library_compass_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x43);
+    dagny_library_host_send_tail(&writer, payload, 0x43U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_motor_frame(const struct dagny_library_motor *message,
                                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_motor_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4D);
+    *size = dagny_library_host_wrap(frame, payload, 0x4DU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_motor_send(const struct dagny_library_motor *message,
                                                    dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x4D);
+    dagny_library_host_send_head(&writer, payload, 0x4DU);
     dagny_library_motor_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x4D);
+    dagny_library_host_send_tail(&writer, payload, 0x4DU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_drive_frame(const struct dagny_library_drive *message,
                                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_drive_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4D);
+    *size = dagny_library_host_wrap(frame, payload, 0x4DU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_drive_send(const struct dagny_library_drive *message,
                                                    dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x4D);
+    dagny_library_host_send_head(&writer, payload, 0x4DU);
     dagny_library_drive_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x4D);
+    dagny_library_host_send_tail(&writer, payload, 0x4DU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_steering_frame(const struct dagny_library_steering *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_steering_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x53);
+    *size = dagny_library_host_wrap(frame, payload, 0x53U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_steering_send(const struct dagny_library_steering *message,
                                                       dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x53);
+    dagny_library_host_send_head(&writer, payload, 0x53U);
     dagny_library_steering_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x53);
+    dagny_library_host_send_tail(&writer, payload, 0x53U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_power_frame(const struct dagny_library_power *message,
                                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_power_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x50);
+    *size = dagny_library_host_wrap(frame, payload, 0x50U);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,
                                                    dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x50);
+    dagny_library_host_send_head(&writer, payload, 0x50U);
     dagny_library_power_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x50);
+    dagny_library_host_send_tail(&writer, payload, 0x50U);
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_gps_position_frame(const struct dagny_library_gps_position *message,
-                                                           uint8_t *frame, size_t capacity,
-                                                           size_t *size) {
-    const size_t payload = 8u;
+enum dagny_library_result dagny_library_gps_position_frame(
+    const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 8U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_gps_position_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x47);
+    *size = dagny_library_host_wrap(frame, payload, 0x47U);
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_gps_position_send(const struct dagny_library_gps_position *message,
-                                                          dagny_library_put put, void *user) {
+enum dagny_library_result dagny_library_gps_position_send(
+    const struct dagny_library_gps_position *message, dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x47);
+    dagny_library_host_send_head(&writer, payload, 0x47U);
     dagny_library_gps_position_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x47);
+    dagny_library_host_send_tail(&writer, payload, 0x47U);
     return DAGNY_LIBRARY_OK;
 }
 
@@ -1027,7 +1030,7 @@ enum dagny_library_result dagny_library_laser_frame(const struct dagny_library_l
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_laser_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4C);
+    *size = dagny_library_host_wrap(frame, payload, 0x4CU);
     return DAGNY_LIBRARY_OK;
 }
 
@@ -1044,43 +1047,44 @@ enum dagny_library_result dagny_library_laser_send(const struct dagny_library_la
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x4C);
+    dagny_library_host_send_head(&writer, payload, 0x4CU);
     dagny_library_laser_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x4C);
+    dagny_library_host_send_tail(&writer, payload, 0x4CU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_shutdown_frame(const struct dagny_library_shutdown *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
     dagny_library_shutdown_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x5A);
+    *size = dagny_library_host_wrap(frame, payload, 0x5AU);
     return DAGNY_LIBRARY_OK;
 }
 
 enum dagny_library_result dagny_library_shutdown_send(const struct dagny_library_shutdown *message,
                                                       dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    dagny_library_host_send_head(&writer, payload, 0x5A);
+    dagny_library_host_send_head(&writer, payload, 0x5AU);
     dagny_library_shutdown_put(message, &writer);
-    dagny_library_host_send_tail(&writer, payload, 0x5A);
+    dagny_library_host_send_tail(&writer, payload, 0x5AU);
     return DAGNY_LIBRARY_OK;
 }
 
-/* --- what host sends: the decoder --------------------------------------------------------- */
+/* --- what host sends: the decoder ------------------------------------------------------------- */
 
 /* Events. */
 
-static void dagny_library_host_invalid(struct dagny_library_host_decoder *decoder, uint8_t reason, uint16_t size) {
+static void dagny_library_host_invalid(struct dagny_library_host_decoder *decoder, uint8_t reason,
+                                       uint16_t size) {
     struct dagny_library_host_event event;
     event.kind = DAGNY_LIBRARY_INVALID;
     event.reason = (enum dagny_library_reason)reason;
@@ -1102,7 +1106,8 @@ static void dagny_library_host_end_noise(struct dagny_library_host_decoder *deco
     }
 }
 
-static void dagny_library_host_add_noise(struct dagny_library_host_decoder *decoder, uint16_t size) {
+static void dagny_library_host_add_noise(struct dagny_library_host_decoder *decoder,
+                                         uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -1114,33 +1119,54 @@ static void dagny_library_host_add_noise(struct dagny_library_host_decoder *deco
 
 /* The message of a valid frame. */
 
-static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts *parts,
+                                           const uint8_t *payload, uint16_t size,
+                                           uint8_t *message) {
     *message = DAGNY_LIBRARY_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->id) {
-    case UINT8_C(0x4D):
+    case 0x4DU:
         if (size == 2U && !(size == 1U)) {
             *message = DAGNY_LIBRARY_MESSAGE_DRIVE;
-            return size == 2U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
+            if (size != 2U) {
+                return DAGNY_LIBRARY_SIZE;
+            }
+            return DAGNY_LIBRARY_NO_REASON;
         }
         *message = DAGNY_LIBRARY_MESSAGE_MOTOR;
-        return size == 1U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x53):
+        if (size != 1U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x53U:
         *message = DAGNY_LIBRARY_MESSAGE_STEERING;
-        return size == 1U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x50):
+        if (size != 1U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x50U:
         *message = DAGNY_LIBRARY_MESSAGE_POWER;
-        return size == 1U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x47):
+        if (size != 1U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x47U:
         *message = DAGNY_LIBRARY_MESSAGE_GPS_POSITION;
-        return size == 8U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x4C):
+        if (size != 8U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x4CU:
         *message = DAGNY_LIBRARY_MESSAGE_LASER;
-        return (uint8_t)((size <= 512U) ? (int)dagny_library_laser_check(payload, size, NULL) : (int)DAGNY_LIBRARY_SIZE);
-    case UINT8_C(0x5A):
+        if (size > 512U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return (uint8_t)dagny_library_laser_check(payload, size, NULL);
+    case 0x5AU:
         *message = DAGNY_LIBRARY_MESSAGE_SHUTDOWN;
-        return (uint8_t)(size == 7U ? (int)dagny_library_shutdown_check(payload, size, NULL) : (int)DAGNY_LIBRARY_SIZE);
+        if (size != 7U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return (uint8_t)dagny_library_shutdown_check(payload, size, NULL);
     default:
         return DAGNY_LIBRARY_NO_REASON;
     }
@@ -1163,7 +1189,8 @@ static uint8_t dagny_library_host_complete(struct dagny_library_host_decoder *de
         return reason;
     }
     dagny_library_host_end_noise(decoder);
-    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                     : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1181,31 +1208,33 @@ static uint8_t dagny_library_host_surplus(const struct dagny_library_host_decode
 }
 
 /* From now on the payload's size is known. */
-static void dagny_library_host_set_payload(struct dagny_library_host_decoder *decoder, uint16_t size) {
+static void dagny_library_host_set_payload(struct dagny_library_host_decoder *decoder,
+                                           uint16_t size) {
     decoder->payload = size;
     decoder->limit = (uint16_t)(1U + size + 0U);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 
 /* What the identity says of the payload's size. */
-static uint8_t dagny_library_host_find_size(struct dagny_library_host_decoder *decoder, uint8_t key) {
+static uint8_t dagny_library_host_find_size(struct dagny_library_host_decoder *decoder,
+                                            uint8_t key) {
     switch (key) {
-    case UINT8_C(0x4D):
+    case 0x4DU:
         decoder->limit = 3U;
         break;
-    case UINT8_C(0x53):
+    case 0x53U:
         dagny_library_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x50):
+    case 0x50U:
         dagny_library_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0x47):
+    case 0x47U:
         dagny_library_host_set_payload(decoder, 8U);
         break;
-    case UINT8_C(0x4C):
+    case 0x4CU:
         decoder->limit = 513U;
         break;
-    case UINT8_C(0x5A):
+    case 0x5AU:
         dagny_library_host_set_payload(decoder, 7U);
         break;
     default:
@@ -1223,11 +1252,10 @@ static uint8_t dagny_library_host_enter_payload(struct dagny_library_host_decode
 }
 
 /* A byte in front of the payload. */
-static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *decoder,
+                                            uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1251,7 +1279,8 @@ static uint8_t dagny_library_host_finish_region(struct dagny_library_host_decode
 static uint8_t dagny_library_host_cross(struct dagny_library_host_decoder *decoder) {
     if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit)) {
         /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U && (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
+    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U &&
+               (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
         /* The end is looked for all the time. */
     } else {
         /* The part goes on. */
@@ -1272,7 +1301,8 @@ static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *deco
     if (index < 1U) {
         reason = dagny_library_host_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
-        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
+                  index + 1U == 1U + decoder->payload;
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
@@ -1282,15 +1312,20 @@ static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *deco
     return reason;
 }
 
-static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *decoder, uint8_t byte) {
+static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *decoder,
+                                          uint8_t byte) {
     uint8_t value = byte;
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return ((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit) ? dagny_library_host_surplus(decoder) : (uint8_t)DAGNY_LIBRARY_NO_REASON;
-        case 0x0D:
+            if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
+                 decoder->content == decoder->limit)) {
+                return dagny_library_host_surplus(decoder);
+            }
+            return DAGNY_LIBRARY_NO_REASON;
+        case 0x0DU:
             return DAGNY_LIBRARY_STUFFING;
         default:
             break;
@@ -1298,10 +1333,10 @@ static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *dec
         break;
     default:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
-        case 0x16:
+        case 0x16U:
             value = 0x0DU;
             break;
         default:
@@ -1353,7 +1388,7 @@ static uint8_t dagny_library_host_close(struct dagny_library_host_decoder *decod
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t dagny_library_host_search(struct dagny_library_host_decoder *decoder, uint8_t byte) {
-    if (byte == 0x0D) {
+    if (byte == 0x0DU) {
         return dagny_library_host_close(decoder);
     }
     return dagny_library_host_pass(decoder, byte);
@@ -1363,8 +1398,8 @@ static uint8_t dagny_library_host_search(struct dagny_library_host_decoder *deco
 static uint8_t dagny_library_host_take(struct dagny_library_host_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    decoder->match = (byte == 0x0D) ? (uint8_t)1U : (uint8_t)0U;
-    if (decoder->wire == 1U && byte == 0x0D) {
+    decoder->match = (byte == 0x0DU) ? (uint8_t)1U : (uint8_t)0U;
+    if (decoder->wire == 1U && byte == 0x0DU) {
         reason = DAGNY_LIBRARY_NOISE;
     } else {
         reason = dagny_library_host_search(decoder, byte);
@@ -1396,10 +1431,10 @@ static void dagny_library_host_seek_on(struct dagny_library_host_decoder *decode
     }
 }
 
-static void dagny_library_host_judge(struct dagny_library_host_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void dagny_library_host_judge(struct dagny_library_host_decoder *decoder, uint8_t reason,
+                                     uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason != DAGNY_LIBRARY_FRAME) {
         dagny_library_host_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }
@@ -1408,7 +1443,7 @@ static void dagny_library_host_judge(struct dagny_library_host_decoder *decoder,
 
 /* A byte that no candidate has. */
 static void dagny_library_host_seek(struct dagny_library_host_decoder *decoder, uint8_t byte) {
-    decoder->match = (byte == 0x0D) ? (uint8_t)1U : (uint8_t)0U;
+    decoder->match = (byte == 0x0DU) ? (uint8_t)1U : (uint8_t)0U;
     dagny_library_host_add_noise(decoder, 1);
     dagny_library_host_seek_on(decoder);
 }
@@ -1424,7 +1459,8 @@ void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder,
     }
 }
 
-void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder, const uint8_t *data, size_t size) {
+void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
+                                     const uint8_t *data, size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         dagny_library_host_decoder_push(decoder, data[index]);
@@ -1437,7 +1473,8 @@ static void dagny_library_host_reset(struct dagny_library_host_decoder *decoder)
     dagny_library_host_open(decoder);
 }
 
-void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder, dagny_library_host_handler handler, void *user) {
+void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
+                                     dagny_library_host_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     decoder->offset = 0;
@@ -1452,11 +1489,12 @@ void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder
     dagny_library_host_reset(decoder);
 }
 
-/* --- what robot sends: the decoder --------------------------------------------------------- */
+/* --- what robot sends: the decoder ------------------------------------------------------------ */
 
 /* Events. */
 
-static void dagny_library_robot_invalid(struct dagny_library_robot_decoder *decoder, uint8_t reason, uint16_t size) {
+static void dagny_library_robot_invalid(struct dagny_library_robot_decoder *decoder, uint8_t reason,
+                                        uint16_t size) {
     struct dagny_library_robot_event event;
     event.kind = DAGNY_LIBRARY_INVALID;
     event.reason = (enum dagny_library_reason)reason;
@@ -1478,7 +1516,8 @@ static void dagny_library_robot_end_noise(struct dagny_library_robot_decoder *de
     }
 }
 
-static void dagny_library_robot_add_noise(struct dagny_library_robot_decoder *decoder, uint16_t size) {
+static void dagny_library_robot_add_noise(struct dagny_library_robot_decoder *decoder,
+                                          uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -1490,32 +1529,53 @@ static void dagny_library_robot_add_noise(struct dagny_library_robot_decoder *de
 
 /* The message of a valid frame. */
 
-static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_parts *parts,
+                                            const uint8_t *payload, uint16_t size,
+                                            uint8_t *message) {
     *message = DAGNY_LIBRARY_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->id) {
-    case UINT8_C(0x53):
+    case 0x53U:
         *message = DAGNY_LIBRARY_MESSAGE_SONAR;
-        return size == 5U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x47):
+        if (size != 5U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x47U:
         *message = DAGNY_LIBRARY_MESSAGE_GPS;
-        return (uint8_t)((size <= 126U) ? (int)dagny_library_gps_check(payload, size, NULL) : (int)DAGNY_LIBRARY_SIZE);
-    case UINT8_C(0x4F):
+        if (size > 126U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return (uint8_t)dagny_library_gps_check(payload, size, NULL);
+    case 0x4FU:
         *message = DAGNY_LIBRARY_MESSAGE_ODOMETRY;
-        return size == 13U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x62):
+        if (size != 13U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x62U:
         *message = DAGNY_LIBRARY_MESSAGE_BATTERY;
-        return size == 6U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x43):
+        if (size != 6U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x43U:
         *message = DAGNY_LIBRARY_MESSAGE_COMPASS;
-        return size == 4U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_SIZE;
-    case UINT8_C(0x4C):
+        if (size != 4U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return DAGNY_LIBRARY_NO_REASON;
+    case 0x4CU:
         *message = DAGNY_LIBRARY_MESSAGE_LASER;
-        return (uint8_t)((size <= 512U) ? (int)dagny_library_laser_check(payload, size, NULL) : (int)DAGNY_LIBRARY_SIZE);
-    case UINT8_C(0x5A):
+        if (size > 512U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return (uint8_t)dagny_library_laser_check(payload, size, NULL);
+    case 0x5AU:
         *message = DAGNY_LIBRARY_MESSAGE_SHUTDOWN;
-        return (uint8_t)(size == 7U ? (int)dagny_library_shutdown_check(payload, size, NULL) : (int)DAGNY_LIBRARY_SIZE);
+        if (size != 7U) {
+            return DAGNY_LIBRARY_SIZE;
+        }
+        return (uint8_t)dagny_library_shutdown_check(payload, size, NULL);
     default:
         return DAGNY_LIBRARY_NO_REASON;
     }
@@ -1538,7 +1598,8 @@ static uint8_t dagny_library_robot_complete(struct dagny_library_robot_decoder *
         return reason;
     }
     dagny_library_robot_end_noise(decoder);
-    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                     : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1556,34 +1617,36 @@ static uint8_t dagny_library_robot_surplus(const struct dagny_library_robot_deco
 }
 
 /* From now on the payload's size is known. */
-static void dagny_library_robot_set_payload(struct dagny_library_robot_decoder *decoder, uint16_t size) {
+static void dagny_library_robot_set_payload(struct dagny_library_robot_decoder *decoder,
+                                            uint16_t size) {
     decoder->payload = size;
     decoder->limit = (uint16_t)(1U + size + 0U);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 
 /* What the identity says of the payload's size. */
-static uint8_t dagny_library_robot_find_size(struct dagny_library_robot_decoder *decoder, uint8_t key) {
+static uint8_t dagny_library_robot_find_size(struct dagny_library_robot_decoder *decoder,
+                                             uint8_t key) {
     switch (key) {
-    case UINT8_C(0x53):
+    case 0x53U:
         dagny_library_robot_set_payload(decoder, 5U);
         break;
-    case UINT8_C(0x47):
+    case 0x47U:
         decoder->limit = 127U;
         break;
-    case UINT8_C(0x4F):
+    case 0x4FU:
         dagny_library_robot_set_payload(decoder, 13U);
         break;
-    case UINT8_C(0x62):
+    case 0x62U:
         dagny_library_robot_set_payload(decoder, 6U);
         break;
-    case UINT8_C(0x43):
+    case 0x43U:
         dagny_library_robot_set_payload(decoder, 4U);
         break;
-    case UINT8_C(0x4C):
+    case 0x4CU:
         decoder->limit = 513U;
         break;
-    case UINT8_C(0x5A):
+    case 0x5AU:
         dagny_library_robot_set_payload(decoder, 7U);
         break;
     default:
@@ -1601,11 +1664,10 @@ static uint8_t dagny_library_robot_enter_payload(struct dagny_library_robot_deco
 }
 
 /* A byte in front of the payload. */
-static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder *decoder,
+                                             uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1629,7 +1691,8 @@ static uint8_t dagny_library_robot_finish_region(struct dagny_library_robot_deco
 static uint8_t dagny_library_robot_cross(struct dagny_library_robot_decoder *decoder) {
     if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit)) {
         /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U && (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
+    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U &&
+               (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
         /* The end is looked for all the time. */
     } else {
         /* The part goes on. */
@@ -1638,7 +1701,8 @@ static uint8_t dagny_library_robot_cross(struct dagny_library_robot_decoder *dec
 }
 
 /* One byte of content. */
-static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
+static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *decoder,
+                                          uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
@@ -1650,7 +1714,8 @@ static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *de
     if (index < 1U) {
         reason = dagny_library_robot_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
-        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
+                  index + 1U == 1U + decoder->payload;
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
@@ -1660,15 +1725,20 @@ static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *de
     return reason;
 }
 
-static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
+static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *decoder,
+                                           uint8_t byte) {
     uint8_t value = byte;
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return ((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit) ? dagny_library_robot_surplus(decoder) : (uint8_t)DAGNY_LIBRARY_NO_REASON;
-        case 0x0D:
+            if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
+                 decoder->content == decoder->limit)) {
+                return dagny_library_robot_surplus(decoder);
+            }
+            return DAGNY_LIBRARY_NO_REASON;
+        case 0x0DU:
             return DAGNY_LIBRARY_STUFFING;
         default:
             break;
@@ -1676,10 +1746,10 @@ static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *d
         break;
     default:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
-        case 0x16:
+        case 0x16U:
             value = 0x0DU;
             break;
         default:
@@ -1730,8 +1800,9 @@ static uint8_t dagny_library_robot_close(struct dagny_library_robot_decoder *dec
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
-static uint8_t dagny_library_robot_search(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
-    if (byte == 0x0D) {
+static uint8_t dagny_library_robot_search(struct dagny_library_robot_decoder *decoder,
+                                          uint8_t byte) {
+    if (byte == 0x0DU) {
         return dagny_library_robot_close(decoder);
     }
     return dagny_library_robot_pass(decoder, byte);
@@ -1741,8 +1812,8 @@ static uint8_t dagny_library_robot_search(struct dagny_library_robot_decoder *de
 static uint8_t dagny_library_robot_take(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    decoder->match = (byte == 0x0D) ? (uint8_t)1U : (uint8_t)0U;
-    if (decoder->wire == 1U && byte == 0x0D) {
+    decoder->match = (byte == 0x0DU) ? (uint8_t)1U : (uint8_t)0U;
+    if (decoder->wire == 1U && byte == 0x0DU) {
         reason = DAGNY_LIBRARY_NOISE;
     } else {
         reason = dagny_library_robot_search(decoder, byte);
@@ -1774,10 +1845,10 @@ static void dagny_library_robot_seek_on(struct dagny_library_robot_decoder *deco
     }
 }
 
-static void dagny_library_robot_judge(struct dagny_library_robot_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void dagny_library_robot_judge(struct dagny_library_robot_decoder *decoder, uint8_t reason,
+                                      uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason != DAGNY_LIBRARY_FRAME) {
         dagny_library_robot_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }
@@ -1786,7 +1857,7 @@ static void dagny_library_robot_judge(struct dagny_library_robot_decoder *decode
 
 /* A byte that no candidate has. */
 static void dagny_library_robot_seek(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
-    decoder->match = (byte == 0x0D) ? (uint8_t)1U : (uint8_t)0U;
+    decoder->match = (byte == 0x0DU) ? (uint8_t)1U : (uint8_t)0U;
     dagny_library_robot_add_noise(decoder, 1);
     dagny_library_robot_seek_on(decoder);
 }
@@ -1802,7 +1873,8 @@ void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decode
     }
 }
 
-void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder, const uint8_t *data, size_t size) {
+void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder,
+                                      const uint8_t *data, size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         dagny_library_robot_decoder_push(decoder, data[index]);
@@ -1815,7 +1887,8 @@ static void dagny_library_robot_reset(struct dagny_library_robot_decoder *decode
     dagny_library_robot_open(decoder);
 }
 
-void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder, dagny_library_robot_handler handler, void *user) {
+void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
+                                      dagny_library_robot_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     decoder->offset = 0;
@@ -1831,7 +1904,7 @@ void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decod
 }
 #ifndef DAGNY_LIBRARY_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void dagny_library_host_dispatch(void *user, const struct dagny_library_host_event *event) {
     switch (event->message) {
@@ -1965,25 +2038,25 @@ __attribute__((weak)) void dagny_library_on_power(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_gps_position(void *user,
-                                                         const struct dagny_library_gps_position *message,
-                                                         const struct dagny_library_host_parts *parts) {
+__attribute__((weak)) void dagny_library_on_gps_position(
+    void *user, const struct dagny_library_gps_position *message,
+    const struct dagny_library_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_laser_from_host(void *user,
-                                                            const struct dagny_library_laser *message,
-                                                            const struct dagny_library_host_parts *parts) {
+__attribute__((weak)) void dagny_library_on_laser_from_host(
+    void *user, const struct dagny_library_laser *message,
+    const struct dagny_library_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_shutdown_from_host(void *user,
-                                                               const struct dagny_library_shutdown *message,
-                                                               const struct dagny_library_host_parts *parts) {
+__attribute__((weak)) void dagny_library_on_shutdown_from_host(
+    void *user, const struct dagny_library_shutdown *message,
+    const struct dagny_library_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -2004,9 +2077,9 @@ __attribute__((weak)) void dagny_library_on_gps(void *user, const struct dagny_l
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_odometry(void *user,
-                                                     const struct dagny_library_odometry *message,
-                                                     const struct dagny_library_robot_parts *parts) {
+__attribute__((weak)) void dagny_library_on_odometry(
+    void *user, const struct dagny_library_odometry *message,
+    const struct dagny_library_robot_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -2028,17 +2101,17 @@ __attribute__((weak)) void dagny_library_on_compass(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_laser_from_robot(void *user,
-                                                             const struct dagny_library_laser *message,
-                                                             const struct dagny_library_robot_parts *parts) {
+__attribute__((weak)) void dagny_library_on_laser_from_robot(
+    void *user, const struct dagny_library_laser *message,
+    const struct dagny_library_robot_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void dagny_library_on_shutdown_from_robot(void *user,
-                                                                const struct dagny_library_shutdown *message,
-                                                                const struct dagny_library_robot_parts *parts) {
+__attribute__((weak)) void dagny_library_on_shutdown_from_robot(
+    void *user, const struct dagny_library_shutdown *message,
+    const struct dagny_library_robot_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

@@ -28,7 +28,7 @@ enum dagny_library_result {
     DAGNY_LIBRARY_OK = 0,
     /** Too few or too many bytes. */
     DAGNY_LIBRARY_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     DAGNY_LIBRARY_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     DAGNY_LIBRARY_ERROR_ENCODING,
@@ -55,7 +55,7 @@ enum dagny_library_message {
     DAGNY_LIBRARY_NO_MESSAGE = 12
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /**
  * Power control code, an ASCII digit (trainman419/Senior-Project, trainman419/dagny_protocol (facts
@@ -76,12 +76,12 @@ enum dagny_library_power_code {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_SONAR_ID 'S'
-#define DAGNY_LIBRARY_SONAR_PAYLOAD_SIZE 5u
-#define DAGNY_LIBRARY_SONAR_PAYLOAD_MIN 5u
-#define DAGNY_LIBRARY_SONAR_PAYLOAD_MAX 5u
+#define DAGNY_LIBRARY_SONAR_PAYLOAD_SIZE 5U
+#define DAGNY_LIBRARY_SONAR_PAYLOAD_MIN 5U
+#define DAGNY_LIBRARY_SONAR_PAYLOAD_MAX 5U
 #define DAGNY_LIBRARY_SONAR_SPEC_HASH "df2aaa59f1a0d50220fdce5fc00d868c1c11d2802391be17268a4c22eff468e2"
 #define DAGNY_LIBRARY_SONAR_DISTANCES_UNIT "inch"
 
@@ -110,11 +110,11 @@ static inline uint8_t dagny_library_sonar_distances_at(const uint8_t *payload, s
     return at[0];
 }
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_GPS_ID 'G'
-#define DAGNY_LIBRARY_GPS_PAYLOAD_MIN 0u
-#define DAGNY_LIBRARY_GPS_PAYLOAD_MAX 126u
+#define DAGNY_LIBRARY_GPS_PAYLOAD_MIN 0U
+#define DAGNY_LIBRARY_GPS_PAYLOAD_MAX 126U
 #define DAGNY_LIBRARY_GPS_SPEC_HASH "48d9c0ba9665c2cc49c1c936f4d1976d84a5e654c61d2b77a4ae33524993c417"
 
 /**
@@ -139,12 +139,12 @@ enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *mes
                                                    const uint8_t *payload, size_t size);
 void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *payload, size_t size);
 
-/* --- odometry ---------------------------------------------------------------------------------- */
+/* --- odometry --------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_ODOMETRY_ID 'O'
-#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_SIZE 13u
-#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MIN 13u
-#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MAX 13u
+#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_SIZE 13U
+#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MIN 13U
+#define DAGNY_LIBRARY_ODOMETRY_PAYLOAD_MAX 13U
 #define DAGNY_LIBRARY_ODOMETRY_SPEC_HASH "1449487c01e8e321544936269bd11a45d2d0275f63621c5ef01e0d8bd0dc4ed0"
 
 /**
@@ -189,19 +189,18 @@ struct dagny_library_odometry {
     int8_t steer;
 };
 
-enum dagny_library_result dagny_library_odometry_encode(const struct dagny_library_odometry *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
+enum dagny_library_result dagny_library_odometry_encode(
+    const struct dagny_library_odometry *message, uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odometry *message,
                                                         const uint8_t *payload, size_t size);
 void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload);
 
-/* --- battery ----------------------------------------------------------------------------------- */
+/* --- battery ---------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_BATTERY_ID 'b'
-#define DAGNY_LIBRARY_BATTERY_PAYLOAD_SIZE 6u
-#define DAGNY_LIBRARY_BATTERY_PAYLOAD_MIN 6u
-#define DAGNY_LIBRARY_BATTERY_PAYLOAD_MAX 6u
+#define DAGNY_LIBRARY_BATTERY_PAYLOAD_SIZE 6U
+#define DAGNY_LIBRARY_BATTERY_PAYLOAD_MIN 6U
+#define DAGNY_LIBRARY_BATTERY_PAYLOAD_MAX 6U
 #define DAGNY_LIBRARY_BATTERY_SPEC_HASH "f4fdec3e72d6c3ac1335349cfa8c38bc5f104a60b0a3efc4192c087d4c344488"
 
 /**
@@ -235,12 +234,12 @@ enum dagny_library_result dagny_library_battery_decode(struct dagny_library_batt
                                                        const uint8_t *payload, size_t size);
 void dagny_library_battery_load(struct dagny_library_battery *message, const uint8_t *payload);
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_COMPASS_ID 'C'
-#define DAGNY_LIBRARY_COMPASS_PAYLOAD_SIZE 4u
-#define DAGNY_LIBRARY_COMPASS_PAYLOAD_MIN 4u
-#define DAGNY_LIBRARY_COMPASS_PAYLOAD_MAX 4u
+#define DAGNY_LIBRARY_COMPASS_PAYLOAD_SIZE 4U
+#define DAGNY_LIBRARY_COMPASS_PAYLOAD_MIN 4U
+#define DAGNY_LIBRARY_COMPASS_PAYLOAD_MAX 4U
 #define DAGNY_LIBRARY_COMPASS_SPEC_HASH "4dceaf9755b84710721e72e341a9f0f8b180cc406970329787c51e07f634c19f"
 
 /**
@@ -267,12 +266,12 @@ enum dagny_library_result dagny_library_compass_decode(struct dagny_library_comp
                                                        const uint8_t *payload, size_t size);
 void dagny_library_compass_load(struct dagny_library_compass *message, const uint8_t *payload);
 
-/* --- motor ------------------------------------------------------------------------------------- */
+/* --- motor ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_MOTOR_ID 'M'
-#define DAGNY_LIBRARY_MOTOR_PAYLOAD_SIZE 1u
-#define DAGNY_LIBRARY_MOTOR_PAYLOAD_MIN 1u
-#define DAGNY_LIBRARY_MOTOR_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_MOTOR_PAYLOAD_SIZE 1U
+#define DAGNY_LIBRARY_MOTOR_PAYLOAD_MIN 1U
+#define DAGNY_LIBRARY_MOTOR_PAYLOAD_MAX 1U
 #define DAGNY_LIBRARY_MOTOR_SPEC_HASH "e47a92779a3a46f30e677001eb8eb3b8534082e91797ceea9258c29c13954eef"
 
 /**
@@ -296,12 +295,12 @@ enum dagny_library_result dagny_library_motor_decode(struct dagny_library_motor 
                                                      const uint8_t *payload, size_t size);
 void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t *payload);
 
-/* --- drive ------------------------------------------------------------------------------------- */
+/* --- drive ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_DRIVE_ID 'M'
-#define DAGNY_LIBRARY_DRIVE_PAYLOAD_SIZE 2u
-#define DAGNY_LIBRARY_DRIVE_PAYLOAD_MIN 2u
-#define DAGNY_LIBRARY_DRIVE_PAYLOAD_MAX 2u
+#define DAGNY_LIBRARY_DRIVE_PAYLOAD_SIZE 2U
+#define DAGNY_LIBRARY_DRIVE_PAYLOAD_MIN 2U
+#define DAGNY_LIBRARY_DRIVE_PAYLOAD_MAX 2U
 #define DAGNY_LIBRARY_DRIVE_SPEC_HASH "740134c3168c20db3c527edd23e3f8a61c74e47eaf343b8bfa43356c1401a241"
 
 /**
@@ -330,12 +329,12 @@ enum dagny_library_result dagny_library_drive_decode(struct dagny_library_drive 
                                                      const uint8_t *payload, size_t size);
 void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t *payload);
 
-/* --- steering ---------------------------------------------------------------------------------- */
+/* --- steering --------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_STEERING_ID 'S'
-#define DAGNY_LIBRARY_STEERING_PAYLOAD_SIZE 1u
-#define DAGNY_LIBRARY_STEERING_PAYLOAD_MIN 1u
-#define DAGNY_LIBRARY_STEERING_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_STEERING_PAYLOAD_SIZE 1U
+#define DAGNY_LIBRARY_STEERING_PAYLOAD_MIN 1U
+#define DAGNY_LIBRARY_STEERING_PAYLOAD_MAX 1U
 #define DAGNY_LIBRARY_STEERING_SPEC_HASH "f82d76fc9bcdcc09e25661f90614ede9089f9be0c14d6bb10e27db536c2e72bc"
 
 /**
@@ -350,19 +349,18 @@ struct dagny_library_steering {
     uint8_t position;
 };
 
-enum dagny_library_result dagny_library_steering_encode(const struct dagny_library_steering *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
+enum dagny_library_result dagny_library_steering_encode(
+    const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
                                                         const uint8_t *payload, size_t size);
 void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload);
 
-/* --- power ------------------------------------------------------------------------------------- */
+/* --- power ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_POWER_ID 'P'
-#define DAGNY_LIBRARY_POWER_PAYLOAD_SIZE 1u
-#define DAGNY_LIBRARY_POWER_PAYLOAD_MIN 1u
-#define DAGNY_LIBRARY_POWER_PAYLOAD_MAX 1u
+#define DAGNY_LIBRARY_POWER_PAYLOAD_SIZE 1U
+#define DAGNY_LIBRARY_POWER_PAYLOAD_MIN 1U
+#define DAGNY_LIBRARY_POWER_PAYLOAD_MAX 1U
 #define DAGNY_LIBRARY_POWER_SPEC_HASH "ac433642534e2929f0055be648c1066c8e8b2feb2262ab2b75d08828dbae757d"
 
 /**
@@ -383,12 +381,12 @@ enum dagny_library_result dagny_library_power_decode(struct dagny_library_power 
                                                      const uint8_t *payload, size_t size);
 void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload);
 
-/* --- gps_position ------------------------------------------------------------------------------ */
+/* --- gps_position ----------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_GPS_POSITION_ID 'G'
-#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_SIZE 8u
-#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MIN 8u
-#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MAX 8u
+#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_SIZE 8U
+#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MIN 8U
+#define DAGNY_LIBRARY_GPS_POSITION_PAYLOAD_MAX 8U
 #define DAGNY_LIBRARY_GPS_POSITION_SPEC_HASH "aba8a6750100fac4f82eebe887292ab3e9b0068f9b3faf42687ccfdfcba4b886"
 #define DAGNY_LIBRARY_GPS_POSITION_LATITUDE_SCALE_NUM 1
 #define DAGNY_LIBRARY_GPS_POSITION_LATITUDE_SCALE_DEN 1000000L
@@ -414,19 +412,19 @@ struct dagny_library_gps_position {
     int32_t longitude;
 };
 
-enum dagny_library_result dagny_library_gps_position_encode(const struct dagny_library_gps_position *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size);
-enum dagny_library_result dagny_library_gps_position_decode(struct dagny_library_gps_position *message,
-                                                            const uint8_t *payload, size_t size);
+enum dagny_library_result dagny_library_gps_position_encode(
+    const struct dagny_library_gps_position *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum dagny_library_result dagny_library_gps_position_decode(
+    struct dagny_library_gps_position *message, const uint8_t *payload, size_t size);
 void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
                                      const uint8_t *payload);
 
-/* --- laser ------------------------------------------------------------------------------------- */
+/* --- laser ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_LASER_ID 'L'
-#define DAGNY_LIBRARY_LASER_PAYLOAD_MIN 0u
-#define DAGNY_LIBRARY_LASER_PAYLOAD_MAX 512u
+#define DAGNY_LIBRARY_LASER_PAYLOAD_MIN 0U
+#define DAGNY_LIBRARY_LASER_PAYLOAD_MAX 512U
 #define DAGNY_LIBRARY_LASER_SPEC_HASH "56f3f9e61200d2d32f3d9c2cbf67637558f84a462c122d4563a9a99d98e7ad0b"
 #define DAGNY_LIBRARY_LASER_READINGS_SCALE_NUM 2
 #define DAGNY_LIBRARY_LASER_READINGS_SCALE_DEN 1
@@ -462,12 +460,12 @@ static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, si
     return at[0];
 }
 
-/* --- shutdown ---------------------------------------------------------------------------------- */
+/* --- shutdown --------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_SHUTDOWN_ID 'Z'
-#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_SIZE 7u
-#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MIN 7u
-#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MAX 7u
+#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_SIZE 7U
+#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MIN 7U
+#define DAGNY_LIBRARY_SHUTDOWN_PAYLOAD_MAX 7U
 #define DAGNY_LIBRARY_SHUTDOWN_SPEC_HASH "4b1e37385caecd4f088329d91b89b77550fe1d33fd24023bc359946d517f72c9"
 
 /**
@@ -481,14 +479,13 @@ struct dagny_library_shutdown {
     uint8_t unused;
 };
 
-enum dagny_library_result dagny_library_shutdown_encode(const struct dagny_library_shutdown *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
+enum dagny_library_result dagny_library_shutdown_encode(
+    const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shutdown *message,
                                                         const uint8_t *payload, size_t size);
 void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -502,24 +499,24 @@ void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const u
 typedef void (*dagny_library_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_SONAR_FRAME_MAX 12u
-#define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13u
+#define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
+#define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13U
 enum dagny_library_result dagny_library_sonar_frame(const struct dagny_library_sonar *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_sonar_send(const struct dagny_library_sonar *message,
                                                    dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_GPS_FRAME_MAX 254u
-#define DAGNY_LIBRARY_GPS_FRAME_ROOM 255u
+#define DAGNY_LIBRARY_GPS_FRAME_MAX 254U
+#define DAGNY_LIBRARY_GPS_FRAME_ROOM 255U
 enum dagny_library_result dagny_library_gps_frame(const struct dagny_library_gps *message,
                                                   uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps *message,
                                                  dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_ODOMETRY_FRAME_MAX 28u
-#define DAGNY_LIBRARY_ODOMETRY_FRAME_ROOM 29u
+#define DAGNY_LIBRARY_ODOMETRY_FRAME_MAX 28U
+#define DAGNY_LIBRARY_ODOMETRY_FRAME_ROOM 29U
 enum dagny_library_result dagny_library_odometry_frame(const struct dagny_library_odometry *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size);
@@ -527,8 +524,8 @@ enum dagny_library_result dagny_library_odometry_send(const struct dagny_library
                                                       dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_BATTERY_FRAME_MAX 14u
-#define DAGNY_LIBRARY_BATTERY_FRAME_ROOM 15u
+#define DAGNY_LIBRARY_BATTERY_FRAME_MAX 14U
+#define DAGNY_LIBRARY_BATTERY_FRAME_ROOM 15U
 enum dagny_library_result dagny_library_battery_frame(const struct dagny_library_battery *message,
                                                       uint8_t *frame, size_t capacity,
                                                       size_t *size);
@@ -536,8 +533,8 @@ enum dagny_library_result dagny_library_battery_send(const struct dagny_library_
                                                      dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_COMPASS_FRAME_MAX 10u
-#define DAGNY_LIBRARY_COMPASS_FRAME_ROOM 11u
+#define DAGNY_LIBRARY_COMPASS_FRAME_MAX 10U
+#define DAGNY_LIBRARY_COMPASS_FRAME_ROOM 11U
 enum dagny_library_result dagny_library_compass_frame(const struct dagny_library_compass *message,
                                                       uint8_t *frame, size_t capacity,
                                                       size_t *size);
@@ -545,24 +542,24 @@ enum dagny_library_result dagny_library_compass_send(const struct dagny_library_
                                                      dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_MOTOR_FRAME_MAX 4u
-#define DAGNY_LIBRARY_MOTOR_FRAME_ROOM 5u
+#define DAGNY_LIBRARY_MOTOR_FRAME_MAX 4U
+#define DAGNY_LIBRARY_MOTOR_FRAME_ROOM 5U
 enum dagny_library_result dagny_library_motor_frame(const struct dagny_library_motor *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_motor_send(const struct dagny_library_motor *message,
                                                    dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_DRIVE_FRAME_MAX 6u
-#define DAGNY_LIBRARY_DRIVE_FRAME_ROOM 7u
+#define DAGNY_LIBRARY_DRIVE_FRAME_MAX 6U
+#define DAGNY_LIBRARY_DRIVE_FRAME_ROOM 7U
 enum dagny_library_result dagny_library_drive_frame(const struct dagny_library_drive *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_drive_send(const struct dagny_library_drive *message,
                                                    dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_STEERING_FRAME_MAX 4u
-#define DAGNY_LIBRARY_STEERING_FRAME_ROOM 5u
+#define DAGNY_LIBRARY_STEERING_FRAME_MAX 4U
+#define DAGNY_LIBRARY_STEERING_FRAME_ROOM 5U
 enum dagny_library_result dagny_library_steering_frame(const struct dagny_library_steering *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size);
@@ -570,40 +567,40 @@ enum dagny_library_result dagny_library_steering_send(const struct dagny_library
                                                       dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_POWER_FRAME_MAX 4u
-#define DAGNY_LIBRARY_POWER_FRAME_ROOM 5u
+#define DAGNY_LIBRARY_POWER_FRAME_MAX 4U
+#define DAGNY_LIBRARY_POWER_FRAME_ROOM 5U
 enum dagny_library_result dagny_library_power_frame(const struct dagny_library_power *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,
                                                    dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_GPS_POSITION_FRAME_MAX 18u
-#define DAGNY_LIBRARY_GPS_POSITION_FRAME_ROOM 19u
-enum dagny_library_result dagny_library_gps_position_frame(const struct dagny_library_gps_position *message,
-                                                           uint8_t *frame, size_t capacity,
-                                                           size_t *size);
-enum dagny_library_result dagny_library_gps_position_send(const struct dagny_library_gps_position *message,
-                                                          dagny_library_put put, void *user);
+#define DAGNY_LIBRARY_GPS_POSITION_FRAME_MAX 18U
+#define DAGNY_LIBRARY_GPS_POSITION_FRAME_ROOM 19U
+enum dagny_library_result dagny_library_gps_position_frame(
+    const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum dagny_library_result dagny_library_gps_position_send(
+    const struct dagny_library_gps_position *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_LASER_FRAME_MAX 1026u
-#define DAGNY_LIBRARY_LASER_FRAME_ROOM 1027u
+#define DAGNY_LIBRARY_LASER_FRAME_MAX 1026U
+#define DAGNY_LIBRARY_LASER_FRAME_ROOM 1027U
 enum dagny_library_result dagny_library_laser_frame(const struct dagny_library_laser *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum dagny_library_result dagny_library_laser_send(const struct dagny_library_laser *message,
                                                    dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define DAGNY_LIBRARY_SHUTDOWN_FRAME_MAX 16u
-#define DAGNY_LIBRARY_SHUTDOWN_FRAME_ROOM 17u
+#define DAGNY_LIBRARY_SHUTDOWN_FRAME_MAX 16U
+#define DAGNY_LIBRARY_SHUTDOWN_FRAME_ROOM 17U
 enum dagny_library_result dagny_library_shutdown_frame(const struct dagny_library_shutdown *message,
                                                        uint8_t *frame, size_t capacity,
                                                        size_t *size);
 enum dagny_library_result dagny_library_shutdown_send(const struct dagny_library_shutdown *message,
                                                       dagny_library_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum dagny_library_event_kind {
@@ -625,7 +622,7 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what host sends -------------------------------------------------------------------- */
+/* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
 #define DAGNY_LIBRARY_HOST_FRAME_MAX 1027U
@@ -653,7 +650,8 @@ struct dagny_library_host_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*dagny_library_host_handler)(void *user, const struct dagny_library_host_event *event);
+typedef void (*dagny_library_host_handler)(void *user,
+                                           const struct dagny_library_host_event *event);
 
 /**
  * Cuts what host sends into events. Its members are nobody's business. It takes
@@ -662,33 +660,47 @@ typedef void (*dagny_library_host_handler)(void *user, const struct dagny_librar
 struct dagny_library_host_decoder {
     dagny_library_host_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[1027];
 };
 
 /** Start at the beginning of an input. */
-void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder, dagny_library_host_handler handler, void *user);
+void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
+                                     dagny_library_host_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder, const uint8_t *data, size_t size);
+void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
+                                     const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder);
 
-/* --- what robot sends -------------------------------------------------------------------- */
+/* --- what robot sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of robot on the wire, in bytes. */
 #define DAGNY_LIBRARY_ROBOT_FRAME_MAX 1027U
@@ -716,7 +728,8 @@ struct dagny_library_robot_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*dagny_library_robot_handler)(void *user, const struct dagny_library_robot_event *event);
+typedef void (*dagny_library_robot_handler)(void *user,
+                                            const struct dagny_library_robot_event *event);
 
 /**
  * Cuts what robot sends into events. Its members are nobody's business. It takes
@@ -725,39 +738,53 @@ typedef void (*dagny_library_robot_handler)(void *user, const struct dagny_libra
 struct dagny_library_robot_decoder {
     dagny_library_robot_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[1027];
 };
 
 /** Start at the beginning of an input. */
-void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder, dagny_library_robot_handler handler, void *user);
+void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
+                                      dagny_library_robot_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder, const uint8_t *data, size_t size);
+void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder,
+                                      const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * DAGNY_LIBRARY_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining DAGNY_LIBRARY_NO_HANDLERS for the source.
  */
 
 /** motor came from host. */

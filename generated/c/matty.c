@@ -32,11 +32,11 @@ static uint16_t matty_load_u16le(const uint8_t *at) {
 
 static bool matty_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0u;
+    uint8_t all = 0U;
     for (size_t i = 0; i < size; i++) {
         all |= bytes[i];
     }
-    return all <= 0x7Fu;
+    return all <= 0x7FU;
 }
 
 static void matty_copy(void *to, const void *from, size_t size) {
@@ -48,7 +48,7 @@ static void matty_copy(void *to, const void *from, size_t size) {
     }
 }
 
-/* --- stop -------------------------------------------------------------------------------------- */
+/* --- stop ------------------------------------------------------------------------------------- */
 
 static void matty_stop_store(const struct matty_stop *message, uint8_t *payload) {
     (void)message;
@@ -59,25 +59,25 @@ enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *p
                                     size_t capacity, size_t *size) {
     (void)capacity;
     matty_stop_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_OK;
 }
 
 void matty_stop_load(struct matty_stop *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
                                     size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
     matty_stop_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- reset ------------------------------------------------------------------------------------- */
+/* --- reset ------------------------------------------------------------------------------------ */
 
 static void matty_reset_store(const struct matty_reset *message, uint8_t *payload) {
     (void)message;
@@ -88,25 +88,25 @@ enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t 
                                      size_t capacity, size_t *size) {
     (void)capacity;
     matty_reset_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_OK;
 }
 
 void matty_reset_load(struct matty_reset *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
                                      size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
     matty_reset_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- mode -------------------------------------------------------------------------------------- */
+/* --- mode ------------------------------------------------------------------------------------- */
 
 static void matty_mode_store(const struct matty_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
@@ -114,11 +114,11 @@ static void matty_mode_store(const struct matty_mode *message, uint8_t *payload)
 
 enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *payload,
                                     size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return MATTY_ERROR_SPACE;
     }
     matty_mode_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return MATTY_OK;
 }
 
@@ -128,14 +128,14 @@ void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
 
 enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                     size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return MATTY_ERROR_SIZE;
     }
     matty_mode_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- go ---------------------------------------------------------------------------------------- */
+/* --- go --------------------------------------------------------------------------------------- */
 
 static void matty_go_store(const struct matty_go *message, uint8_t *payload) {
     matty_store_u16le(payload, (uint16_t)message->speed);
@@ -144,11 +144,11 @@ static void matty_go_store(const struct matty_go *message, uint8_t *payload) {
 
 enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload, size_t capacity,
                                   size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_ERROR_SPACE;
     }
     matty_go_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_OK;
 }
 
@@ -158,14 +158,14 @@ void matty_go_load(struct matty_go *message, const uint8_t *payload) {
 }
 
 enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *payload, size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_ERROR_SIZE;
     }
     matty_go_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- limits ------------------------------------------------------------------------------------ */
+/* --- limits ----------------------------------------------------------------------------------- */
 
 static void matty_limits_store(const struct matty_limits *message, uint8_t *payload) {
     matty_store_u16le(payload, (uint16_t)message->max_speed);
@@ -174,11 +174,11 @@ static void matty_limits_store(const struct matty_limits *message, uint8_t *payl
 
 enum matty_result matty_limits_encode(const struct matty_limits *message, uint8_t *payload,
                                       size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_ERROR_SPACE;
     }
     matty_limits_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_OK;
 }
 
@@ -189,14 +189,14 @@ void matty_limits_load(struct matty_limits *message, const uint8_t *payload) {
 
 enum matty_result matty_limits_decode(struct matty_limits *message, const uint8_t *payload,
                                       size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_ERROR_SIZE;
     }
     matty_limits_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- timing ------------------------------------------------------------------------------------ */
+/* --- timing ----------------------------------------------------------------------------------- */
 
 static void matty_timing_store(const struct matty_timing *message, uint8_t *payload) {
     matty_store_u16le(payload, message->period);
@@ -205,11 +205,11 @@ static void matty_timing_store(const struct matty_timing *message, uint8_t *payl
 
 enum matty_result matty_timing_encode(const struct matty_timing *message, uint8_t *payload,
                                       size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_ERROR_SPACE;
     }
     matty_timing_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_OK;
 }
 
@@ -220,14 +220,14 @@ void matty_timing_load(struct matty_timing *message, const uint8_t *payload) {
 
 enum matty_result matty_timing_decode(struct matty_timing *message, const uint8_t *payload,
                                       size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_ERROR_SIZE;
     }
     matty_timing_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- gps_mode ---------------------------------------------------------------------------------- */
+/* --- gps_mode --------------------------------------------------------------------------------- */
 
 static void matty_gps_mode_store(const struct matty_gps_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
@@ -235,11 +235,11 @@ static void matty_gps_mode_store(const struct matty_gps_mode *message, uint8_t *
 
 enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, uint8_t *payload,
                                         size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return MATTY_ERROR_SPACE;
     }
     matty_gps_mode_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return MATTY_OK;
 }
 
@@ -249,14 +249,14 @@ void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload)
 
 enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return MATTY_ERROR_SIZE;
     }
     matty_gps_mode_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- ack --------------------------------------------------------------------------------------- */
+/* --- ack -------------------------------------------------------------------------------------- */
 
 static void matty_ack_store(const struct matty_ack *message, uint8_t *payload) {
     (void)message;
@@ -267,24 +267,24 @@ enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *pay
                                    size_t capacity, size_t *size) {
     (void)capacity;
     matty_ack_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_OK;
 }
 
 void matty_ack_load(struct matty_ack *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
     matty_ack_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- nack -------------------------------------------------------------------------------------- */
+/* --- nack ------------------------------------------------------------------------------------- */
 
 static void matty_nack_store(const struct matty_nack *message, uint8_t *payload) {
     (void)message;
@@ -295,25 +295,25 @@ enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *p
                                     size_t capacity, size_t *size) {
     (void)capacity;
     matty_nack_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_OK;
 }
 
 void matty_nack_load(struct matty_nack *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
                                     size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
     matty_nack_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 static void matty_status_store(const struct matty_status *message, uint8_t *payload) {
     payload[0] = message->status;
@@ -330,11 +330,11 @@ static void matty_status_store(const struct matty_status *message, uint8_t *payl
 
 enum matty_result matty_status_encode(const struct matty_status *message, uint8_t *payload,
                                       size_t capacity, size_t *size) {
-    if (capacity < 18u) {
+    if (capacity < 18U) {
         return MATTY_ERROR_SPACE;
     }
     matty_status_store(message, payload);
-    *size = 18u;
+    *size = 18U;
     return MATTY_OK;
 }
 
@@ -353,23 +353,23 @@ void matty_status_load(struct matty_status *message, const uint8_t *payload) {
 
 enum matty_result matty_status_decode(struct matty_status *message, const uint8_t *payload,
                                       size_t size) {
-    if (size != 18u) {
+    if (size != 18U) {
         return MATTY_ERROR_SIZE;
     }
     matty_status_load(message, payload);
     return MATTY_OK;
 }
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 static size_t matty_gps_measure(const struct matty_gps *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->nmea_size;
     return size;
 }
 
 static enum matty_result matty_gps_validate(const struct matty_gps *message) {
-    if (message->nmea_size > 121u) {
+    if (message->nmea_size > 121U) {
         return MATTY_ERROR_RANGE;
     }
     if (!matty_is_seven_bit(message->nmea, message->nmea_size)) {
@@ -400,7 +400,7 @@ enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *pay
 static enum matty_result matty_gps_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 121u) {
+    if (size > 121U) {
         return MATTY_ERROR_SIZE;
     }
     return MATTY_OK;
@@ -420,7 +420,7 @@ enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *pay
     return MATTY_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     MATTY_SEEKING,
@@ -430,11 +430,11 @@ enum {
 
 enum {
     MATTY_KNOWN = 1,     /* The payload's size is known. */
-    MATTY_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    MATTY_OPEN = 2,      /* Only what follows the payload tells its size. */
     MATTY_SEARCHING = 4, /* A delimiter is looked for. */
-    MATTY_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    MATTY_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     MATTY_EMPTY = 16,    /* The stuffed region holds nothing. */
-    MATTY_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    MATTY_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -443,7 +443,8 @@ enum {
     MATTY_AFTER
 };
 
-#define MATTY_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define MATTY_FRAME 0xFFU
 
 #if MATTY_FAST_FEED
 #include <string.h>
@@ -470,7 +471,8 @@ static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t 
         for (; index < end; index += 8U) {
             uint64_t word;
             memcpy(&word, &data[index], 8);
-            lanes += (word & UINT64_C(0x00FF00FF00FF00FF)) + ((word >> 8) & UINT64_C(0x00FF00FF00FF00FF));
+            lanes += word & UINT64_C(0x00FF00FF00FF00FF);
+            lanes += (word >> 8) & UINT64_C(0x00FF00FF00FF00FF);
         }
         sum = (uint8_t)(sum + (lanes * UINT64_C(0x0001000100010001) >> 48));
     }
@@ -485,24 +487,24 @@ static uint8_t matty_sum_8_negated_final(uint8_t sum) {
     return (uint8_t)(0U - sum);
 }
 
-/* --- what pc sends: frames -------------------------------------------------------------- */
+/* --- what pc sends: frames -------------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t matty_pc_room(size_t payload) {
-    const size_t content = 4u + payload + 1u;
-    return 2u * content + 0u;
+    const size_t content = 4U + payload + 1U;
+    return 2U * content + 0U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *matty_pc_payload(uint8_t *frame, size_t payload) {
-    return &frame[matty_pc_room(payload) - 1u - payload];
+    return &frame[matty_pc_room(payload) - 1U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t matty_pc_stuff(uint8_t *wire, uint8_t byte) {
-    if (byte == 0x55 || byte == 0x56) {
-        wire[0] = 0x56;
-        wire[1] = (uint8_t)(byte ^ 0xFFu);
+    if (byte == 0x55U || byte == 0x56U) {
+        wire[0] = 0x56U;
+        wire[1] = (uint8_t)(byte ^ 0xFFU);
         return 2;
     }
     wire[0] = byte;
@@ -512,27 +514,28 @@ static size_t matty_pc_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
     uint8_t *const content = matty_pc_payload(frame, payload) - 4;
-    uint8_t *const tail = &content[4u + payload];
-    const uint16_t length = (uint16_t)(2u + payload);
-    const uint16_t stuffed = (uint16_t)(4u + payload + 1u);
+    uint8_t *const tail = &content[4U + payload];
+    const uint16_t length = (uint16_t)(2U + payload);
+    const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
     uint16_t from = 1;
     uint8_t *to = frame;
-    uint8_t sum = 0x00;
+    uint8_t sum = 0x00U;
     (void)tail;
-    content[0u] = 0x55;
-    content[1u] = (uint8_t)length;
-    content[2u] = (uint8_t)counter;
-    content[3u] = (uint8_t)command;
+    content[0U] = 0x55U;
+    content[1U] = (uint8_t)length;
+    content[2U] = (uint8_t)counter;
+    content[3U] = (uint8_t)command;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
-        uint8_t byte = from + 1u == stuffed ? (uint8_t)matty_sum_8_negated_final(sum) : content[from];
+        uint8_t byte = from + 1U == stuffed ? (uint8_t)matty_sum_8_negated_final(sum)
+                                            : content[from];
         sum = matty_sum_8_negated_step(sum, byte);
-        if (byte == 0x55 || byte == 0x56) {
-            *to = 0x56;
+        if (byte == 0x55U || byte == 0x56U) {
+            *to = 0x56U;
             to++;
-            byte = (uint8_t)(byte ^ 0xFFu);
+            byte = (uint8_t)(byte ^ 0xFFU);
         }
         *to = byte;
         to++;
@@ -540,7 +543,7 @@ static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uin
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct matty_writer {
     matty_put put;
@@ -554,10 +557,10 @@ enum { MATTY_STUFFED = 128 };
 
 /* The next byte of content. */
 static void matty_pc_write(struct matty_writer *writer, uint8_t byte) {
-    if ((writer->flags & 1u) != 0u) {
+    if ((writer->flags & 1U) != 0U) {
         writer->pc_crc = matty_sum_8_negated_step(writer->pc_crc, byte);
     }
-    if ((writer->flags & MATTY_STUFFED) != 0u) {
+    if ((writer->flags & MATTY_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = matty_pc_stuff(wire, byte);
         size_t index;
@@ -569,29 +572,31 @@ static void matty_pc_write(struct matty_writer *writer, uint8_t byte) {
     writer->put(writer->user, byte);
 }
 
-static void matty_pc_send_head(struct matty_writer *writer, size_t payload, uint8_t command, uint8_t counter) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void matty_pc_send_head(struct matty_writer *writer, size_t payload, uint8_t command,
+                               uint8_t counter) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)command;
     (void)counter;
-    writer->pc_crc = 0x00;
-    matty_pc_write(writer, 0x55);
-    writer->flags = 129u;
+    writer->pc_crc = 0x00U;
+    matty_pc_write(writer, 0x55U);
+    writer->flags = 129U;
     matty_pc_write(writer, (uint8_t)length);
     matty_pc_write(writer, (uint8_t)counter);
     matty_pc_write(writer, (uint8_t)command);
 }
 
-static void matty_pc_send_tail(struct matty_writer *writer, size_t payload, uint8_t command, uint8_t counter) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void matty_pc_send_tail(struct matty_writer *writer, size_t payload, uint8_t command,
+                               uint8_t counter) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)command;
     (void)counter;
-    writer->flags = 128u;
+    writer->flags = 128U;
     {
         const uint8_t due = matty_sum_8_negated_final(writer->pc_crc);
         matty_pc_write(writer, (uint8_t)due);
@@ -676,251 +681,251 @@ static void matty_gps_put(const struct matty_gps *message, struct matty_writer *
 
 enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_stop_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x53, counter);
+    *size = matty_pc_wrap(frame, payload, 0x53U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter, matty_put put,
                                   void *user) {
     struct matty_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x53, counter);
+    matty_pc_send_head(&writer, payload, 0x53U, counter);
     matty_stop_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x53, counter);
+    matty_pc_send_tail(&writer, payload, 0x53U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_reset_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x52, counter);
+    *size = matty_pc_wrap(frame, payload, 0x52U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
                                    matty_put put, void *user) {
     struct matty_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x52, counter);
+    matty_pc_send_head(&writer, payload, 0x52U, counter);
     matty_reset_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x52, counter);
+    matty_pc_send_tail(&writer, payload, 0x52U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_mode_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4D, counter);
+    *size = matty_pc_wrap(frame, payload, 0x4DU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter, matty_put put,
                                   void *user) {
     struct matty_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x4D, counter);
+    matty_pc_send_head(&writer, payload, 0x4DU, counter);
     matty_mode_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x4D, counter);
+    matty_pc_send_tail(&writer, payload, 0x4DU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
                                  size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_go_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x47, counter);
+    *size = matty_pc_wrap(frame, payload, 0x47U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter, matty_put put,
                                 void *user) {
     struct matty_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x47, counter);
+    matty_pc_send_head(&writer, payload, 0x47U, counter);
     matty_go_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x47, counter);
+    matty_pc_send_tail(&writer, payload, 0x47U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_limits_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4C, counter);
+    *size = matty_pc_wrap(frame, payload, 0x4CU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
                                     matty_put put, void *user) {
     struct matty_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x4C, counter);
+    matty_pc_send_head(&writer, payload, 0x4CU, counter);
     matty_limits_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x4C, counter);
+    matty_pc_send_tail(&writer, payload, 0x4CU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_timing_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x54, counter);
+    *size = matty_pc_wrap(frame, payload, 0x54U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
                                     matty_put put, void *user) {
     struct matty_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x54, counter);
+    matty_pc_send_head(&writer, payload, 0x54U, counter);
     matty_timing_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x54, counter);
+    matty_pc_send_tail(&writer, payload, 0x54U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_gps_mode_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x50, counter);
+    *size = matty_pc_wrap(frame, payload, 0x50U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint8_t counter,
                                       matty_put put, void *user) {
     struct matty_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x50, counter);
+    matty_pc_send_head(&writer, payload, 0x50U, counter);
     matty_gps_mode_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x50, counter);
+    matty_pc_send_tail(&writer, payload, 0x50U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter, uint8_t *frame,
                                   size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_ack_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x41, counter);
+    *size = matty_pc_wrap(frame, payload, 0x41U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter, matty_put put,
                                  void *user) {
     struct matty_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x41, counter);
+    matty_pc_send_head(&writer, payload, 0x41U, counter);
     matty_ack_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x41, counter);
+    matty_pc_send_tail(&writer, payload, 0x41U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_nack_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4E, counter);
+    *size = matty_pc_wrap(frame, payload, 0x4EU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter, matty_put put,
                                   void *user) {
     struct matty_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x4E, counter);
+    matty_pc_send_head(&writer, payload, 0x4EU, counter);
     matty_nack_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x4E, counter);
+    matty_pc_send_tail(&writer, payload, 0x4EU, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 18u;
+    const size_t payload = 18U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
     matty_status_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x49, counter);
+    *size = matty_pc_wrap(frame, payload, 0x49U, counter);
     return MATTY_OK;
 }
 
 enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
                                     matty_put put, void *user) {
     struct matty_writer writer;
-    const size_t payload = 18u;
+    const size_t payload = 18U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x49, counter);
+    matty_pc_send_head(&writer, payload, 0x49U, counter);
     matty_status_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x49, counter);
+    matty_pc_send_tail(&writer, payload, 0x49U, counter);
     return MATTY_OK;
 }
 
@@ -936,7 +941,7 @@ enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t count
         return MATTY_ERROR_SPACE;
     }
     matty_gps_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x50, counter);
+    *size = matty_pc_wrap(frame, payload, 0x50U, counter);
     return MATTY_OK;
 }
 
@@ -953,13 +958,13 @@ enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counte
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_pc_send_head(&writer, payload, 0x50, counter);
+    matty_pc_send_head(&writer, payload, 0x50U, counter);
     matty_gps_put(message, &writer);
-    matty_pc_send_tail(&writer, payload, 0x50, counter);
+    matty_pc_send_tail(&writer, payload, 0x50U, counter);
     return MATTY_OK;
 }
 
-/* --- what pc sends: the decoder --------------------------------------------------------- */
+/* --- what pc sends: the decoder --------------------------------------------------------------- */
 
 /* Events. */
 
@@ -998,32 +1003,53 @@ static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint16_t size) 
 
 /* The message of a valid frame. */
 
-static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload,
+                                 uint16_t size, uint8_t *message) {
     *message = MATTY_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->command) {
-    case UINT8_C(0x53):
+    case 0x53U:
         *message = MATTY_MESSAGE_STOP;
-        return size == 0U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x52):
+        if (size != 0U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x52U:
         *message = MATTY_MESSAGE_RESET;
-        return size == 0U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x4D):
+        if (size != 0U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x4DU:
         *message = MATTY_MESSAGE_MODE;
-        return size == 1U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x47):
+        if (size != 1U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x47U:
         *message = MATTY_MESSAGE_GO;
-        return size == 4U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x4C):
+        if (size != 4U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x4CU:
         *message = MATTY_MESSAGE_LIMITS;
-        return size == 4U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x54):
+        if (size != 4U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x54U:
         *message = MATTY_MESSAGE_TIMING;
-        return size == 4U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x50):
+        if (size != 4U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x50U:
         *message = MATTY_MESSAGE_GPS_MODE;
-        return size == 1U ? MATTY_NO_REASON : MATTY_SIZE;
+        if (size != 1U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
     default:
         return MATTY_NO_REASON;
     }
@@ -1036,9 +1062,10 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U],
+                                      (size_t)(4U + decoder->payload) - (size_t)(1U));
         due = matty_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_CHECKSUM;
@@ -1090,12 +1117,9 @@ static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t l
 static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x55) {
+        if (byte != 0x55U) {
             return MATTY_VALUE;
         }
         break;
@@ -1144,10 +1168,10 @@ static uint8_t matty_pc_unstuff(struct matty_pc_decoder *decoder, uint8_t byte) 
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x56:
+        case 0x56U:
             decoder->node = 1;
             return MATTY_NO_REASON;
-        case 0x55:
+        case 0x55U:
             return MATTY_STUFFING;
         default:
             break;
@@ -1155,10 +1179,10 @@ static uint8_t matty_pc_unstuff(struct matty_pc_decoder *decoder, uint8_t byte) 
         break;
     default:
         switch (byte) {
-        case 0xA9:
+        case 0xA9U:
             value = 0x56U;
             break;
-        case 0xAA:
+        case 0xAAU:
             value = 0x55U;
             break;
         default:
@@ -1185,7 +1209,7 @@ static uint8_t matty_pc_pass(struct matty_pc_decoder *decoder, uint8_t byte) {
 static uint8_t matty_pc_take(struct matty_pc_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x55 && decoder->wire > 1U) {
+    if (byte == 0x55U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = MATTY_TRUNCATED;
     } else {
@@ -1216,16 +1240,14 @@ static void matty_pc_seek_on(struct matty_pc_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void matty_pc_reopen(struct matty_pc_decoder *decoder) {
     matty_pc_open(decoder);
-    (void)matty_pc_take(decoder, 0x55);
+    (void)matty_pc_take(decoder, 0x55U);
 }
 
 static void matty_pc_judge(struct matty_pc_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == MATTY_FRAME) {
         matty_pc_seek_on(decoder);
-    } else if (byte == 0x55 && decoder->wire > 1U) {
+    } else if (byte == 0x55U && decoder->wire > 1U) {
         if (size > 1U) {
             matty_pc_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1238,7 +1260,7 @@ static void matty_pc_judge(struct matty_pc_decoder *decoder, uint8_t reason, uin
 
 /* A byte that no candidate has. */
 static void matty_pc_seek(struct matty_pc_decoder *decoder, uint8_t byte) {
-    if (byte == 0x55) {
+    if (byte == 0x55U) {
         matty_pc_reopen(decoder);
     } else {
         matty_pc_add_noise(decoder, 1);
@@ -1258,15 +1280,19 @@ void matty_pc_decoder_push(struct matty_pc_decoder *decoder, uint8_t byte) {
 
 #if MATTY_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_t *data,
+                                  size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if MATTY_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -1284,7 +1310,7 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_HAS(word, 0x55) | MATTY_HAS(word, 0x56)) != 0U) {
+            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -1294,7 +1320,7 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_HAS(word, 0x55) | MATTY_HAS(word, 0x56)) == 0U) {
+            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1309,14 +1335,14 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x55:
+        case 0x55U:
             return 0;
-        case 0x56:
-            if (size - from >= 1U && data[from] == 0xAA) {
-                byte = 0x55;
+        case 0x56U:
+            if (size - from >= 1U && data[from] == 0xAAU) {
+                byte = 0x55U;
                 from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9) {
-                byte = 0x56;
+            } else if (size - from >= 1U && data[from] == 0xA9U) {
+                byte = 0x56U;
                 from += 1U;
             } else {
                 return 0;
@@ -1333,14 +1359,15 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_t *data,
+                                  size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 5U) {
         return 0;
     }
-    if (data[0] != 0x55) {
+    if (data[0] != 0x55U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -1414,7 +1441,7 @@ void matty_pc_decoder_flush(struct matty_pc_decoder *decoder) {
     matty_pc_reset(decoder);
 }
 
-/* --- what esp sends: the decoder --------------------------------------------------------- */
+/* --- what esp sends: the decoder -------------------------------------------------------------- */
 
 /* Events. */
 
@@ -1453,23 +1480,34 @@ static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint16_t size
 
 /* The message of a valid frame. */
 
-static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload,
+                                  uint16_t size, uint8_t *message) {
     *message = MATTY_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->command) {
-    case UINT8_C(0x41):
+    case 0x41U:
         *message = MATTY_MESSAGE_ACK;
-        return size == 0U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x4E):
+        if (size != 0U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x4EU:
         *message = MATTY_MESSAGE_NACK;
-        return size == 0U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x49):
+        if (size != 0U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x49U:
         *message = MATTY_MESSAGE_STATUS;
-        return size == 18U ? MATTY_NO_REASON : MATTY_SIZE;
-    case UINT8_C(0x50):
+        if (size != 18U) {
+            return MATTY_SIZE;
+        }
+        return MATTY_NO_REASON;
+    case 0x50U:
         *message = MATTY_MESSAGE_GPS;
-        return (uint8_t)((size <= 121U) ? (int)matty_gps_check(payload, size, NULL) : (int)MATTY_SIZE);
+        if (size > 121U) {
+            return MATTY_SIZE;
+        }
+        return (uint8_t)matty_gps_check(payload, size, NULL);
     default:
         return MATTY_NO_REASON;
     }
@@ -1482,9 +1520,10 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U],
+                                      (size_t)(4U + decoder->payload) - (size_t)(1U));
         due = matty_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_CHECKSUM;
@@ -1533,15 +1572,13 @@ static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t
 }
 
 /* A byte in front of the payload. */
-static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint16_t index,
+                                   uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x55) {
+        if (byte != 0x55U) {
             return MATTY_VALUE;
         }
         break;
@@ -1590,10 +1627,10 @@ static uint8_t matty_esp_unstuff(struct matty_esp_decoder *decoder, uint8_t byte
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x56:
+        case 0x56U:
             decoder->node = 1;
             return MATTY_NO_REASON;
-        case 0x55:
+        case 0x55U:
             return MATTY_STUFFING;
         default:
             break;
@@ -1601,10 +1638,10 @@ static uint8_t matty_esp_unstuff(struct matty_esp_decoder *decoder, uint8_t byte
         break;
     default:
         switch (byte) {
-        case 0xA9:
+        case 0xA9U:
             value = 0x56U;
             break;
-        case 0xAA:
+        case 0xAAU:
             value = 0x55U;
             break;
         default:
@@ -1631,7 +1668,7 @@ static uint8_t matty_esp_pass(struct matty_esp_decoder *decoder, uint8_t byte) {
 static uint8_t matty_esp_take(struct matty_esp_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x55 && decoder->wire > 1U) {
+    if (byte == 0x55U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = MATTY_TRUNCATED;
     } else {
@@ -1662,16 +1699,14 @@ static void matty_esp_seek_on(struct matty_esp_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void matty_esp_reopen(struct matty_esp_decoder *decoder) {
     matty_esp_open(decoder);
-    (void)matty_esp_take(decoder, 0x55);
+    (void)matty_esp_take(decoder, 0x55U);
 }
 
 static void matty_esp_judge(struct matty_esp_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == MATTY_FRAME) {
         matty_esp_seek_on(decoder);
-    } else if (byte == 0x55 && decoder->wire > 1U) {
+    } else if (byte == 0x55U && decoder->wire > 1U) {
         if (size > 1U) {
             matty_esp_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1684,7 +1719,7 @@ static void matty_esp_judge(struct matty_esp_decoder *decoder, uint8_t reason, u
 
 /* A byte that no candidate has. */
 static void matty_esp_seek(struct matty_esp_decoder *decoder, uint8_t byte) {
-    if (byte == 0x55) {
+    if (byte == 0x55U) {
         matty_esp_reopen(decoder);
     } else {
         matty_esp_add_noise(decoder, 1);
@@ -1704,15 +1739,19 @@ void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte) {
 
 #if MATTY_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint8_t *data,
+                                   size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if MATTY_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -1730,7 +1769,7 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_HAS(word, 0x55) | MATTY_HAS(word, 0x56)) != 0U) {
+            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -1740,7 +1779,7 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_HAS(word, 0x55) | MATTY_HAS(word, 0x56)) == 0U) {
+            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1755,14 +1794,14 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x55:
+        case 0x55U:
             return 0;
-        case 0x56:
-            if (size - from >= 1U && data[from] == 0xAA) {
-                byte = 0x55;
+        case 0x56U:
+            if (size - from >= 1U && data[from] == 0xAAU) {
+                byte = 0x55U;
                 from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9) {
-                byte = 0x56;
+            } else if (size - from >= 1U && data[from] == 0xA9U) {
+                byte = 0x56U;
                 from += 1U;
             } else {
                 return 0;
@@ -1779,14 +1818,15 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint8_t *data,
+                                   size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 5U) {
         return 0;
     }
-    if (data[0] != 0x55) {
+    if (data[0] != 0x55U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -1843,7 +1883,8 @@ static void matty_esp_reset(struct matty_esp_decoder *decoder) {
     matty_esp_seek_on(decoder);
 }
 
-void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler, void *user) {
+void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
+                            void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -1861,7 +1902,7 @@ void matty_esp_decoder_flush(struct matty_esp_decoder *decoder) {
 }
 #ifndef MATTY_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void matty_pc_dispatch(void *user, const struct matty_pc_event *event) {
     switch (event->message) {

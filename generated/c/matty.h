@@ -27,7 +27,7 @@ enum matty_result {
     MATTY_OK = 0,
     /** Too few or too many bytes. */
     MATTY_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     MATTY_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     MATTY_ERROR_ENCODING,
@@ -53,7 +53,7 @@ enum matty_message {
     MATTY_NO_MESSAGE = 11
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** Mode of the robot (line 18). */
 enum matty_robot_mode {
@@ -71,13 +71,13 @@ enum matty_gps_mode_mode {
 };
 
 /** Flags (lines 34-43). */
-#define MATTY_STATUS_STATUS_EMERGENCY_STOP 0x01u
-#define MATTY_STATUS_STATUS_VOLTAGE_LOW 0x02u
-#define MATTY_STATUS_STATUS_BUMPER_FRONT 0x04u
-#define MATTY_STATUS_STATUS_BUMPER_BACK 0x08u
-#define MATTY_STATUS_STATUS_ERROR_ENCODER 0x10u
-#define MATTY_STATUS_STATUS_ERROR_POWER 0x20u
-#define MATTY_STATUS_STATUS_RUNNING 0x80u
+#define MATTY_STATUS_STATUS_EMERGENCY_STOP 0x01U
+#define MATTY_STATUS_STATUS_VOLTAGE_LOW 0x02U
+#define MATTY_STATUS_STATUS_BUMPER_FRONT 0x04U
+#define MATTY_STATUS_STATUS_BUMPER_BACK 0x08U
+#define MATTY_STATUS_STATUS_ERROR_ENCODER 0x10U
+#define MATTY_STATUS_STATUS_ERROR_POWER 0x20U
+#define MATTY_STATUS_STATUS_RUNNING 0x80U
 
 /*
  * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
@@ -87,12 +87,12 @@ enum matty_gps_mode_mode {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- stop -------------------------------------------------------------------------------------- */
+/* --- stop ------------------------------------------------------------------------------------- */
 
 #define MATTY_STOP_ID 'S'
-#define MATTY_STOP_PAYLOAD_SIZE 0u
-#define MATTY_STOP_PAYLOAD_MIN 0u
-#define MATTY_STOP_PAYLOAD_MAX 0u
+#define MATTY_STOP_PAYLOAD_SIZE 0U
+#define MATTY_STOP_PAYLOAD_MIN 0U
+#define MATTY_STOP_PAYLOAD_MAX 0U
 #define MATTY_STOP_SPEC_HASH "bec937966960744fcf3cdc2d7d17f3ee78eee1cbed705dd7410bda2eeb5d4bfd"
 
 /**
@@ -111,12 +111,12 @@ enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *p
                                     size_t size);
 void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
 
-/* --- reset ------------------------------------------------------------------------------------- */
+/* --- reset ------------------------------------------------------------------------------------ */
 
 #define MATTY_RESET_ID 'R'
-#define MATTY_RESET_PAYLOAD_SIZE 0u
-#define MATTY_RESET_PAYLOAD_MIN 0u
-#define MATTY_RESET_PAYLOAD_MAX 0u
+#define MATTY_RESET_PAYLOAD_SIZE 0U
+#define MATTY_RESET_PAYLOAD_MIN 0U
+#define MATTY_RESET_PAYLOAD_MAX 0U
 #define MATTY_RESET_SPEC_HASH "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
 
 /** Stops the robot and sets its encoders to zero (line 17). */
@@ -131,12 +131,12 @@ enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t 
                                      size_t size);
 void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
 
-/* --- mode -------------------------------------------------------------------------------------- */
+/* --- mode ------------------------------------------------------------------------------------- */
 
 #define MATTY_MODE_ID 'M'
-#define MATTY_MODE_PAYLOAD_SIZE 1u
-#define MATTY_MODE_PAYLOAD_MIN 1u
-#define MATTY_MODE_PAYLOAD_MAX 1u
+#define MATTY_MODE_PAYLOAD_SIZE 1U
+#define MATTY_MODE_PAYLOAD_MIN 1U
+#define MATTY_MODE_PAYLOAD_MAX 1U
 #define MATTY_MODE_SPEC_HASH "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
 
 /** Sets the robot's mode (line 18). */
@@ -151,12 +151,12 @@ enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *p
                                     size_t size);
 void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
 
-/* --- go ---------------------------------------------------------------------------------------- */
+/* --- go --------------------------------------------------------------------------------------- */
 
 #define MATTY_GO_ID 'G'
-#define MATTY_GO_PAYLOAD_SIZE 4u
-#define MATTY_GO_PAYLOAD_MIN 4u
-#define MATTY_GO_PAYLOAD_MAX 4u
+#define MATTY_GO_PAYLOAD_SIZE 4U
+#define MATTY_GO_PAYLOAD_MIN 4U
+#define MATTY_GO_PAYLOAD_MAX 4U
 #define MATTY_GO_SPEC_HASH "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
 #define MATTY_GO_SPEED_UNIT "mm/s"
 #define MATTY_GO_STEER_SCALE_NUM 1
@@ -176,12 +176,12 @@ enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *paylo
 enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *payload, size_t size);
 void matty_go_load(struct matty_go *message, const uint8_t *payload);
 
-/* --- limits ------------------------------------------------------------------------------------ */
+/* --- limits ----------------------------------------------------------------------------------- */
 
 #define MATTY_LIMITS_ID 'L'
-#define MATTY_LIMITS_PAYLOAD_SIZE 4u
-#define MATTY_LIMITS_PAYLOAD_MIN 4u
-#define MATTY_LIMITS_PAYLOAD_MAX 4u
+#define MATTY_LIMITS_PAYLOAD_SIZE 4U
+#define MATTY_LIMITS_PAYLOAD_MIN 4U
+#define MATTY_LIMITS_PAYLOAD_MAX 4U
 #define MATTY_LIMITS_SPEC_HASH "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
 #define MATTY_LIMITS_MAX_SPEED_UNIT "mm/s"
 #define MATTY_LIMITS_MAX_STEER_SCALE_NUM 1
@@ -202,12 +202,12 @@ enum matty_result matty_limits_decode(struct matty_limits *message, const uint8_
                                       size_t size);
 void matty_limits_load(struct matty_limits *message, const uint8_t *payload);
 
-/* --- timing ------------------------------------------------------------------------------------ */
+/* --- timing ----------------------------------------------------------------------------------- */
 
 #define MATTY_TIMING_ID 'T'
-#define MATTY_TIMING_PAYLOAD_SIZE 4u
-#define MATTY_TIMING_PAYLOAD_MIN 4u
-#define MATTY_TIMING_PAYLOAD_MAX 4u
+#define MATTY_TIMING_PAYLOAD_SIZE 4U
+#define MATTY_TIMING_PAYLOAD_MIN 4U
+#define MATTY_TIMING_PAYLOAD_MAX 4U
 #define MATTY_TIMING_SPEC_HASH "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
 #define MATTY_TIMING_PERIOD_UNIT "ms"
 #define MATTY_TIMING_TIMEOUT_UNIT "ms"
@@ -226,12 +226,12 @@ enum matty_result matty_timing_decode(struct matty_timing *message, const uint8_
                                       size_t size);
 void matty_timing_load(struct matty_timing *message, const uint8_t *payload);
 
-/* --- gps_mode ---------------------------------------------------------------------------------- */
+/* --- gps_mode --------------------------------------------------------------------------------- */
 
 #define MATTY_GPS_MODE_ID 'P'
-#define MATTY_GPS_MODE_PAYLOAD_SIZE 1u
-#define MATTY_GPS_MODE_PAYLOAD_MIN 1u
-#define MATTY_GPS_MODE_PAYLOAD_MAX 1u
+#define MATTY_GPS_MODE_PAYLOAD_SIZE 1U
+#define MATTY_GPS_MODE_PAYLOAD_MIN 1U
+#define MATTY_GPS_MODE_PAYLOAD_MAX 1U
 #define MATTY_GPS_MODE_SPEC_HASH "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
 
 /** Sets what is sent of the GPS receiver (line 22). */
@@ -246,12 +246,12 @@ enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const ui
                                         size_t size);
 void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
 
-/* --- ack --------------------------------------------------------------------------------------- */
+/* --- ack -------------------------------------------------------------------------------------- */
 
 #define MATTY_ACK_ID 'A'
-#define MATTY_ACK_PAYLOAD_SIZE 0u
-#define MATTY_ACK_PAYLOAD_MIN 0u
-#define MATTY_ACK_PAYLOAD_MAX 0u
+#define MATTY_ACK_PAYLOAD_SIZE 0U
+#define MATTY_ACK_PAYLOAD_MIN 0U
+#define MATTY_ACK_PAYLOAD_MAX 0U
 #define MATTY_ACK_SPEC_HASH "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
 
 /**
@@ -269,12 +269,12 @@ enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *pay
 enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload, size_t size);
 void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
 
-/* --- nack -------------------------------------------------------------------------------------- */
+/* --- nack ------------------------------------------------------------------------------------- */
 
 #define MATTY_NACK_ID 'N'
-#define MATTY_NACK_PAYLOAD_SIZE 0u
-#define MATTY_NACK_PAYLOAD_MIN 0u
-#define MATTY_NACK_PAYLOAD_MAX 0u
+#define MATTY_NACK_PAYLOAD_SIZE 0U
+#define MATTY_NACK_PAYLOAD_MIN 0U
+#define MATTY_NACK_PAYLOAD_MAX 0U
 #define MATTY_NACK_SPEC_HASH "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
 
 /**
@@ -293,12 +293,12 @@ enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *p
                                     size_t size);
 void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 #define MATTY_STATUS_ID 'I'
-#define MATTY_STATUS_PAYLOAD_SIZE 18u
-#define MATTY_STATUS_PAYLOAD_MIN 18u
-#define MATTY_STATUS_PAYLOAD_MAX 18u
+#define MATTY_STATUS_PAYLOAD_SIZE 18U
+#define MATTY_STATUS_PAYLOAD_MIN 18U
+#define MATTY_STATUS_PAYLOAD_MAX 18U
 #define MATTY_STATUS_SPEC_HASH "9a3bc9b67289b602d4b06a187f779b231b92974b1e6fdd1bab43015b28dba5b0"
 #define MATTY_STATUS_VOLTAGE_UNIT "mV"
 #define MATTY_STATUS_CURRENT_UNIT "mA"
@@ -345,11 +345,11 @@ enum matty_result matty_status_decode(struct matty_status *message, const uint8_
                                       size_t size);
 void matty_status_load(struct matty_status *message, const uint8_t *payload);
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 #define MATTY_GPS_ID 'P'
-#define MATTY_GPS_PAYLOAD_MIN 0u
-#define MATTY_GPS_PAYLOAD_MAX 121u
+#define MATTY_GPS_PAYLOAD_MIN 0U
+#define MATTY_GPS_PAYLOAD_MAX 121U
 #define MATTY_GPS_SPEC_HASH "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
 
 /**
@@ -369,7 +369,7 @@ enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *pay
 enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *payload, size_t size);
 void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -383,94 +383,94 @@ void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t si
 typedef void (*matty_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_STOP_FRAME_MAX 7u
-#define MATTY_STOP_FRAME_ROOM 10u
+#define MATTY_STOP_FRAME_MAX 7U
+#define MATTY_STOP_FRAME_ROOM 10U
 enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter, matty_put put,
                                   void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_RESET_FRAME_MAX 7u
-#define MATTY_RESET_FRAME_ROOM 10u
+#define MATTY_RESET_FRAME_MAX 7U
+#define MATTY_RESET_FRAME_ROOM 10U
 enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
                                     uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
                                    matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_MODE_FRAME_MAX 8u
-#define MATTY_MODE_FRAME_ROOM 12u
+#define MATTY_MODE_FRAME_MAX 8U
+#define MATTY_MODE_FRAME_ROOM 12U
 enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter, matty_put put,
                                   void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_GO_FRAME_MAX 14u
-#define MATTY_GO_FRAME_ROOM 18u
+#define MATTY_GO_FRAME_MAX 14U
+#define MATTY_GO_FRAME_ROOM 18U
 enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
                                  size_t capacity, size_t *size);
 enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter, matty_put put,
                                 void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_LIMITS_FRAME_MAX 14u
-#define MATTY_LIMITS_FRAME_ROOM 18u
+#define MATTY_LIMITS_FRAME_MAX 14U
+#define MATTY_LIMITS_FRAME_ROOM 18U
 enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
                                     matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_TIMING_FRAME_MAX 14u
-#define MATTY_TIMING_FRAME_ROOM 18u
+#define MATTY_TIMING_FRAME_MAX 14U
+#define MATTY_TIMING_FRAME_ROOM 18U
 enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
                                     matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_GPS_MODE_FRAME_MAX 8u
-#define MATTY_GPS_MODE_FRAME_ROOM 12u
+#define MATTY_GPS_MODE_FRAME_MAX 8U
+#define MATTY_GPS_MODE_FRAME_ROOM 12U
 enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint8_t counter,
                                       matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_ACK_FRAME_MAX 6u
-#define MATTY_ACK_FRAME_ROOM 10u
+#define MATTY_ACK_FRAME_MAX 6U
+#define MATTY_ACK_FRAME_ROOM 10U
 enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter, uint8_t *frame,
                                   size_t capacity, size_t *size);
 enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter, matty_put put,
                                  void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_NACK_FRAME_MAX 6u
-#define MATTY_NACK_FRAME_ROOM 10u
+#define MATTY_NACK_FRAME_MAX 6U
+#define MATTY_NACK_FRAME_ROOM 10U
 enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
                                    uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter, matty_put put,
                                   void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_STATUS_FRAME_MAX 42u
-#define MATTY_STATUS_FRAME_ROOM 46u
+#define MATTY_STATUS_FRAME_MAX 42U
+#define MATTY_STATUS_FRAME_ROOM 46U
 enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
                                      uint8_t *frame, size_t capacity, size_t *size);
 enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
                                     matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_GPS_FRAME_MAX 249u
-#define MATTY_GPS_FRAME_ROOM 252u
+#define MATTY_GPS_FRAME_MAX 249U
+#define MATTY_GPS_FRAME_ROOM 252U
 enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
                                   size_t capacity, size_t *size);
 enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counter, matty_put put,
                                  void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum matty_event_kind {
@@ -492,7 +492,7 @@ enum matty_reason {
     MATTY_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what pc sends -------------------------------------------------------------------- */
+/* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
 #define MATTY_PC_FRAME_MAX 250U
@@ -530,14 +530,23 @@ typedef void (*matty_pc_handler)(void *user, const struct matty_pc_event *event)
 struct matty_pc_decoder {
     matty_pc_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[126];
 };
 
@@ -553,7 +562,7 @@ void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_pc_decoder_flush(struct matty_pc_decoder *decoder);
 
-/* --- what esp sends -------------------------------------------------------------------- */
+/* --- what esp sends --------------------------------------------------------------------------- */
 
 /** The greatest frame of esp on the wire, in bytes. */
 #define MATTY_ESP_FRAME_MAX 250U
@@ -591,19 +600,29 @@ typedef void (*matty_esp_handler)(void *user, const struct matty_esp_event *even
 struct matty_esp_decoder {
     matty_esp_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[126];
 };
 
 /** Start at the beginning of an input. */
-void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler, void *user);
+void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
+                            void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte);
@@ -614,13 +633,13 @@ void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *da
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * MATTY_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining MATTY_NO_HANDLERS for the source.
  */
 
 /** stop came from pc. */

@@ -42,11 +42,11 @@ static uint32_t matty_v4_load_u24le(const uint8_t *at) {
 
 static bool matty_v4_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0u;
+    uint8_t all = 0U;
     for (size_t i = 0; i < size; i++) {
         all |= bytes[i];
     }
-    return all <= 0x7Fu;
+    return all <= 0x7FU;
 }
 
 static void matty_v4_copy(void *to, const void *from, size_t size) {
@@ -58,7 +58,7 @@ static void matty_v4_copy(void *to, const void *from, size_t size) {
     }
 }
 
-/* --- stop -------------------------------------------------------------------------------------- */
+/* --- stop ------------------------------------------------------------------------------------- */
 
 static void matty_v4_stop_store(const struct matty_v4_stop *message, uint8_t *payload) {
     payload[0] = message->mode;
@@ -66,11 +66,11 @@ static void matty_v4_stop_store(const struct matty_v4_stop *message, uint8_t *pa
 
 enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, uint8_t *payload,
                                           size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_stop_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return MATTY_V4_OK;
 }
 
@@ -80,14 +80,14 @@ void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
 
 enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const uint8_t *payload,
                                           size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_stop_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- reset ------------------------------------------------------------------------------------- */
+/* --- reset ------------------------------------------------------------------------------------ */
 
 static void matty_v4_reset_store(const struct matty_v4_reset *message, uint8_t *payload) {
     (void)message;
@@ -98,25 +98,25 @@ enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
                                            size_t capacity, size_t *size) {
     (void)capacity;
     matty_v4_reset_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_V4_OK;
 }
 
 void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const uint8_t *payload,
                                            size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_reset_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- mode -------------------------------------------------------------------------------------- */
+/* --- mode ------------------------------------------------------------------------------------- */
 
 static void matty_v4_mode_store(const struct matty_v4_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
@@ -124,11 +124,11 @@ static void matty_v4_mode_store(const struct matty_v4_mode *message, uint8_t *pa
 
 enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, uint8_t *payload,
                                           size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_mode_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return MATTY_V4_OK;
 }
 
@@ -138,14 +138,14 @@ void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
 
 enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const uint8_t *payload,
                                           size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_mode_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- go ---------------------------------------------------------------------------------------- */
+/* --- go --------------------------------------------------------------------------------------- */
 
 static void matty_v4_go_store(const struct matty_v4_go *message, uint8_t *payload) {
     matty_v4_store_u16le(payload, (uint16_t)message->speed);
@@ -154,11 +154,11 @@ static void matty_v4_go_store(const struct matty_v4_go *message, uint8_t *payloa
 
 enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message, uint8_t *payload,
                                         size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_go_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_V4_OK;
 }
 
@@ -169,14 +169,14 @@ void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload) {
 
 enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_go_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- limits ------------------------------------------------------------------------------------ */
+/* --- limits ----------------------------------------------------------------------------------- */
 
 static void matty_v4_limits_store(const struct matty_v4_limits *message, uint8_t *payload) {
     matty_v4_store_u16le(payload, (uint16_t)message->max_speed);
@@ -185,11 +185,11 @@ static void matty_v4_limits_store(const struct matty_v4_limits *message, uint8_t
 
 enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message, uint8_t *payload,
                                             size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_limits_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_V4_OK;
 }
 
@@ -200,14 +200,14 @@ void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payloa
 
 enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message, const uint8_t *payload,
                                             size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_limits_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- timing ------------------------------------------------------------------------------------ */
+/* --- timing ----------------------------------------------------------------------------------- */
 
 static void matty_v4_timing_store(const struct matty_v4_timing *message, uint8_t *payload) {
     matty_v4_store_u16le(payload, message->period);
@@ -216,11 +216,11 @@ static void matty_v4_timing_store(const struct matty_v4_timing *message, uint8_t
 
 enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *message, uint8_t *payload,
                                             size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_timing_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_V4_OK;
 }
 
@@ -231,14 +231,14 @@ void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payloa
 
 enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message, const uint8_t *payload,
                                             size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_timing_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- gps_mode ---------------------------------------------------------------------------------- */
+/* --- gps_mode --------------------------------------------------------------------------------- */
 
 static void matty_v4_gps_mode_store(const struct matty_v4_gps_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
@@ -246,11 +246,11 @@ static void matty_v4_gps_mode_store(const struct matty_v4_gps_mode *message, uin
 
 enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *message,
                                               uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_gps_mode_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return MATTY_V4_OK;
 }
 
@@ -260,14 +260,14 @@ void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *pa
 
 enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
                                               const uint8_t *payload, size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_gps_mode_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- version_query ----------------------------------------------------------------------------- */
+/* --- version_query ---------------------------------------------------------------------------- */
 
 static void matty_v4_version_query_store(const struct matty_v4_version_query *message,
                                          uint8_t *payload) {
@@ -280,28 +280,28 @@ enum matty_v4_result matty_v4_version_query_encode(const struct matty_v4_version
                                                    size_t *size) {
     (void)capacity;
     matty_v4_version_query_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_V4_OK;
 }
 
 void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query *message,
                                                    const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_version_query_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- led --------------------------------------------------------------------------------------- */
+/* --- led -------------------------------------------------------------------------------------- */
 
 static enum matty_v4_result matty_v4_led_validate(const struct matty_v4_led *message) {
-    if (message->rgb > 16777215ul) {
+    if (message->rgb > 16777215UL) {
         return MATTY_V4_ERROR_RANGE;
     }
     return MATTY_V4_OK;
@@ -318,11 +318,11 @@ enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message, uin
     if (result != MATTY_V4_OK) {
         return result;
     }
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_led_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return MATTY_V4_OK;
 }
 
@@ -333,14 +333,14 @@ void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload) {
 
 enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uint8_t *payload,
                                          size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_led_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- ack --------------------------------------------------------------------------------------- */
+/* --- ack -------------------------------------------------------------------------------------- */
 
 static void matty_v4_ack_store(const struct matty_v4_ack *message, uint8_t *payload) {
     (void)message;
@@ -351,25 +351,25 @@ enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message, uin
                                          size_t capacity, size_t *size) {
     (void)capacity;
     matty_v4_ack_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_V4_OK;
 }
 
 void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uint8_t *payload,
                                          size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_ack_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- nack -------------------------------------------------------------------------------------- */
+/* --- nack ------------------------------------------------------------------------------------- */
 
 static void matty_v4_nack_store(const struct matty_v4_nack *message, uint8_t *payload) {
     (void)message;
@@ -380,25 +380,25 @@ enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message, u
                                           size_t capacity, size_t *size) {
     (void)capacity;
     matty_v4_nack_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return MATTY_V4_OK;
 }
 
 void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const uint8_t *payload,
                                           size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_nack_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 static void matty_v4_status_store(const struct matty_v4_status *message, uint8_t *payload) {
     payload[0] = message->status;
@@ -418,11 +418,11 @@ static void matty_v4_status_store(const struct matty_v4_status *message, uint8_t
 
 enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message, uint8_t *payload,
                                             size_t capacity, size_t *size) {
-    if (capacity < 24u) {
+    if (capacity < 24U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_status_store(message, payload);
-    *size = 24u;
+    *size = 24U;
     return MATTY_V4_OK;
 }
 
@@ -444,23 +444,23 @@ void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payloa
 
 enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message, const uint8_t *payload,
                                             size_t size) {
-    if (size != 24u) {
+    if (size != 24U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_status_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 static size_t matty_v4_gps_measure(const struct matty_v4_gps *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->nmea_size;
     return size;
 }
 
 static enum matty_v4_result matty_v4_gps_validate(const struct matty_v4_gps *message) {
-    if (message->nmea_size > 121u) {
+    if (message->nmea_size > 121U) {
         return MATTY_V4_ERROR_RANGE;
     }
     if (!matty_v4_is_seven_bit(message->nmea, message->nmea_size)) {
@@ -491,7 +491,7 @@ enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message, uin
 static enum matty_v4_result matty_v4_gps_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 121u) {
+    if (size > 121U) {
         return MATTY_V4_ERROR_SIZE;
     }
     return MATTY_V4_OK;
@@ -512,7 +512,7 @@ enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message, const uin
     return MATTY_V4_OK;
 }
 
-/* --- version ----------------------------------------------------------------------------------- */
+/* --- version ---------------------------------------------------------------------------------- */
 
 static void matty_v4_version_store(const struct matty_v4_version *message, uint8_t *payload) {
     payload[0] = message->serial_number;
@@ -521,11 +521,11 @@ static void matty_v4_version_store(const struct matty_v4_version *message, uint8
 
 enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *message,
                                              uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 2u) {
+    if (capacity < 2U) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_version_store(message, payload);
-    *size = 2u;
+    *size = 2U;
     return MATTY_V4_OK;
 }
 
@@ -536,14 +536,14 @@ void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payl
 
 enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
                                              const uint8_t *payload, size_t size) {
-    if (size != 2u) {
+    if (size != 2U) {
         return MATTY_V4_ERROR_SIZE;
     }
     matty_v4_version_load(message, payload);
     return MATTY_V4_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     MATTY_V4_SEEKING,
@@ -553,11 +553,11 @@ enum {
 
 enum {
     MATTY_V4_KNOWN = 1,     /* The payload's size is known. */
-    MATTY_V4_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    MATTY_V4_OPEN = 2,      /* Only what follows the payload tells its size. */
     MATTY_V4_SEARCHING = 4, /* A delimiter is looked for. */
-    MATTY_V4_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    MATTY_V4_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     MATTY_V4_EMPTY = 16,    /* The stuffed region holds nothing. */
-    MATTY_V4_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    MATTY_V4_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -566,7 +566,8 @@ enum {
     MATTY_V4_AFTER
 };
 
-#define MATTY_V4_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define MATTY_V4_FRAME 0xFFU
 
 #if MATTY_V4_FAST_FEED
 #include <string.h>
@@ -593,7 +594,8 @@ static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size
         for (; index < end; index += 8U) {
             uint64_t word;
             memcpy(&word, &data[index], 8);
-            lanes += (word & UINT64_C(0x00FF00FF00FF00FF)) + ((word >> 8) & UINT64_C(0x00FF00FF00FF00FF));
+            lanes += word & UINT64_C(0x00FF00FF00FF00FF);
+            lanes += (word >> 8) & UINT64_C(0x00FF00FF00FF00FF);
         }
         sum = (uint8_t)(sum + (lanes * UINT64_C(0x0001000100010001) >> 48));
     }
@@ -608,24 +610,24 @@ static uint8_t matty_v4_sum_8_negated_final(uint8_t sum) {
     return (uint8_t)(0U - sum);
 }
 
-/* --- what pc sends: frames -------------------------------------------------------------- */
+/* --- what pc sends: frames -------------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t matty_v4_pc_room(size_t payload) {
-    const size_t content = 4u + payload + 1u;
-    return 2u * content + 0u;
+    const size_t content = 4U + payload + 1U;
+    return 2U * content + 0U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *matty_v4_pc_payload(uint8_t *frame, size_t payload) {
-    return &frame[matty_v4_pc_room(payload) - 1u - payload];
+    return &frame[matty_v4_pc_room(payload) - 1U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t matty_v4_pc_stuff(uint8_t *wire, uint8_t byte) {
-    if (byte == 0x55 || byte == 0x56) {
-        wire[0] = 0x56;
-        wire[1] = (uint8_t)(byte ^ 0xFFu);
+    if (byte == 0x55U || byte == 0x56U) {
+        wire[0] = 0x56U;
+        wire[1] = (uint8_t)(byte ^ 0xFFU);
         return 2;
     }
     wire[0] = byte;
@@ -635,27 +637,28 @@ static size_t matty_v4_pc_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
     uint8_t *const content = matty_v4_pc_payload(frame, payload) - 4;
-    uint8_t *const tail = &content[4u + payload];
-    const uint16_t length = (uint16_t)(2u + payload);
-    const uint16_t stuffed = (uint16_t)(4u + payload + 1u);
+    uint8_t *const tail = &content[4U + payload];
+    const uint16_t length = (uint16_t)(2U + payload);
+    const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
     uint16_t from = 1;
     uint8_t *to = frame;
-    uint8_t sum = 0x00;
+    uint8_t sum = 0x00U;
     (void)tail;
-    content[0u] = 0x55;
-    content[1u] = (uint8_t)length;
-    content[2u] = (uint8_t)counter;
-    content[3u] = (uint8_t)command;
+    content[0U] = 0x55U;
+    content[1U] = (uint8_t)length;
+    content[2U] = (uint8_t)counter;
+    content[3U] = (uint8_t)command;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
-        uint8_t byte = from + 1u == stuffed ? (uint8_t)matty_v4_sum_8_negated_final(sum) : content[from];
+        uint8_t byte = from + 1U == stuffed ? (uint8_t)matty_v4_sum_8_negated_final(sum)
+                                            : content[from];
         sum = matty_v4_sum_8_negated_step(sum, byte);
-        if (byte == 0x55 || byte == 0x56) {
-            *to = 0x56;
+        if (byte == 0x55U || byte == 0x56U) {
+            *to = 0x56U;
             to++;
-            byte = (uint8_t)(byte ^ 0xFFu);
+            byte = (uint8_t)(byte ^ 0xFFU);
         }
         *to = byte;
         to++;
@@ -663,7 +666,7 @@ static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, 
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct matty_v4_writer {
     matty_v4_put put;
@@ -677,10 +680,10 @@ enum { MATTY_V4_STUFFED = 128 };
 
 /* The next byte of content. */
 static void matty_v4_pc_write(struct matty_v4_writer *writer, uint8_t byte) {
-    if ((writer->flags & 1u) != 0u) {
+    if ((writer->flags & 1U) != 0U) {
         writer->pc_crc = matty_v4_sum_8_negated_step(writer->pc_crc, byte);
     }
-    if ((writer->flags & MATTY_V4_STUFFED) != 0u) {
+    if ((writer->flags & MATTY_V4_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = matty_v4_pc_stuff(wire, byte);
         size_t index;
@@ -692,29 +695,31 @@ static void matty_v4_pc_write(struct matty_v4_writer *writer, uint8_t byte) {
     writer->put(writer->user, byte);
 }
 
-static void matty_v4_pc_send_head(struct matty_v4_writer *writer, size_t payload, uint8_t command, uint8_t counter) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void matty_v4_pc_send_head(struct matty_v4_writer *writer, size_t payload, uint8_t command,
+                                  uint8_t counter) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)command;
     (void)counter;
-    writer->pc_crc = 0x00;
-    matty_v4_pc_write(writer, 0x55);
-    writer->flags = 129u;
+    writer->pc_crc = 0x00U;
+    matty_v4_pc_write(writer, 0x55U);
+    writer->flags = 129U;
     matty_v4_pc_write(writer, (uint8_t)length);
     matty_v4_pc_write(writer, (uint8_t)counter);
     matty_v4_pc_write(writer, (uint8_t)command);
 }
 
-static void matty_v4_pc_send_tail(struct matty_v4_writer *writer, size_t payload, uint8_t command, uint8_t counter) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void matty_v4_pc_send_tail(struct matty_v4_writer *writer, size_t payload, uint8_t command,
+                                  uint8_t counter) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)command;
     (void)counter;
-    writer->flags = 128u;
+    writer->flags = 128U;
     {
         const uint8_t due = matty_v4_sum_8_negated_final(writer->pc_crc);
         matty_v4_pc_write(writer, (uint8_t)due);
@@ -829,209 +834,209 @@ static void matty_v4_version_put(const struct matty_v4_version *message,
 
 enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_stop_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x53, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x53U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uint8_t counter,
                                         matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x53, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x53U, counter);
     matty_v4_stop_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x53, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x53U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message, uint8_t counter,
                                           uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_reset_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x52, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x52U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message, uint8_t counter,
                                          matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x52, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x52U, counter);
     matty_v4_reset_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x52, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x52U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_mode_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4D, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x4DU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message, uint8_t counter,
                                         matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x4D, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x4DU, counter);
     matty_v4_mode_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x4D, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x4DU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_go_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x47, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x47U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message, uint8_t counter,
                                       matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x47, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x47U, counter);
     matty_v4_go_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x47, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x47U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_limits_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4C, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x4CU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message, uint8_t counter,
                                           matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x4C, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x4CU, counter);
     matty_v4_limits_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x4C, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x4CU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_timing_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x54, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x54U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message, uint8_t counter,
                                           matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x54, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x54U, counter);
     matty_v4_timing_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x54, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x54U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
                                              uint8_t counter, uint8_t *frame, size_t capacity,
                                              size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_gps_mode_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x50, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x50U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
                                             uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x50, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x50U, counter);
     matty_v4_gps_mode_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x50, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x50U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_version_query_frame(const struct matty_v4_version_query *message,
                                                   uint8_t counter, uint8_t *frame, size_t capacity,
                                                   size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_version_query_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x56, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_version_query_send(const struct matty_v4_version_query *message,
                                                  uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x56, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x56U, counter);
     matty_v4_version_query_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x56, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum matty_v4_result result = matty_v4_led_validate(message);
     if (result != MATTY_V4_OK) {
         return result;
@@ -1040,14 +1045,14 @@ enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message, uint
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_led_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x44, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x44U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8_t counter,
                                        matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum matty_v4_result result = matty_v4_led_validate(message);
     if (result != MATTY_V4_OK) {
         return result;
@@ -1056,84 +1061,84 @@ enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x44, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x44U, counter);
     matty_v4_led_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x44, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x44U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_ack_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x41, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x41U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message, uint8_t counter,
                                        matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x41, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x41U, counter);
     matty_v4_ack_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x41, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x41U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_nack_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4E, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x4EU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message, uint8_t counter,
                                         matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x4E, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x4EU, counter);
     matty_v4_nack_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x4E, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x4EU, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 24u;
+    const size_t payload = 24U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_status_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x49, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x49U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message, uint8_t counter,
                                           matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 24u;
+    const size_t payload = 24U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x49, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x49U, counter);
     matty_v4_status_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x49, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x49U, counter);
     return MATTY_V4_OK;
 }
 
@@ -1149,7 +1154,7 @@ enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message, uint
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_gps_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x50, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x50U, counter);
     return MATTY_V4_OK;
 }
 
@@ -1166,42 +1171,43 @@ enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message, uint8
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x50, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x50U, counter);
     matty_v4_gps_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x50, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x50U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
                                             uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
     matty_v4_version_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x56, counter);
+    *size = matty_v4_pc_wrap(frame, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
 
 enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message, uint8_t counter,
                                            matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    matty_v4_pc_send_head(&writer, payload, 0x56, counter);
+    matty_v4_pc_send_head(&writer, payload, 0x56U, counter);
     matty_v4_version_put(message, &writer);
-    matty_v4_pc_send_tail(&writer, payload, 0x56, counter);
+    matty_v4_pc_send_tail(&writer, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
 
-/* --- what pc sends: the decoder --------------------------------------------------------- */
+/* --- what pc sends: the decoder --------------------------------------------------------------- */
 
 /* Events. */
 
-static void matty_v4_pc_invalid(struct matty_v4_pc_decoder *decoder, uint8_t reason, uint16_t size) {
+static void matty_v4_pc_invalid(struct matty_v4_pc_decoder *decoder, uint8_t reason,
+                                uint16_t size) {
     struct matty_v4_pc_event event;
     event.kind = MATTY_V4_INVALID;
     event.reason = (enum matty_v4_reason)reason;
@@ -1236,38 +1242,65 @@ static void matty_v4_pc_add_noise(struct matty_v4_pc_decoder *decoder, uint16_t 
 
 /* The message of a valid frame. */
 
-static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const uint8_t *payload,
+                                    uint16_t size, uint8_t *message) {
     *message = MATTY_V4_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->command) {
-    case UINT8_C(0x53):
+    case 0x53U:
         *message = MATTY_V4_MESSAGE_STOP;
-        return size == 1U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x52):
+        if (size != 1U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x52U:
         *message = MATTY_V4_MESSAGE_RESET;
-        return size == 0U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x4D):
+        if (size != 0U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x4DU:
         *message = MATTY_V4_MESSAGE_MODE;
-        return size == 1U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x47):
+        if (size != 1U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x47U:
         *message = MATTY_V4_MESSAGE_GO;
-        return size == 4U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x4C):
+        if (size != 4U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x4CU:
         *message = MATTY_V4_MESSAGE_LIMITS;
-        return size == 4U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x54):
+        if (size != 4U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x54U:
         *message = MATTY_V4_MESSAGE_TIMING;
-        return size == 4U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x50):
+        if (size != 4U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x50U:
         *message = MATTY_V4_MESSAGE_GPS_MODE;
-        return size == 1U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x56):
+        if (size != 1U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x56U:
         *message = MATTY_V4_MESSAGE_VERSION_QUERY;
-        return size == 0U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x44):
+        if (size != 0U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x44U:
         *message = MATTY_V4_MESSAGE_LED;
-        return size == 4U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
+        if (size != 4U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
     default:
         return MATTY_V4_NO_REASON;
     }
@@ -1280,9 +1313,10 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U],
+                                         (size_t)(4U + decoder->payload) - (size_t)(1U));
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_V4_CHECKSUM;
@@ -1331,15 +1365,13 @@ static uint8_t matty_v4_pc_read_length(struct matty_v4_pc_decoder *decoder, uint
 }
 
 /* A byte in front of the payload. */
-static uint8_t matty_v4_pc_take_head(struct matty_v4_pc_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t matty_v4_pc_take_head(struct matty_v4_pc_decoder *decoder, uint16_t index,
+                                     uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_V4_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x55) {
+        if (byte != 0x55U) {
             return MATTY_V4_VALUE;
         }
         break;
@@ -1388,10 +1420,10 @@ static uint8_t matty_v4_pc_unstuff(struct matty_v4_pc_decoder *decoder, uint8_t 
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x56:
+        case 0x56U:
             decoder->node = 1;
             return MATTY_V4_NO_REASON;
-        case 0x55:
+        case 0x55U:
             return MATTY_V4_STUFFING;
         default:
             break;
@@ -1399,10 +1431,10 @@ static uint8_t matty_v4_pc_unstuff(struct matty_v4_pc_decoder *decoder, uint8_t 
         break;
     default:
         switch (byte) {
-        case 0xA9:
+        case 0xA9U:
             value = 0x56U;
             break;
-        case 0xAA:
+        case 0xAAU:
             value = 0x55U;
             break;
         default:
@@ -1429,7 +1461,7 @@ static uint8_t matty_v4_pc_pass(struct matty_v4_pc_decoder *decoder, uint8_t byt
 static uint8_t matty_v4_pc_take(struct matty_v4_pc_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x55 && decoder->wire > 1U) {
+    if (byte == 0x55U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = MATTY_V4_TRUNCATED;
     } else {
@@ -1460,16 +1492,14 @@ static void matty_v4_pc_seek_on(struct matty_v4_pc_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void matty_v4_pc_reopen(struct matty_v4_pc_decoder *decoder) {
     matty_v4_pc_open(decoder);
-    (void)matty_v4_pc_take(decoder, 0x55);
+    (void)matty_v4_pc_take(decoder, 0x55U);
 }
 
 static void matty_v4_pc_judge(struct matty_v4_pc_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == MATTY_V4_FRAME) {
         matty_v4_pc_seek_on(decoder);
-    } else if (byte == 0x55 && decoder->wire > 1U) {
+    } else if (byte == 0x55U && decoder->wire > 1U) {
         if (size > 1U) {
             matty_v4_pc_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1482,7 +1512,7 @@ static void matty_v4_pc_judge(struct matty_v4_pc_decoder *decoder, uint8_t reaso
 
 /* A byte that no candidate has. */
 static void matty_v4_pc_seek(struct matty_v4_pc_decoder *decoder, uint8_t byte) {
-    if (byte == 0x55) {
+    if (byte == 0x55U) {
         matty_v4_pc_reopen(decoder);
     } else {
         matty_v4_pc_add_noise(decoder, 1);
@@ -1502,15 +1532,19 @@ void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte)
 
 #if MATTY_V4_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
+                                     size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if MATTY_V4_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -1528,7 +1562,7 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) != 0U) {
+            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -1538,7 +1572,7 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) == 0U) {
+            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1553,14 +1587,14 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x55:
+        case 0x55U:
             return 0;
-        case 0x56:
-            if (size - from >= 1U && data[from] == 0xAA) {
-                byte = 0x55;
+        case 0x56U:
+            if (size - from >= 1U && data[from] == 0xAAU) {
+                byte = 0x55U;
                 from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9) {
-                byte = 0x56;
+            } else if (size - from >= 1U && data[from] == 0xA9U) {
+                byte = 0x56U;
                 from += 1U;
             } else {
                 return 0;
@@ -1577,14 +1611,15 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
+                                     size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 5U) {
         return 0;
     }
-    if (data[0] != 0x55) {
+    if (data[0] != 0x55U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -1619,7 +1654,8 @@ static bool matty_v4_pc_is_idle(const struct matty_v4_pc_decoder *decoder) {
 }
 #endif
 
-void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size) {
+void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
+                              size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -1641,7 +1677,8 @@ static void matty_v4_pc_reset(struct matty_v4_pc_decoder *decoder) {
     matty_v4_pc_seek_on(decoder);
 }
 
-void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler, void *user) {
+void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
+                              void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -1658,11 +1695,12 @@ void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder) {
     matty_v4_pc_reset(decoder);
 }
 
-/* --- what esp sends: the decoder --------------------------------------------------------- */
+/* --- what esp sends: the decoder -------------------------------------------------------------- */
 
 /* Events. */
 
-static void matty_v4_esp_invalid(struct matty_v4_esp_decoder *decoder, uint8_t reason, uint16_t size) {
+static void matty_v4_esp_invalid(struct matty_v4_esp_decoder *decoder, uint8_t reason,
+                                 uint16_t size) {
     struct matty_v4_esp_event event;
     event.kind = MATTY_V4_INVALID;
     event.reason = (enum matty_v4_reason)reason;
@@ -1697,26 +1735,40 @@ static void matty_v4_esp_add_noise(struct matty_v4_esp_decoder *decoder, uint16_
 
 /* The message of a valid frame. */
 
-static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, const uint8_t *payload,
+                                     uint16_t size, uint8_t *message) {
     *message = MATTY_V4_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->command) {
-    case UINT8_C(0x41):
+    case 0x41U:
         *message = MATTY_V4_MESSAGE_ACK;
-        return size == 0U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x4E):
+        if (size != 0U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x4EU:
         *message = MATTY_V4_MESSAGE_NACK;
-        return size == 0U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x49):
+        if (size != 0U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x49U:
         *message = MATTY_V4_MESSAGE_STATUS;
-        return size == 24U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
-    case UINT8_C(0x50):
+        if (size != 24U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
+    case 0x50U:
         *message = MATTY_V4_MESSAGE_GPS;
-        return (uint8_t)((size <= 121U) ? (int)matty_v4_gps_check(payload, size, NULL) : (int)MATTY_V4_SIZE);
-    case UINT8_C(0x56):
+        if (size > 121U) {
+            return MATTY_V4_SIZE;
+        }
+        return (uint8_t)matty_v4_gps_check(payload, size, NULL);
+    case 0x56U:
         *message = MATTY_V4_MESSAGE_VERSION;
-        return size == 2U ? MATTY_V4_NO_REASON : MATTY_V4_SIZE;
+        if (size != 2U) {
+            return MATTY_V4_SIZE;
+        }
+        return MATTY_V4_NO_REASON;
     default:
         return MATTY_V4_NO_REASON;
     }
@@ -1729,9 +1781,10 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U],
+                                         (size_t)(4U + decoder->payload) - (size_t)(1U));
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_V4_CHECKSUM;
@@ -1780,15 +1833,13 @@ static uint8_t matty_v4_esp_read_length(struct matty_v4_esp_decoder *decoder, ui
 }
 
 /* A byte in front of the payload. */
-static uint8_t matty_v4_esp_take_head(struct matty_v4_esp_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t matty_v4_esp_take_head(struct matty_v4_esp_decoder *decoder, uint16_t index,
+                                      uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = MATTY_V4_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x55) {
+        if (byte != 0x55U) {
             return MATTY_V4_VALUE;
         }
         break;
@@ -1837,10 +1888,10 @@ static uint8_t matty_v4_esp_unstuff(struct matty_v4_esp_decoder *decoder, uint8_
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x56:
+        case 0x56U:
             decoder->node = 1;
             return MATTY_V4_NO_REASON;
-        case 0x55:
+        case 0x55U:
             return MATTY_V4_STUFFING;
         default:
             break;
@@ -1848,10 +1899,10 @@ static uint8_t matty_v4_esp_unstuff(struct matty_v4_esp_decoder *decoder, uint8_
         break;
     default:
         switch (byte) {
-        case 0xA9:
+        case 0xA9U:
             value = 0x56U;
             break;
-        case 0xAA:
+        case 0xAAU:
             value = 0x55U;
             break;
         default:
@@ -1878,7 +1929,7 @@ static uint8_t matty_v4_esp_pass(struct matty_v4_esp_decoder *decoder, uint8_t b
 static uint8_t matty_v4_esp_take(struct matty_v4_esp_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x55 && decoder->wire > 1U) {
+    if (byte == 0x55U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = MATTY_V4_TRUNCATED;
     } else {
@@ -1909,16 +1960,14 @@ static void matty_v4_esp_seek_on(struct matty_v4_esp_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void matty_v4_esp_reopen(struct matty_v4_esp_decoder *decoder) {
     matty_v4_esp_open(decoder);
-    (void)matty_v4_esp_take(decoder, 0x55);
+    (void)matty_v4_esp_take(decoder, 0x55U);
 }
 
 static void matty_v4_esp_judge(struct matty_v4_esp_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == MATTY_V4_FRAME) {
         matty_v4_esp_seek_on(decoder);
-    } else if (byte == 0x55 && decoder->wire > 1U) {
+    } else if (byte == 0x55U && decoder->wire > 1U) {
         if (size > 1U) {
             matty_v4_esp_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1931,7 +1980,7 @@ static void matty_v4_esp_judge(struct matty_v4_esp_decoder *decoder, uint8_t rea
 
 /* A byte that no candidate has. */
 static void matty_v4_esp_seek(struct matty_v4_esp_decoder *decoder, uint8_t byte) {
-    if (byte == 0x55) {
+    if (byte == 0x55U) {
         matty_v4_esp_reopen(decoder);
     } else {
         matty_v4_esp_add_noise(decoder, 1);
@@ -1951,15 +2000,19 @@ void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byt
 
 #if MATTY_V4_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
+                                      size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if MATTY_V4_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -1977,7 +2030,7 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) != 0U) {
+            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -1987,7 +2040,7 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_V4_HAS(word, 0x55) | MATTY_V4_HAS(word, 0x56)) == 0U) {
+            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2002,14 +2055,14 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x55:
+        case 0x55U:
             return 0;
-        case 0x56:
-            if (size - from >= 1U && data[from] == 0xAA) {
-                byte = 0x55;
+        case 0x56U:
+            if (size - from >= 1U && data[from] == 0xAAU) {
+                byte = 0x55U;
                 from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9) {
-                byte = 0x56;
+            } else if (size - from >= 1U && data[from] == 0xA9U) {
+                byte = 0x56U;
                 from += 1U;
             } else {
                 return 0;
@@ -2026,14 +2079,15 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
+                                      size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 5U) {
         return 0;
     }
-    if (data[0] != 0x55) {
+    if (data[0] != 0x55U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -2068,7 +2122,8 @@ static bool matty_v4_esp_is_idle(const struct matty_v4_esp_decoder *decoder) {
 }
 #endif
 
-void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size) {
+void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
+                               size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -2090,7 +2145,8 @@ static void matty_v4_esp_reset(struct matty_v4_esp_decoder *decoder) {
     matty_v4_esp_seek_on(decoder);
 }
 
-void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler, void *user) {
+void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,
+                               void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2108,7 +2164,7 @@ void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder) {
 }
 #ifndef MATTY_V4_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event) {
     switch (event->message) {

@@ -26,7 +26,7 @@ enum matty_v4_result {
     MATTY_V4_OK = 0,
     /** Too few or too many bytes. */
     MATTY_V4_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     MATTY_V4_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     MATTY_V4_ERROR_ENCODING,
@@ -55,7 +55,7 @@ enum matty_v4_message {
     MATTY_V4_NO_MESSAGE = 14
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** How to stop (esp/matty-v4.txt, line 16). */
 enum matty_v4_stop_mode {
@@ -83,13 +83,13 @@ enum matty_v4_gps_mode_mode {
 };
 
 /** Flags (004_bc163d01a5f01dc1.txt, lines 34-43). */
-#define MATTY_V4_STATUS_STATUS_EMERGENCY_STOP 0x01u
-#define MATTY_V4_STATUS_STATUS_VOLTAGE_LOW 0x02u
-#define MATTY_V4_STATUS_STATUS_BUMPER_FRONT 0x04u
-#define MATTY_V4_STATUS_STATUS_BUMPER_BACK 0x08u
-#define MATTY_V4_STATUS_STATUS_ERROR_ENCODER 0x10u
-#define MATTY_V4_STATUS_STATUS_ERROR_POWER 0x20u
-#define MATTY_V4_STATUS_STATUS_RUNNING 0x80u
+#define MATTY_V4_STATUS_STATUS_EMERGENCY_STOP 0x01U
+#define MATTY_V4_STATUS_STATUS_VOLTAGE_LOW 0x02U
+#define MATTY_V4_STATUS_STATUS_BUMPER_FRONT 0x04U
+#define MATTY_V4_STATUS_STATUS_BUMPER_BACK 0x08U
+#define MATTY_V4_STATUS_STATUS_ERROR_ENCODER 0x10U
+#define MATTY_V4_STATUS_STATUS_ERROR_POWER 0x20U
+#define MATTY_V4_STATUS_STATUS_RUNNING 0x80U
 
 /*
  * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
@@ -99,12 +99,12 @@ enum matty_v4_gps_mode_mode {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- stop -------------------------------------------------------------------------------------- */
+/* --- stop ------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_STOP_ID 'S'
-#define MATTY_V4_STOP_PAYLOAD_SIZE 1u
-#define MATTY_V4_STOP_PAYLOAD_MIN 1u
-#define MATTY_V4_STOP_PAYLOAD_MAX 1u
+#define MATTY_V4_STOP_PAYLOAD_SIZE 1U
+#define MATTY_V4_STOP_PAYLOAD_MIN 1U
+#define MATTY_V4_STOP_PAYLOAD_MAX 1U
 #define MATTY_V4_STOP_SPEC_HASH "a7733e796a0841037ff45d4dc25b2397a230ce780e7c93e53c77b65f5f4b16bd"
 
 /**
@@ -123,12 +123,12 @@ enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const u
                                           size_t size);
 void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
 
-/* --- reset ------------------------------------------------------------------------------------- */
+/* --- reset ------------------------------------------------------------------------------------ */
 
 #define MATTY_V4_RESET_ID 'R'
-#define MATTY_V4_RESET_PAYLOAD_SIZE 0u
-#define MATTY_V4_RESET_PAYLOAD_MIN 0u
-#define MATTY_V4_RESET_PAYLOAD_MAX 0u
+#define MATTY_V4_RESET_PAYLOAD_SIZE 0U
+#define MATTY_V4_RESET_PAYLOAD_MIN 0U
+#define MATTY_V4_RESET_PAYLOAD_MAX 0U
 #define MATTY_V4_RESET_SPEC_HASH "4fbe81bf7d0bb067835120ca3f0ce0525b52c9580cc59d35d86320105e3378e2"
 
 /** Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17). */
@@ -143,12 +143,12 @@ enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const
                                            size_t size);
 void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload);
 
-/* --- mode -------------------------------------------------------------------------------------- */
+/* --- mode ------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_MODE_ID 'M'
-#define MATTY_V4_MODE_PAYLOAD_SIZE 1u
-#define MATTY_V4_MODE_PAYLOAD_MIN 1u
-#define MATTY_V4_MODE_PAYLOAD_MAX 1u
+#define MATTY_V4_MODE_PAYLOAD_SIZE 1U
+#define MATTY_V4_MODE_PAYLOAD_MIN 1U
+#define MATTY_V4_MODE_PAYLOAD_MAX 1U
 #define MATTY_V4_MODE_SPEC_HASH "2fc2483c2174644bb91ef9b160e3f884407b77b6edd6688bfb9aecfce330fa72"
 
 /** Sets the robot's mode (004_bc163d01a5f01dc1.txt, line 18). */
@@ -163,12 +163,12 @@ enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const u
                                           size_t size);
 void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
 
-/* --- go ---------------------------------------------------------------------------------------- */
+/* --- go --------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_GO_ID 'G'
-#define MATTY_V4_GO_PAYLOAD_SIZE 4u
-#define MATTY_V4_GO_PAYLOAD_MIN 4u
-#define MATTY_V4_GO_PAYLOAD_MAX 4u
+#define MATTY_V4_GO_PAYLOAD_SIZE 4U
+#define MATTY_V4_GO_PAYLOAD_MIN 4U
+#define MATTY_V4_GO_PAYLOAD_MAX 4U
 #define MATTY_V4_GO_SPEC_HASH "105599ce97d03a128991a2eb236fb815994afb3508635af10442caa11e2f2249"
 #define MATTY_V4_GO_SPEED_UNIT "mm/s"
 #define MATTY_V4_GO_STEER_SCALE_NUM 1
@@ -189,12 +189,12 @@ enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8
                                         size_t size);
 void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload);
 
-/* --- limits ------------------------------------------------------------------------------------ */
+/* --- limits ----------------------------------------------------------------------------------- */
 
 #define MATTY_V4_LIMITS_ID 'L'
-#define MATTY_V4_LIMITS_PAYLOAD_SIZE 4u
-#define MATTY_V4_LIMITS_PAYLOAD_MIN 4u
-#define MATTY_V4_LIMITS_PAYLOAD_MAX 4u
+#define MATTY_V4_LIMITS_PAYLOAD_SIZE 4U
+#define MATTY_V4_LIMITS_PAYLOAD_MIN 4U
+#define MATTY_V4_LIMITS_PAYLOAD_MAX 4U
 #define MATTY_V4_LIMITS_SPEC_HASH "7463892b64995255b2c1647b070e3e37f770c4936d49b6ebced98afcd65a9d41"
 #define MATTY_V4_LIMITS_MAX_SPEED_UNIT "mm/s"
 #define MATTY_V4_LIMITS_MAX_STEER_SCALE_NUM 1
@@ -220,12 +220,12 @@ enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message, con
                                             size_t size);
 void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload);
 
-/* --- timing ------------------------------------------------------------------------------------ */
+/* --- timing ----------------------------------------------------------------------------------- */
 
 #define MATTY_V4_TIMING_ID 'T'
-#define MATTY_V4_TIMING_PAYLOAD_SIZE 4u
-#define MATTY_V4_TIMING_PAYLOAD_MIN 4u
-#define MATTY_V4_TIMING_PAYLOAD_MAX 4u
+#define MATTY_V4_TIMING_PAYLOAD_SIZE 4U
+#define MATTY_V4_TIMING_PAYLOAD_MIN 4U
+#define MATTY_V4_TIMING_PAYLOAD_MAX 4U
 #define MATTY_V4_TIMING_SPEC_HASH "42d5b73e7ea8c9ef4a957add443cac60555695dea7be4e2f9e44f2acddf1f9ab"
 #define MATTY_V4_TIMING_PERIOD_UNIT "ms"
 #define MATTY_V4_TIMING_TIMEOUT_UNIT "ms"
@@ -247,12 +247,12 @@ enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message, con
                                             size_t size);
 void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload);
 
-/* --- gps_mode ---------------------------------------------------------------------------------- */
+/* --- gps_mode --------------------------------------------------------------------------------- */
 
 #define MATTY_V4_GPS_MODE_ID 'P'
-#define MATTY_V4_GPS_MODE_PAYLOAD_SIZE 1u
-#define MATTY_V4_GPS_MODE_PAYLOAD_MIN 1u
-#define MATTY_V4_GPS_MODE_PAYLOAD_MAX 1u
+#define MATTY_V4_GPS_MODE_PAYLOAD_SIZE 1U
+#define MATTY_V4_GPS_MODE_PAYLOAD_MIN 1U
+#define MATTY_V4_GPS_MODE_PAYLOAD_MAX 1U
 #define MATTY_V4_GPS_MODE_SPEC_HASH "92db1d34aa704ff3a470e42273d5e360a3be8d61da6d1b2baf204db4de28cad2"
 
 /** Sets what is sent of the GPS receiver (004_bc163d01a5f01dc1.txt, line 22). */
@@ -267,12 +267,12 @@ enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
                                               const uint8_t *payload, size_t size);
 void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
 
-/* --- version_query ----------------------------------------------------------------------------- */
+/* --- version_query ---------------------------------------------------------------------------- */
 
 #define MATTY_V4_VERSION_QUERY_ID 'V'
-#define MATTY_V4_VERSION_QUERY_PAYLOAD_SIZE 0u
-#define MATTY_V4_VERSION_QUERY_PAYLOAD_MIN 0u
-#define MATTY_V4_VERSION_QUERY_PAYLOAD_MAX 0u
+#define MATTY_V4_VERSION_QUERY_PAYLOAD_SIZE 0U
+#define MATTY_V4_VERSION_QUERY_PAYLOAD_MIN 0U
+#define MATTY_V4_VERSION_QUERY_PAYLOAD_MAX 0U
 #define MATTY_V4_VERSION_QUERY_SPEC_HASH "64b31edb481abe8981924042da95b29412a42fbd61ac0ae36c8ee3008942abcf"
 
 /** Asks for the version (esp/matty-v4.txt, line 23). */
@@ -287,12 +287,12 @@ enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query
                                                    const uint8_t *payload, size_t size);
 void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload);
 
-/* --- led --------------------------------------------------------------------------------------- */
+/* --- led -------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_LED_ID 'D'
-#define MATTY_V4_LED_PAYLOAD_SIZE 4u
-#define MATTY_V4_LED_PAYLOAD_MIN 4u
-#define MATTY_V4_LED_PAYLOAD_MAX 4u
+#define MATTY_V4_LED_PAYLOAD_SIZE 4U
+#define MATTY_V4_LED_PAYLOAD_MIN 4U
+#define MATTY_V4_LED_PAYLOAD_MAX 4U
 #define MATTY_V4_LED_SPEC_HASH "8ed61fd4ee563caf0ea7cdf63794d1d838b1a93d4f72e371a74f0ded4c9ca1eb"
 
 /** Sets the colour of an LED (esp/Robot/src/data.h). */
@@ -309,12 +309,12 @@ enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uin
                                          size_t size);
 void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload);
 
-/* --- ack --------------------------------------------------------------------------------------- */
+/* --- ack -------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_ACK_ID 'A'
-#define MATTY_V4_ACK_PAYLOAD_SIZE 0u
-#define MATTY_V4_ACK_PAYLOAD_MIN 0u
-#define MATTY_V4_ACK_PAYLOAD_MAX 0u
+#define MATTY_V4_ACK_PAYLOAD_SIZE 0U
+#define MATTY_V4_ACK_PAYLOAD_MIN 0U
+#define MATTY_V4_ACK_PAYLOAD_MAX 0U
 #define MATTY_V4_ACK_SPEC_HASH "b39c1b9fc3bcda34d7a1848fdb8f886633ff2d02dc6777d17d0094d93c5483d4"
 
 /**
@@ -333,12 +333,12 @@ enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uin
                                          size_t size);
 void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
 
-/* --- nack -------------------------------------------------------------------------------------- */
+/* --- nack ------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_NACK_ID 'N'
-#define MATTY_V4_NACK_PAYLOAD_SIZE 0u
-#define MATTY_V4_NACK_PAYLOAD_MIN 0u
-#define MATTY_V4_NACK_PAYLOAD_MAX 0u
+#define MATTY_V4_NACK_PAYLOAD_SIZE 0U
+#define MATTY_V4_NACK_PAYLOAD_MIN 0U
+#define MATTY_V4_NACK_PAYLOAD_MAX 0U
 #define MATTY_V4_NACK_SPEC_HASH "334ec5ef63cd0f195f9e8a6100c669ff7a7704deb254bc16e6b6f14ee838f63e"
 
 /**
@@ -357,17 +357,17 @@ enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const u
                                           size_t size);
 void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 #define MATTY_V4_STATUS_ID 'I'
-#define MATTY_V4_STATUS_PAYLOAD_SIZE 24u
-#define MATTY_V4_STATUS_PAYLOAD_MIN 24u
-#define MATTY_V4_STATUS_PAYLOAD_MAX 24u
+#define MATTY_V4_STATUS_PAYLOAD_SIZE 24U
+#define MATTY_V4_STATUS_PAYLOAD_MIN 24U
+#define MATTY_V4_STATUS_PAYLOAD_MAX 24U
 #define MATTY_V4_STATUS_SPEC_HASH "8329063714abce4931fb86fb2239eec289939ba2e9f7fbdbb2006d07e08b1aff"
 #define MATTY_V4_STATUS_VOLTAGE_UNIT "mV"
 #define MATTY_V4_STATUS_CURRENT_UNIT "mA"
 /** The current could not be read. */
-#define MATTY_V4_STATUS_CURRENT_READ_ERROR 65535u
+#define MATTY_V4_STATUS_CURRENT_READ_ERROR 65535U
 #define MATTY_V4_STATUS_SPEED_UNIT "mm/s"
 #define MATTY_V4_STATUS_ANGLE_SCALE_NUM 1
 #define MATTY_V4_STATUS_ANGLE_SCALE_DEN 100
@@ -426,11 +426,11 @@ enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message, con
                                             size_t size);
 void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload);
 
-/* --- gps --------------------------------------------------------------------------------------- */
+/* --- gps -------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_GPS_ID 'P'
-#define MATTY_V4_GPS_PAYLOAD_MIN 0u
-#define MATTY_V4_GPS_PAYLOAD_MAX 121u
+#define MATTY_V4_GPS_PAYLOAD_MIN 0U
+#define MATTY_V4_GPS_PAYLOAD_MAX 121U
 #define MATTY_V4_GPS_SPEC_HASH "f185369c8f4e33ba780f8079f5c208d4df2355060aa98c8e724e3fb0569218bc"
 
 /**
@@ -451,12 +451,12 @@ enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message, const uin
                                          size_t size);
 void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, size_t size);
 
-/* --- version ----------------------------------------------------------------------------------- */
+/* --- version ---------------------------------------------------------------------------------- */
 
 #define MATTY_V4_VERSION_ID 'V'
-#define MATTY_V4_VERSION_PAYLOAD_SIZE 2u
-#define MATTY_V4_VERSION_PAYLOAD_MIN 2u
-#define MATTY_V4_VERSION_PAYLOAD_MAX 2u
+#define MATTY_V4_VERSION_PAYLOAD_SIZE 2U
+#define MATTY_V4_VERSION_PAYLOAD_MIN 2U
+#define MATTY_V4_VERSION_PAYLOAD_MAX 2U
 #define MATTY_V4_VERSION_SPEC_HASH "466c2d3440d455274ac756df7cf55852170d4ae855c062874dee69c38a3794e6"
 
 /** Which robot this is, and its firmware (esp/matty-v4.txt, lines 52-55). */
@@ -473,7 +473,7 @@ enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
                                              const uint8_t *payload, size_t size);
 void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -487,56 +487,56 @@ void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payl
 typedef void (*matty_v4_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_STOP_FRAME_MAX 8u
-#define MATTY_V4_STOP_FRAME_ROOM 12u
+#define MATTY_V4_STOP_FRAME_MAX 8U
+#define MATTY_V4_STOP_FRAME_ROOM 12U
 enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uint8_t counter,
                                         matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_RESET_FRAME_MAX 7u
-#define MATTY_V4_RESET_FRAME_ROOM 10u
+#define MATTY_V4_RESET_FRAME_MAX 7U
+#define MATTY_V4_RESET_FRAME_ROOM 10U
 enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message, uint8_t counter,
                                           uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message, uint8_t counter,
                                          matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_MODE_FRAME_MAX 8u
-#define MATTY_V4_MODE_FRAME_ROOM 12u
+#define MATTY_V4_MODE_FRAME_MAX 8U
+#define MATTY_V4_MODE_FRAME_ROOM 12U
 enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message, uint8_t counter,
                                         matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_GO_FRAME_MAX 14u
-#define MATTY_V4_GO_FRAME_ROOM 18u
+#define MATTY_V4_GO_FRAME_MAX 14U
+#define MATTY_V4_GO_FRAME_ROOM 18U
 enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message, uint8_t counter,
                                       matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_LIMITS_FRAME_MAX 14u
-#define MATTY_V4_LIMITS_FRAME_ROOM 18u
+#define MATTY_V4_LIMITS_FRAME_MAX 14U
+#define MATTY_V4_LIMITS_FRAME_ROOM 18U
 enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message, uint8_t counter,
                                           matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_TIMING_FRAME_MAX 14u
-#define MATTY_V4_TIMING_FRAME_ROOM 18u
+#define MATTY_V4_TIMING_FRAME_MAX 14U
+#define MATTY_V4_TIMING_FRAME_ROOM 18U
 enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message, uint8_t counter,
                                           matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_GPS_MODE_FRAME_MAX 8u
-#define MATTY_V4_GPS_MODE_FRAME_ROOM 12u
+#define MATTY_V4_GPS_MODE_FRAME_MAX 8U
+#define MATTY_V4_GPS_MODE_FRAME_ROOM 12U
 enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
                                              uint8_t counter, uint8_t *frame, size_t capacity,
                                              size_t *size);
@@ -544,8 +544,8 @@ enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *mess
                                             uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_VERSION_QUERY_FRAME_MAX 7u
-#define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10u
+#define MATTY_V4_VERSION_QUERY_FRAME_MAX 7U
+#define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10U
 enum matty_v4_result matty_v4_version_query_frame(const struct matty_v4_version_query *message,
                                                   uint8_t counter, uint8_t *frame, size_t capacity,
                                                   size_t *size);
@@ -553,54 +553,54 @@ enum matty_v4_result matty_v4_version_query_send(const struct matty_v4_version_q
                                                  uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_LED_FRAME_MAX 14u
-#define MATTY_V4_LED_FRAME_ROOM 18u
+#define MATTY_V4_LED_FRAME_MAX 14U
+#define MATTY_V4_LED_FRAME_ROOM 18U
 enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8_t counter,
                                        matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_ACK_FRAME_MAX 6u
-#define MATTY_V4_ACK_FRAME_ROOM 10u
+#define MATTY_V4_ACK_FRAME_MAX 6U
+#define MATTY_V4_ACK_FRAME_ROOM 10U
 enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message, uint8_t counter,
                                        matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_NACK_FRAME_MAX 6u
-#define MATTY_V4_NACK_FRAME_ROOM 10u
+#define MATTY_V4_NACK_FRAME_MAX 6U
+#define MATTY_V4_NACK_FRAME_ROOM 10U
 enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message, uint8_t counter,
                                          uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message, uint8_t counter,
                                         matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_STATUS_FRAME_MAX 54u
-#define MATTY_V4_STATUS_FRAME_ROOM 58u
+#define MATTY_V4_STATUS_FRAME_MAX 54U
+#define MATTY_V4_STATUS_FRAME_ROOM 58U
 enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message, uint8_t counter,
                                           matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_GPS_FRAME_MAX 249u
-#define MATTY_V4_GPS_FRAME_ROOM 252u
+#define MATTY_V4_GPS_FRAME_MAX 249U
+#define MATTY_V4_GPS_FRAME_ROOM 252U
 enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message, uint8_t counter,
                                        matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define MATTY_V4_VERSION_FRAME_MAX 11u
-#define MATTY_V4_VERSION_FRAME_ROOM 14u
+#define MATTY_V4_VERSION_FRAME_MAX 11U
+#define MATTY_V4_VERSION_FRAME_ROOM 14U
 enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
                                             uint8_t *frame, size_t capacity, size_t *size);
 enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message, uint8_t counter,
                                            matty_v4_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum matty_v4_event_kind {
@@ -622,7 +622,7 @@ enum matty_v4_reason {
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what pc sends -------------------------------------------------------------------- */
+/* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
 #define MATTY_V4_PC_FRAME_MAX 252U
@@ -660,30 +660,41 @@ typedef void (*matty_v4_pc_handler)(void *user, const struct matty_v4_pc_event *
 struct matty_v4_pc_decoder {
     matty_v4_pc_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[127];
 };
 
 /** Start at the beginning of an input. */
-void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler, void *user);
+void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
+                              void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data, size_t size);
+void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
+                              size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder);
 
-/* --- what esp sends -------------------------------------------------------------------- */
+/* --- what esp sends --------------------------------------------------------------------------- */
 
 /** The greatest frame of esp on the wire, in bytes. */
 #define MATTY_V4_ESP_FRAME_MAX 252U
@@ -721,36 +732,47 @@ typedef void (*matty_v4_esp_handler)(void *user, const struct matty_v4_esp_event
 struct matty_v4_esp_decoder {
     matty_v4_esp_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[127];
 };
 
 /** Start at the beginning of an input. */
-void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler, void *user);
+void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,
+                               void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data, size_t size);
+void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
+                               size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * MATTY_V4_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining MATTY_V4_NO_HANDLERS for the source.
  */
 
 /** stop came from pc. */

@@ -29,7 +29,8 @@ static void rflex_store_u32be(uint8_t *at, uint32_t value) {
 }
 
 static uint32_t rflex_load_u32be(const uint8_t *at) {
-    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) | ((uint32_t)at[0] << 24));
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
 }
 
 static void rflex_store_u16be(uint8_t *at, uint16_t value) {
@@ -37,7 +38,7 @@ static void rflex_store_u16be(uint8_t *at, uint16_t value) {
     at[1] = (uint8_t)value;
 }
 
-/* --- request_system_status --------------------------------------------------------------------- */
+/* --- request_system_status -------------------------------------------------------------------- */
 
 static void rflex_request_system_status_store(const struct rflex_request_system_status *message,
                                               uint8_t *payload) {
@@ -45,31 +46,31 @@ static void rflex_request_system_status_store(const struct rflex_request_system_
     (void)payload;
 }
 
-enum rflex_result rflex_request_system_status_encode(const struct rflex_request_system_status *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size) {
+enum rflex_result rflex_request_system_status_encode(
+    const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_request_system_status_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_OK;
 }
 
 void rflex_request_system_status_load(struct rflex_request_system_status *message,
                                       const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum rflex_result rflex_request_system_status_decode(struct rflex_request_system_status *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_request_system_status_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- system_status ----------------------------------------------------------------------------- */
+/* --- system_status ---------------------------------------------------------------------------- */
 
 static void rflex_system_status_store(const struct rflex_system_status *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
@@ -79,11 +80,11 @@ static void rflex_system_status_store(const struct rflex_system_status *message,
 
 enum rflex_result rflex_system_status_encode(const struct rflex_system_status *message,
                                              uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 9u) {
+    if (capacity < 9U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_system_status_store(message, payload);
-    *size = 9u;
+    *size = 9U;
     return RFLEX_OK;
 }
 
@@ -95,14 +96,14 @@ void rflex_system_status_load(struct rflex_system_status *message, const uint8_t
 
 enum rflex_result rflex_system_status_decode(struct rflex_system_status *message,
                                              const uint8_t *payload, size_t size) {
-    if (size != 9u) {
+    if (size != 9U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_system_status_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- motor_00 ---------------------------------------------------------------------------------- */
+/* --- motor_00 --------------------------------------------------------------------------------- */
 
 static void rflex_motor_00_store(const struct rflex_motor_00 *message, uint8_t *payload) {
     payload[0] = message->unknown;
@@ -110,11 +111,11 @@ static void rflex_motor_00_store(const struct rflex_motor_00 *message, uint8_t *
 
 enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, uint8_t *payload,
                                         size_t capacity, size_t *size) {
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_00_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return RFLEX_OK;
 }
 
@@ -124,14 +125,14 @@ void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload)
 
 enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 1u) {
+    if (size != 1U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_motor_00_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- motor_command ----------------------------------------------------------------------------- */
+/* --- motor_command ---------------------------------------------------------------------------- */
 
 static void rflex_motor_command_store(const struct rflex_motor_command *message, uint8_t *payload) {
     payload[0] = message->axis;
@@ -143,11 +144,11 @@ static void rflex_motor_command_store(const struct rflex_motor_command *message,
 
 enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *message,
                                              uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 14u) {
+    if (capacity < 14U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_command_store(message, payload);
-    *size = 14u;
+    *size = 14U;
     return RFLEX_OK;
 }
 
@@ -161,14 +162,14 @@ void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t
 
 enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message,
                                              const uint8_t *payload, size_t size) {
-    if (size != 14u) {
+    if (size != 14U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_motor_command_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- confirm_motor_command --------------------------------------------------------------------- */
+/* --- confirm_motor_command -------------------------------------------------------------------- */
 
 static void rflex_confirm_motor_command_store(const struct rflex_confirm_motor_command *message,
                                               uint8_t *payload) {
@@ -177,14 +178,14 @@ static void rflex_confirm_motor_command_store(const struct rflex_confirm_motor_c
     payload[8] = message->axis;
 }
 
-enum rflex_result rflex_confirm_motor_command_encode(const struct rflex_confirm_motor_command *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size) {
-    if (capacity < 9u) {
+enum rflex_result rflex_confirm_motor_command_encode(
+    const struct rflex_confirm_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 9U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_motor_command_store(message, payload);
-    *size = 9u;
+    *size = 9U;
     return RFLEX_OK;
 }
 
@@ -197,14 +198,14 @@ void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *messag
 
 enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_command *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 9u) {
+    if (size != 9U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_confirm_motor_command_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- motor_0a ---------------------------------------------------------------------------------- */
+/* --- motor_0a --------------------------------------------------------------------------------- */
 
 static void rflex_motor_0a_store(const struct rflex_motor_0a *message, uint8_t *payload) {
     (void)message;
@@ -215,25 +216,25 @@ enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message, ui
                                         size_t capacity, size_t *size) {
     (void)capacity;
     rflex_motor_0a_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_OK;
 }
 
 void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_motor_0a_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- motor_0c ---------------------------------------------------------------------------------- */
+/* --- motor_0c --------------------------------------------------------------------------------- */
 
 static void rflex_motor_0c_store(const struct rflex_motor_0c *message, uint8_t *payload) {
     (void)message;
@@ -244,25 +245,25 @@ enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message, ui
                                         size_t capacity, size_t *size) {
     (void)capacity;
     rflex_motor_0c_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_OK;
 }
 
 void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const uint8_t *payload,
                                         size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_motor_0c_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- motor_0c_answer --------------------------------------------------------------------------- */
+/* --- motor_0c_answer -------------------------------------------------------------------------- */
 
 static void rflex_motor_0c_answer_store(const struct rflex_motor_0c_answer *message,
                                         uint8_t *payload) {
@@ -272,11 +273,11 @@ static void rflex_motor_0c_answer_store(const struct rflex_motor_0c_answer *mess
 
 enum rflex_result rflex_motor_0c_answer_encode(const struct rflex_motor_0c_answer *message,
                                                uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 8u) {
+    if (capacity < 8U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_0c_answer_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_OK;
 }
 
@@ -287,14 +288,14 @@ void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uin
 
 enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *message,
                                                const uint8_t *payload, size_t size) {
-    if (size != 8u) {
+    if (size != 8U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_motor_0c_answer_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- read_motor -------------------------------------------------------------------------------- */
+/* --- read_motor ------------------------------------------------------------------------------- */
 
 static void rflex_read_motor_store(const struct rflex_read_motor *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
@@ -308,11 +309,11 @@ static void rflex_read_motor_store(const struct rflex_read_motor *message, uint8
 
 enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message, uint8_t *payload,
                                           size_t capacity, size_t *size) {
-    if (capacity < 25u) {
+    if (capacity < 25U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_read_motor_store(message, payload);
-    *size = 25u;
+    *size = 25U;
     return RFLEX_OK;
 }
 
@@ -328,29 +329,29 @@ void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payl
 
 enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message, const uint8_t *payload,
                                           size_t size) {
-    if (size != 25u) {
+    if (size != 25U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_read_motor_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- start_stop_motor_packets ------------------------------------------------------------------ */
+/* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-static void rflex_start_stop_motor_packets_store(const struct rflex_start_stop_motor_packets *message,
-                                                 uint8_t *payload) {
+static void rflex_start_stop_motor_packets_store(
+    const struct rflex_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     rflex_store_u32be(payload + 4, message->start_stop);
 }
 
-enum rflex_result rflex_start_stop_motor_packets_encode(const struct rflex_start_stop_motor_packets *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 8u) {
+enum rflex_result rflex_start_stop_motor_packets_encode(
+    const struct rflex_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_start_stop_motor_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_OK;
 }
 
@@ -360,51 +361,50 @@ void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *
     message->start_stop = rflex_load_u32be(payload + 4);
 }
 
-enum rflex_result rflex_start_stop_motor_packets_decode(struct rflex_start_stop_motor_packets *message,
-                                                        const uint8_t *payload, size_t size) {
-    if (size != 8u) {
+enum rflex_result rflex_start_stop_motor_packets_decode(
+    struct rflex_start_stop_motor_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_start_stop_motor_packets_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-static void rflex_confirm_start_stop_motor_packets_store(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                         uint8_t *payload) {
+static void rflex_confirm_start_stop_motor_packets_store(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_encode(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size) {
-    if (capacity < 8u) {
+enum rflex_result rflex_confirm_start_stop_motor_packets_encode(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_start_stop_motor_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_OK;
 }
 
-void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop_motor_packets *message,
-                                                 const uint8_t *payload) {
+void rflex_confirm_start_stop_motor_packets_load(
+    struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_decode(struct rflex_confirm_start_stop_motor_packets *message,
-                                                                const uint8_t *payload,
-                                                                size_t size) {
-    if (size != 8u) {
+enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
+    struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_confirm_start_stop_motor_packets_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- request_joystick_data --------------------------------------------------------------------- */
+/* --- request_joystick_data -------------------------------------------------------------------- */
 
 static void rflex_request_joystick_data_store(const struct rflex_request_joystick_data *message,
                                               uint8_t *payload) {
@@ -412,31 +412,31 @@ static void rflex_request_joystick_data_store(const struct rflex_request_joystic
     (void)payload;
 }
 
-enum rflex_result rflex_request_joystick_data_encode(const struct rflex_request_joystick_data *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size) {
+enum rflex_result rflex_request_joystick_data_encode(
+    const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_request_joystick_data_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_OK;
 }
 
 void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
                                       const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joystick_data *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_request_joystick_data_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- joystick_data ----------------------------------------------------------------------------- */
+/* --- joystick_data ---------------------------------------------------------------------------- */
 
 static void rflex_joystick_data_store(const struct rflex_joystick_data *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
@@ -447,11 +447,11 @@ static void rflex_joystick_data_store(const struct rflex_joystick_data *message,
 
 enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *message,
                                              uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 13u) {
+    if (capacity < 13U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_joystick_data_store(message, payload);
-    *size = 13u;
+    *size = 13U;
     return RFLEX_OK;
 }
 
@@ -464,31 +464,31 @@ void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t
 
 enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message,
                                              const uint8_t *payload, size_t size) {
-    if (size != 13u) {
+    if (size != 13U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_joystick_data_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- start_stop_sonar_packets ------------------------------------------------------------------ */
+/* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-static void rflex_start_stop_sonar_packets_store(const struct rflex_start_stop_sonar_packets *message,
-                                                 uint8_t *payload) {
+static void rflex_start_stop_sonar_packets_store(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->frequency);
     rflex_store_u32be(payload + 4, message->unknown_1);
     payload[8] = message->unknown_2;
     rflex_store_u32be(payload + 9, message->start_stop);
 }
 
-enum rflex_result rflex_start_stop_sonar_packets_encode(const struct rflex_start_stop_sonar_packets *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 13u) {
+enum rflex_result rflex_start_stop_sonar_packets_encode(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 13U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_start_stop_sonar_packets_store(message, payload);
-    *size = 13u;
+    *size = 13U;
     return RFLEX_OK;
 }
 
@@ -500,60 +500,59 @@ void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *
     message->start_stop = rflex_load_u32be(payload + 9);
 }
 
-enum rflex_result rflex_start_stop_sonar_packets_decode(struct rflex_start_stop_sonar_packets *message,
-                                                        const uint8_t *payload, size_t size) {
-    if (size != 13u) {
+enum rflex_result rflex_start_stop_sonar_packets_decode(
+    struct rflex_start_stop_sonar_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 13U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_start_stop_sonar_packets_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-static void rflex_confirm_start_stop_sonar_packets_store(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                         uint8_t *payload) {
+static void rflex_confirm_start_stop_sonar_packets_store(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size) {
-    if (capacity < 8u) {
+enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_start_stop_sonar_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_OK;
 }
 
-void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop_sonar_packets *message,
-                                                 const uint8_t *payload) {
+void rflex_confirm_start_stop_sonar_packets_load(
+    struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload) {
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
 }
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(struct rflex_confirm_start_stop_sonar_packets *message,
-                                                                const uint8_t *payload,
-                                                                size_t size) {
-    if (size != 8u) {
+enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(
+    struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_confirm_start_stop_sonar_packets_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- sonar_data -------------------------------------------------------------------------------- */
+/* --- sonar_data ------------------------------------------------------------------------------- */
 
 static size_t rflex_sonar_data_measure(const struct rflex_sonar_data *message) {
-    size_t size = 8u;
-    size += (size_t)3u * message->readings_count;
+    size_t size = 8U;
+    size += (size_t)3U * message->readings_count;
     return size;
 }
 
 static enum rflex_result rflex_sonar_data_validate(const struct rflex_sonar_data *message) {
-    if (message->readings_count > 82u) {
+    if (message->readings_count > 82U) {
         return RFLEX_ERROR_RANGE;
     }
     return RFLEX_OK;
@@ -587,11 +586,11 @@ enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message
 static enum rflex_result rflex_sonar_data_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)payload;
     (void)need;
-    if (size < 8u) {
+    if (size < 8U) {
         return RFLEX_ERROR_SIZE;
     }
     size_t at = 8;
-    if (size - at > 246u) {
+    if (size - at > 246U) {
         return RFLEX_ERROR_SIZE;
     }
     while (at < size) {
@@ -607,7 +606,7 @@ void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payl
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
-    message->readings_count = 0u;
+    message->readings_count = 0U;
     while (at < payload + size) {
         message->readings[message->readings_count].cluster = at[0];
         message->readings[message->readings_count].distance = rflex_load_u16be(at + 1);
@@ -626,21 +625,21 @@ enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, cons
     return RFLEX_OK;
 }
 
-/* --- initialize_digital_io --------------------------------------------------------------------- */
+/* --- initialize_digital_io -------------------------------------------------------------------- */
 
 static void rflex_initialize_digital_io_store(const struct rflex_initialize_digital_io *message,
                                               uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
 }
 
-enum rflex_result rflex_initialize_digital_io_encode(const struct rflex_initialize_digital_io *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size) {
-    if (capacity < 4u) {
+enum rflex_result rflex_initialize_digital_io_encode(
+    const struct rflex_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 4U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_initialize_digital_io_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RFLEX_OK;
 }
 
@@ -651,29 +650,29 @@ void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *messag
 
 enum rflex_result rflex_initialize_digital_io_decode(struct rflex_initialize_digital_io *message,
                                                      const uint8_t *payload, size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_initialize_digital_io_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- confirm_initialize_digital_io ------------------------------------------------------------- */
+/* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-static void rflex_confirm_initialize_digital_io_store(const struct rflex_confirm_initialize_digital_io *message,
-                                                      uint8_t *payload) {
+static void rflex_confirm_initialize_digital_io_store(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_result rflex_confirm_initialize_digital_io_encode(const struct rflex_confirm_initialize_digital_io *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size) {
-    if (capacity < 8u) {
+enum rflex_result rflex_confirm_initialize_digital_io_encode(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_initialize_digital_io_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_OK;
 }
 
@@ -683,16 +682,16 @@ void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_di
     message->timestamp = rflex_load_u32be(payload + 4);
 }
 
-enum rflex_result rflex_confirm_initialize_digital_io_decode(struct rflex_confirm_initialize_digital_io *message,
-                                                             const uint8_t *payload, size_t size) {
-    if (size != 8u) {
+enum rflex_result rflex_confirm_initialize_digital_io_decode(
+    struct rflex_confirm_initialize_digital_io *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_confirm_initialize_digital_io_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- changed_bumpers --------------------------------------------------------------------------- */
+/* --- changed_bumpers -------------------------------------------------------------------------- */
 
 static void rflex_changed_bumpers_store(const struct rflex_changed_bumpers *message,
                                         uint8_t *payload) {
@@ -703,11 +702,11 @@ static void rflex_changed_bumpers_store(const struct rflex_changed_bumpers *mess
 
 enum rflex_result rflex_changed_bumpers_encode(const struct rflex_changed_bumpers *message,
                                                uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_changed_bumpers_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RFLEX_OK;
 }
 
@@ -719,14 +718,14 @@ void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uin
 
 enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *message,
                                                const uint8_t *payload, size_t size) {
-    if (size != 7u) {
+    if (size != 7U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_changed_bumpers_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- check_io_changed -------------------------------------------------------------------------- */
+/* --- check_io_changed ------------------------------------------------------------------------- */
 
 static void rflex_check_io_changed_store(const struct rflex_check_io_changed *message,
                                          uint8_t *payload) {
@@ -735,11 +734,11 @@ static void rflex_check_io_changed_store(const struct rflex_check_io_changed *me
 
 enum rflex_result rflex_check_io_changed_encode(const struct rflex_check_io_changed *message,
                                                 uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_check_io_changed_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RFLEX_OK;
 }
 
@@ -749,14 +748,14 @@ void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const u
 
 enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *message,
                                                 const uint8_t *payload, size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_check_io_changed_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- check_io_changed_answer ------------------------------------------------------------------- */
+/* --- check_io_changed_answer ------------------------------------------------------------------ */
 
 static void rflex_check_io_changed_answer_store(const struct rflex_check_io_changed_answer *message,
                                                 uint8_t *payload) {
@@ -765,14 +764,14 @@ static void rflex_check_io_changed_answer_store(const struct rflex_check_io_chan
     rflex_store_u32be(payload + 8, message->package_count);
 }
 
-enum rflex_result rflex_check_io_changed_answer_encode(const struct rflex_check_io_changed_answer *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size) {
-    if (capacity < 12u) {
+enum rflex_result rflex_check_io_changed_answer_encode(
+    const struct rflex_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 12U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_check_io_changed_answer_store(message, payload);
-    *size = 12u;
+    *size = 12U;
     return RFLEX_OK;
 }
 
@@ -783,16 +782,16 @@ void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *me
     message->package_count = rflex_load_u32be(payload + 8);
 }
 
-enum rflex_result rflex_check_io_changed_answer_decode(struct rflex_check_io_changed_answer *message,
-                                                       const uint8_t *payload, size_t size) {
-    if (size != 12u) {
+enum rflex_result rflex_check_io_changed_answer_decode(
+    struct rflex_check_io_changed_answer *message, const uint8_t *payload, size_t size) {
+    if (size != 12U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_check_io_changed_answer_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- changed_byte ------------------------------------------------------------------------------ */
+/* --- changed_byte ----------------------------------------------------------------------------- */
 
 static void rflex_changed_byte_store(const struct rflex_changed_byte *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
@@ -802,11 +801,11 @@ static void rflex_changed_byte_store(const struct rflex_changed_byte *message, u
 
 enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *message,
                                             uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_changed_byte_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RFLEX_OK;
 }
 
@@ -818,14 +817,14 @@ void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *
 
 enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
                                             const uint8_t *payload, size_t size) {
-    if (size != 7u) {
+    if (size != 7U) {
         return RFLEX_ERROR_SIZE;
     }
     rflex_changed_byte_load(message, payload);
     return RFLEX_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     RFLEX_SEEKING,
@@ -835,11 +834,11 @@ enum {
 
 enum {
     RFLEX_KNOWN = 1,     /* The payload's size is known. */
-    RFLEX_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    RFLEX_OPEN = 2,      /* Only what follows the payload tells its size. */
     RFLEX_SEARCHING = 4, /* A delimiter is looked for. */
-    RFLEX_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    RFLEX_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     RFLEX_EMPTY = 16,    /* The stuffed region holds nothing. */
-    RFLEX_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    RFLEX_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -848,7 +847,8 @@ enum {
     RFLEX_AFTER
 };
 
-#define RFLEX_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define RFLEX_FRAME 0xFFU
 
 #if RFLEX_FAST_FEED
 #include <string.h>
@@ -889,30 +889,30 @@ static uint8_t rflex_xor_8_final(uint8_t sum) {
     return sum;
 }
 
-/* --- what linux sends: frames -------------------------------------------------------------- */
+/* --- what linux sends: frames ----------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rflex_linux_room(size_t payload) {
-    const size_t content = 6u + payload + 1u;
-    return 3u * content + 2u;
+    const size_t content = 6U + payload + 1U;
+    return 3U * content + 2U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *rflex_linux_payload(uint8_t *frame, size_t payload) {
-    return &frame[rflex_linux_room(payload) - 1u - payload];
+    return &frame[rflex_linux_room(payload) - 1U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t rflex_linux_stuff(uint8_t *wire, uint8_t byte) {
     switch (byte) {
-    case 0x1B:
-        wire[0] = 0x1B;
-        wire[1] = 0x00;
+    case 0x1BU:
+        wire[0] = 0x1BU;
+        wire[1] = 0x00U;
         return 2;
-    case 0x7C:
-        wire[0] = 0x7C;
-        wire[1] = 0x1B;
-        wire[2] = 0x01;
+    case 0x7CU:
+        wire[0] = 0x7CU;
+        wire[1] = 0x1BU;
+        wire[2] = 0x01U;
         return 3;
     default:
         wire[0] = byte;
@@ -921,26 +921,27 @@ static size_t rflex_linux_stuff(uint8_t *wire, uint8_t byte) {
 }
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
-static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id, uint8_t subclass,
+                               uint8_t number) {
     uint8_t *const content = rflex_linux_payload(frame, payload) - 6;
-    uint8_t *const tail = &content[6u + payload];
+    uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
-    const uint16_t stuffed = (uint16_t)(6u + payload + 1u);
+    const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
     uint16_t from = 2;
     uint8_t *to = frame;
     (void)tail;
-    content[0u] = 0x1B;
-    content[1u] = 0x02;
-    content[2u] = (uint8_t)class_id;
-    content[3u] = (uint8_t)number;
-    content[4u] = (uint8_t)subclass;
-    content[5u] = (uint8_t)length;
+    content[0U] = 0x1BU;
+    content[1U] = 0x02U;
+    content[2U] = (uint8_t)class_id;
+    content[3U] = (uint8_t)number;
+    content[4U] = (uint8_t)subclass;
+    content[5U] = (uint8_t)length;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + payload) - (size_t)(6U));
         due = rflex_xor_8_final(sum);
-        tail[0u] = (uint8_t)due;
+        tail[0U] = (uint8_t)due;
     }
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
@@ -950,17 +951,17 @@ static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
     for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
         switch (byte) {
-        case 0x1B:
-            *to = 0x1B;
+        case 0x1BU:
+            *to = 0x1BU;
             to++;
-            *to = 0x00;
+            *to = 0x00U;
             break;
-        case 0x7C:
-            *to = 0x7C;
+        case 0x7CU:
+            *to = 0x7CU;
             to++;
-            *to = 0x1B;
+            *to = 0x1BU;
             to++;
-            *to = 0x01;
+            *to = 0x01U;
             break;
         default:
             *to = byte;
@@ -968,14 +969,14 @@ static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
         }
         to++;
     }
-    *to = 0x1B;
+    *to = 0x1BU;
     to++;
-    *to = 0x03;
+    *to = 0x03U;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct rflex_writer {
     rflex_put put;
@@ -989,10 +990,10 @@ enum { RFLEX_STUFFED = 128 };
 
 /* The next byte of content. */
 static void rflex_linux_write(struct rflex_writer *writer, uint8_t byte) {
-    if ((writer->flags & 1u) != 0u) {
+    if ((writer->flags & 1U) != 0U) {
         writer->linux_checksum = rflex_xor_8_step(writer->linux_checksum, byte);
     }
-    if ((writer->flags & RFLEX_STUFFED) != 0u) {
+    if ((writer->flags & RFLEX_STUFFED) != 0U) {
         uint8_t wire[3];
         const size_t size = rflex_linux_stuff(wire, byte);
         size_t index;
@@ -1004,7 +1005,8 @@ static void rflex_linux_write(struct rflex_writer *writer, uint8_t byte) {
     writer->put(writer->user, byte);
 }
 
-static void rflex_linux_send_head(struct rflex_writer *writer, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static void rflex_linux_send_head(struct rflex_writer *writer, size_t payload, uint8_t class_id,
+                                  uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
@@ -1012,18 +1014,19 @@ static void rflex_linux_send_head(struct rflex_writer *writer, size_t payload, u
     (void)class_id;
     (void)subclass;
     (void)number;
-    writer->linux_checksum = 0x00;
-    rflex_linux_write(writer, 0x1B);
-    rflex_linux_write(writer, 0x02);
-    writer->flags = 128u;
+    writer->linux_checksum = 0x00U;
+    rflex_linux_write(writer, 0x1BU);
+    rflex_linux_write(writer, 0x02U);
+    writer->flags = 128U;
     rflex_linux_write(writer, (uint8_t)class_id);
     rflex_linux_write(writer, (uint8_t)number);
     rflex_linux_write(writer, (uint8_t)subclass);
     rflex_linux_write(writer, (uint8_t)length);
-    writer->flags = 129u;
+    writer->flags = 129U;
 }
 
-static void rflex_linux_send_tail(struct rflex_writer *writer, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static void rflex_linux_send_tail(struct rflex_writer *writer, size_t payload, uint8_t class_id,
+                                  uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
@@ -1031,13 +1034,13 @@ static void rflex_linux_send_tail(struct rflex_writer *writer, size_t payload, u
     (void)class_id;
     (void)subclass;
     (void)number;
-    writer->flags = 128u;
+    writer->flags = 128U;
     {
         const uint8_t due = rflex_xor_8_final(writer->linux_checksum);
         rflex_linux_write(writer, (uint8_t)due);
     }
-    writer->put(writer->user, 0x1B);
-    writer->put(writer->user, 0x03);
+    writer->put(writer->user, 0x1BU);
+    writer->put(writer->user, 0x03U);
 }
 
 static void rflex_write(struct rflex_writer *writer, uint8_t byte) {
@@ -1122,8 +1125,8 @@ static void rflex_start_stop_motor_packets_put(const struct rflex_start_stop_mot
     rflex_write_u32be(writer, message->start_stop);
 }
 
-static void rflex_confirm_start_stop_motor_packets_put(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                       struct rflex_writer *writer) {
+static void rflex_confirm_start_stop_motor_packets_put(
+    const struct rflex_confirm_start_stop_motor_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
@@ -1150,8 +1153,8 @@ static void rflex_start_stop_sonar_packets_put(const struct rflex_start_stop_son
     rflex_write_u32be(writer, message->start_stop);
 }
 
-static void rflex_confirm_start_stop_sonar_packets_put(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                       struct rflex_writer *writer) {
+static void rflex_confirm_start_stop_sonar_packets_put(
+    const struct rflex_confirm_start_stop_sonar_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
@@ -1171,8 +1174,8 @@ static void rflex_initialize_digital_io_put(const struct rflex_initialize_digita
     rflex_write_u32be(writer, message->unknown);
 }
 
-static void rflex_confirm_initialize_digital_io_put(const struct rflex_confirm_initialize_digital_io *message,
-                                                    struct rflex_writer *writer) {
+static void rflex_confirm_initialize_digital_io_put(
+    const struct rflex_confirm_initialize_digital_io *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
@@ -1203,391 +1206,393 @@ static void rflex_changed_byte_put(const struct rflex_changed_byte *message,
     rflex_write_u16be(writer, message->value);
 }
 
-enum rflex_result rflex_request_system_status_frame(const struct rflex_request_system_status *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
-    const size_t payload = 0u;
+enum rflex_result rflex_request_system_status_frame(
+    const struct rflex_request_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_request_system_status_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x01, 0x01, number);
+    *size = rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_system_status_send(const struct rflex_request_system_status *message,
-                                                   uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_request_system_status_send(
+    const struct rflex_request_system_status *message, uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x01, 0x01, number);
+    rflex_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
     rflex_request_system_status_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x01, 0x01, number);
+    rflex_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size) {
-    const size_t payload = 9u;
+    const size_t payload = 9U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_system_status_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x01, 0x01, number);
+    *size = rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
                                            uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 9u;
+    const size_t payload = 9U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x01, 0x01, number);
+    rflex_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
     rflex_system_status_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x01, 0x01, number);
+    rflex_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_00_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x00U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message, uint8_t number,
                                       rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x00U, number);
     rflex_motor_00_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x00U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size) {
-    const size_t payload = 14u;
+    const size_t payload = 14U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_command_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x07, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
                                            uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 14u;
+    const size_t payload = 14U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x07, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x07U, number);
     rflex_motor_command_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x07, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x07U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_motor_command_frame(const struct rflex_confirm_motor_command *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
-    const size_t payload = 9u;
+enum rflex_result rflex_confirm_motor_command_frame(
+    const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 9U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_motor_command_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x07, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_motor_command_send(const struct rflex_confirm_motor_command *message,
-                                                   uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_confirm_motor_command_send(
+    const struct rflex_confirm_motor_command *message, uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 9u;
+    const size_t payload = 9U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x07, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x07U, number);
     rflex_confirm_motor_command_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x07, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x07U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_0a_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x0A, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message, uint8_t number,
                                       rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x0A, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x0AU, number);
     rflex_motor_0a_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x0A, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x0AU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_0c_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x0C, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message, uint8_t number,
                                       rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x0C, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
     rflex_motor_0c_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x0C, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
                                               uint8_t number, uint8_t *frame, size_t capacity,
                                               size_t *size) {
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_motor_0c_answer_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x0C, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
                                              uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x0C, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
     rflex_motor_0c_answer_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x0C, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
                                          uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 25u;
+    const size_t payload = 25U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_read_motor_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x21, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x21U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message, uint8_t number,
                                         rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 25u;
+    const size_t payload = 25U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x21, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x21U, number);
     rflex_read_motor_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x21, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x21U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_motor_packets_frame(const struct rflex_start_stop_motor_packets *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size) {
-    const size_t payload = 8u;
+enum rflex_result rflex_start_stop_motor_packets_frame(
+    const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_start_stop_motor_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x22, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_motor_packets_send(const struct rflex_start_stop_motor_packets *message,
-                                                      uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_start_stop_motor_packets_send(
+    const struct rflex_start_stop_motor_packets *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x22, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x22U, number);
     rflex_start_stop_motor_packets_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x22, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x22U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_frame(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size) {
-    const size_t payload = 8u;
+enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_start_stop_motor_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02, 0x22, number);
+    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_send(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                              uint8_t number, rflex_put put,
-                                                              void *user) {
+enum rflex_result rflex_confirm_start_stop_motor_packets_send(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x02, 0x22, number);
+    rflex_linux_send_head(&writer, payload, 0x02U, 0x22U, number);
     rflex_confirm_start_stop_motor_packets_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x02, 0x22, number);
+    rflex_linux_send_tail(&writer, payload, 0x02U, 0x22U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_joystick_data_frame(const struct rflex_request_joystick_data *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
-    const size_t payload = 0u;
+enum rflex_result rflex_request_joystick_data_frame(
+    const struct rflex_request_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_request_joystick_data_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x03, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_joystick_data_send(const struct rflex_request_joystick_data *message,
-                                                   uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_request_joystick_data_send(
+    const struct rflex_request_joystick_data *message, uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x03, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
     rflex_request_joystick_data_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x03, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size) {
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_joystick_data_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x03, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
                                            uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x03, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
     rflex_joystick_data_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x03, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_sonar_packets_frame(const struct rflex_start_stop_sonar_packets *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size) {
-    const size_t payload = 13u;
+enum rflex_result rflex_start_stop_sonar_packets_frame(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 13U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_start_stop_sonar_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_sonar_packets_send(const struct rflex_start_stop_sonar_packets *message,
-                                                      uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_start_stop_sonar_packets_send(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x04, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x04U, 0x00U, number);
     rflex_start_stop_sonar_packets_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x04, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x04U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size) {
-    const size_t payload = 8u;
+enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_start_stop_sonar_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_send(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                              uint8_t number, rflex_put put,
-                                                              void *user) {
+enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x04, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x04U, 0x00U, number);
     rflex_confirm_start_stop_sonar_packets_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x04, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x04U, 0x00U, number);
     return RFLEX_OK;
 }
 
@@ -1603,7 +1608,7 @@ enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message,
         return RFLEX_ERROR_SPACE;
     }
     rflex_sonar_data_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04, 0x02, number);
+    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x02U, number);
     return RFLEX_OK;
 }
 
@@ -1620,188 +1625,189 @@ enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, 
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x04, 0x02, number);
+    rflex_linux_send_head(&writer, payload, 0x04U, 0x02U, number);
     rflex_sonar_data_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x04, 0x02, number);
+    rflex_linux_send_tail(&writer, payload, 0x04U, 0x02U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_initialize_digital_io_frame(const struct rflex_initialize_digital_io *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
-    const size_t payload = 4u;
+enum rflex_result rflex_initialize_digital_io_frame(
+    const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 4U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_initialize_digital_io_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_initialize_digital_io_send(const struct rflex_initialize_digital_io *message,
-                                                   uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_initialize_digital_io_send(
+    const struct rflex_initialize_digital_io *message, uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x00U, number);
     rflex_initialize_digital_io_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_initialize_digital_io_frame(const struct rflex_confirm_initialize_digital_io *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
-    const size_t payload = 8u;
+enum rflex_result rflex_confirm_initialize_digital_io_frame(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_confirm_initialize_digital_io_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x00, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_initialize_digital_io_send(const struct rflex_confirm_initialize_digital_io *message,
-                                                           uint8_t number, rflex_put put,
-                                                           void *user) {
+enum rflex_result rflex_confirm_initialize_digital_io_send(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x00, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x00U, number);
     rflex_confirm_initialize_digital_io_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x00, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x00U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
                                               uint8_t number, uint8_t *frame, size_t capacity,
                                               size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_changed_bumpers_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x01, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x01U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
                                              uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x01, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x01U, number);
     rflex_changed_bumpers_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x01, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x01U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
                                                uint8_t number, uint8_t *frame, size_t capacity,
                                                size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_check_io_changed_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x02, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_check_io_changed_send(const struct rflex_check_io_changed *message,
                                               uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x02, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x02U, number);
     rflex_check_io_changed_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x02, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x02U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_check_io_changed_answer_frame(const struct rflex_check_io_changed_answer *message,
-                                                      uint8_t number, uint8_t *frame,
-                                                      size_t capacity, size_t *size) {
-    const size_t payload = 12u;
+enum rflex_result rflex_check_io_changed_answer_frame(
+    const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 12U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_check_io_changed_answer_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x02, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_check_io_changed_answer_send(const struct rflex_check_io_changed_answer *message,
-                                                     uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_check_io_changed_answer_send(
+    const struct rflex_check_io_changed_answer *message, uint8_t number, rflex_put put,
+    void *user) {
     struct rflex_writer writer;
-    const size_t payload = 12u;
+    const size_t payload = 12U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x02, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x02U, number);
     rflex_check_io_changed_answer_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x02, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x02U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
                                            uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
     rflex_changed_byte_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05, 0x03, number);
+    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x03U, number);
     return RFLEX_OK;
 }
 
 enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message, uint8_t number,
                                           rflex_put put, void *user) {
     struct rflex_writer writer;
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_linux_send_head(&writer, payload, 0x05, 0x03, number);
+    rflex_linux_send_head(&writer, payload, 0x05U, 0x03U, number);
     rflex_changed_byte_put(message, &writer);
-    rflex_linux_send_tail(&writer, payload, 0x05, 0x03, number);
+    rflex_linux_send_tail(&writer, payload, 0x05U, 0x03U, number);
     return RFLEX_OK;
 }
 
-/* --- what linux sends: the decoder --------------------------------------------------------- */
+/* --- what linux sends: the decoder ------------------------------------------------------------ */
 
 /* How much of the start the input ends with, once a byte follows so much of it. */
 static uint8_t rflex_linux_follow_start(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x02) {
+        if (byte == 0x02U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -1812,20 +1818,20 @@ static uint8_t rflex_linux_follow_start(uint8_t matched, uint8_t byte) {
 static uint8_t rflex_linux_follow_end(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x03) {
+        if (byte == 0x03U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -1834,7 +1840,8 @@ static uint8_t rflex_linux_follow_end(uint8_t matched, uint8_t byte) {
 
 /* Events. */
 
-static void rflex_linux_invalid(struct rflex_linux_decoder *decoder, uint8_t reason, uint16_t size) {
+static void rflex_linux_invalid(struct rflex_linux_decoder *decoder, uint8_t reason,
+                                uint16_t size) {
     struct rflex_linux_event event;
     event.kind = RFLEX_INVALID;
     event.reason = (enum rflex_reason)reason;
@@ -1870,41 +1877,71 @@ static void rflex_linux_add_noise(struct rflex_linux_decoder *decoder, uint16_t 
 
 /* The message of a valid frame. */
 
-static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const uint8_t *payload,
+                                    uint16_t size, uint8_t *message) {
     *message = RFLEX_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
-    case UINT16_C(0x0101):
+    case 0x0101U:
         *message = RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS;
-        return size == 0U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0200):
+        if (size != 0U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0200U:
         *message = RFLEX_MESSAGE_MOTOR_00;
-        return size == 1U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0207):
+        if (size != 1U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0207U:
         *message = RFLEX_MESSAGE_MOTOR_COMMAND;
-        return size == 14U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x020A):
+        if (size != 14U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x020AU:
         *message = RFLEX_MESSAGE_MOTOR_0A;
-        return size == 0U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x020C):
+        if (size != 0U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x020CU:
         *message = RFLEX_MESSAGE_MOTOR_0C;
-        return size == 0U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0222):
+        if (size != 0U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0222U:
         *message = RFLEX_MESSAGE_START_STOP_MOTOR_PACKETS;
-        return size == 8U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0300):
+        if (size != 8U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0300U:
         *message = RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA;
-        return size == 0U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0400):
+        if (size != 0U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0400U:
         *message = RFLEX_MESSAGE_START_STOP_SONAR_PACKETS;
-        return size == 13U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0500):
+        if (size != 13U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0500U:
         *message = RFLEX_MESSAGE_INITIALIZE_DIGITAL_IO;
-        return size == 4U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0502):
+        if (size != 4U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0502U:
         *message = RFLEX_MESSAGE_CHECK_IO_CHANGED;
-        return size == 4U ? RFLEX_NO_REASON : RFLEX_SIZE;
+        if (size != 4U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
     default:
         return RFLEX_NO_REASON;
     }
@@ -1917,7 +1954,7 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + decoder->payload) - (size_t)(6U));
         due = rflex_xor_8_final(sum);
@@ -1969,20 +2006,18 @@ static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint
 }
 
 /* A byte in front of the payload. */
-static uint8_t rflex_linux_take_head(struct rflex_linux_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rflex_linux_take_head(struct rflex_linux_decoder *decoder, uint16_t index,
+                                     uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x1B) {
+        if (byte != 0x1BU) {
             return RFLEX_VALUE;
         }
         break;
     case 1:
-        if (byte != 0x02) {
+        if (byte != 0x02U) {
             return RFLEX_VALUE;
         }
         break;
@@ -2036,19 +2071,25 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
-        case 0x7C:
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_linux_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
+        case 0x7CU:
             decoder->node = 2;
-            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_linux_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
         default:
             break;
         }
         break;
     case 1:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
         default:
@@ -2057,16 +2098,19 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
         break;
     case 2:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 3;
-            return decoder->content == decoder->payload + 7U ? rflex_linux_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_linux_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
         default:
             return RFLEX_STUFFING;
         }
         break;
     default:
         switch (byte) {
-        case 0x01:
+        case 0x01U:
             value = 0x7CU;
             break;
         default:
@@ -2122,7 +2166,8 @@ static uint8_t rflex_linux_search(struct rflex_linux_decoder *decoder, uint8_t b
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t reason = rflex_linux_pass(decoder, index < held ? (uint8_t)(index == 0U ? 0x1B : 0x03) : byte);
+        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
+        const uint8_t reason = rflex_linux_pass(decoder, next);
         if (reason != RFLEX_NO_REASON) {
             return reason;
         }
@@ -2139,7 +2184,8 @@ static uint8_t rflex_linux_take(struct rflex_linux_decoder *decoder, uint8_t byt
         decoder->behind = 2;
         reason = RFLEX_TRUNCATED;
     } else {
-        reason = (decoder->wire > 2U) ? rflex_linux_search(decoder, byte) : rflex_linux_pass(decoder, byte);
+        reason = (decoder->wire > 2U) ? rflex_linux_search(decoder, byte)
+                                      : rflex_linux_pass(decoder, byte);
     }
     if (reason == RFLEX_NO_REASON && decoder->wire >= 782U) {
         reason = RFLEX_LENGTH;
@@ -2169,14 +2215,13 @@ static void rflex_linux_seek_on(struct rflex_linux_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void rflex_linux_reopen(struct rflex_linux_decoder *decoder) {
     rflex_linux_open(decoder);
-    (void)rflex_linux_take(decoder, 0x1B);
-    (void)rflex_linux_take(decoder, 0x02);
+    (void)rflex_linux_take(decoder, 0x1BU);
+    (void)rflex_linux_take(decoder, 0x02U);
 }
 
 static void rflex_linux_judge(struct rflex_linux_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason == RFLEX_FRAME) {
         rflex_linux_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -2240,15 +2285,19 @@ void rflex_linux_decoder_push(struct rflex_linux_decoder *decoder, uint8_t byte)
 
 #if RFLEX_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const uint8_t *data,
+                                     size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if RFLEX_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -2266,7 +2315,7 @@ static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const 
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_HAS(word, 0x1B) | RFLEX_HAS(word, 0x7C)) != 0U) {
+            if ((RFLEX_HAS(word, 0x1BU) | RFLEX_HAS(word, 0x7CU)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -2276,7 +2325,7 @@ static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const 
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_HAS(word, 0x1B) | RFLEX_HAS(word, 0x7C)) == 0U) {
+            if ((RFLEX_HAS(word, 0x1BU) | RFLEX_HAS(word, 0x7CU)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2291,17 +2340,17 @@ static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const 
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x1B:
-            if (size - from >= 1U && data[from] == 0x00) {
-                byte = 0x1B;
+        case 0x1BU:
+            if (size - from >= 1U && data[from] == 0x00U) {
+                byte = 0x1BU;
                 from += 1U;
             } else {
                 return 0;
             }
             break;
-        case 0x7C:
-            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
-                byte = 0x7C;
+        case 0x7CU:
+            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+                byte = 0x7CU;
                 from += 2U;
             } else {
                 return 0;
@@ -2318,14 +2367,15 @@ static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const 
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const uint8_t *data,
+                                     size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 9U) {
         return 0;
     }
-    if (data[0] != 0x1B || data[1] != 0x02) {
+    if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -2343,7 +2393,7 @@ static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const 
     if (wire == 0U) {
         return 0;
     }
-    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
         return 0;
     }
     wire += 2U;
@@ -2362,7 +2412,8 @@ static bool rflex_linux_is_idle(const struct rflex_linux_decoder *decoder) {
 }
 #endif
 
-void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data, size_t size) {
+void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data,
+                              size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -2384,7 +2435,8 @@ static void rflex_linux_reset(struct rflex_linux_decoder *decoder) {
     rflex_linux_seek_on(decoder);
 }
 
-void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler, void *user) {
+void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler,
+                              void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2409,26 +2461,26 @@ void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder) {
     rflex_linux_reset(decoder);
 }
 
-/* --- what flex sends: the decoder --------------------------------------------------------- */
+/* --- what flex sends: the decoder ------------------------------------------------------------- */
 
 /* How much of the start the input ends with, once a byte follows so much of it. */
 static uint8_t rflex_flex_follow_start(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x02) {
+        if (byte == 0x02U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2439,20 +2491,20 @@ static uint8_t rflex_flex_follow_start(uint8_t matched, uint8_t byte) {
 static uint8_t rflex_flex_follow_end(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x03) {
+        if (byte == 0x03U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2497,47 +2549,82 @@ static void rflex_flex_add_noise(struct rflex_flex_decoder *decoder, uint16_t si
 
 /* The message of a valid frame. */
 
-static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const uint8_t *payload,
+                                   uint16_t size, uint8_t *message) {
     *message = RFLEX_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
-    case UINT16_C(0x0101):
+    case 0x0101U:
         *message = RFLEX_MESSAGE_SYSTEM_STATUS;
-        return size == 9U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0207):
+        if (size != 9U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0207U:
         *message = RFLEX_MESSAGE_CONFIRM_MOTOR_COMMAND;
-        return size == 9U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x020C):
+        if (size != 9U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x020CU:
         *message = RFLEX_MESSAGE_MOTOR_0C_ANSWER;
-        return size == 8U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0221):
+        if (size != 8U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0221U:
         *message = RFLEX_MESSAGE_READ_MOTOR;
-        return size == 25U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0222):
+        if (size != 25U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0222U:
         *message = RFLEX_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS;
-        return size == 8U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0300):
+        if (size != 8U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0300U:
         *message = RFLEX_MESSAGE_JOYSTICK_DATA;
-        return size == 13U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0400):
+        if (size != 13U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0400U:
         *message = RFLEX_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS;
-        return size == 8U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0402):
+        if (size != 8U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0402U:
         *message = RFLEX_MESSAGE_SONAR_DATA;
-        return (uint8_t)((size >= 8U && size <= 254U && (size - 8U) % 3U == 0U) ? (int)rflex_sonar_data_check(payload, size, NULL) : (int)RFLEX_SIZE);
-    case UINT16_C(0x0500):
+        if (size < 8U || size > 254U || (size - 8U) % 3U != 0U) {
+            return RFLEX_SIZE;
+        }
+        return (uint8_t)rflex_sonar_data_check(payload, size, NULL);
+    case 0x0500U:
         *message = RFLEX_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO;
-        return size == 8U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0501):
+        if (size != 8U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0501U:
         *message = RFLEX_MESSAGE_CHANGED_BUMPERS;
-        return size == 7U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0502):
+        if (size != 7U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0502U:
         *message = RFLEX_MESSAGE_CHECK_IO_CHANGED_ANSWER;
-        return size == 12U ? RFLEX_NO_REASON : RFLEX_SIZE;
-    case UINT16_C(0x0503):
+        if (size != 12U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
+    case 0x0503U:
         *message = RFLEX_MESSAGE_CHANGED_BYTE;
-        return size == 7U ? RFLEX_NO_REASON : RFLEX_SIZE;
+        if (size != 7U) {
+            return RFLEX_SIZE;
+        }
+        return RFLEX_NO_REASON;
     default:
         return RFLEX_NO_REASON;
     }
@@ -2550,7 +2637,7 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + decoder->payload) - (size_t)(6U));
         due = rflex_xor_8_final(sum);
@@ -2602,20 +2689,18 @@ static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16
 }
 
 /* A byte in front of the payload. */
-static uint8_t rflex_flex_take_head(struct rflex_flex_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rflex_flex_take_head(struct rflex_flex_decoder *decoder, uint16_t index,
+                                    uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x1B) {
+        if (byte != 0x1BU) {
             return RFLEX_VALUE;
         }
         break;
     case 1:
-        if (byte != 0x02) {
+        if (byte != 0x02U) {
             return RFLEX_VALUE;
         }
         break;
@@ -2669,19 +2754,25 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
-        case 0x7C:
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_flex_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
+        case 0x7CU:
             decoder->node = 2;
-            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_flex_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
         default:
             break;
         }
         break;
     case 1:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
         default:
@@ -2690,16 +2781,19 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
         break;
     case 2:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 3;
-            return decoder->content == decoder->payload + 7U ? rflex_flex_surplus(decoder) : (uint8_t)RFLEX_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_flex_surplus(decoder);
+            }
+            return RFLEX_NO_REASON;
         default:
             return RFLEX_STUFFING;
         }
         break;
     default:
         switch (byte) {
-        case 0x01:
+        case 0x01U:
             value = 0x7CU;
             break;
         default:
@@ -2755,7 +2849,8 @@ static uint8_t rflex_flex_search(struct rflex_flex_decoder *decoder, uint8_t byt
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t reason = rflex_flex_pass(decoder, index < held ? (uint8_t)(index == 0U ? 0x1B : 0x03) : byte);
+        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
+        const uint8_t reason = rflex_flex_pass(decoder, next);
         if (reason != RFLEX_NO_REASON) {
             return reason;
         }
@@ -2772,7 +2867,8 @@ static uint8_t rflex_flex_take(struct rflex_flex_decoder *decoder, uint8_t byte)
         decoder->behind = 2;
         reason = RFLEX_TRUNCATED;
     } else {
-        reason = (decoder->wire > 2U) ? rflex_flex_search(decoder, byte) : rflex_flex_pass(decoder, byte);
+        reason = (decoder->wire > 2U) ? rflex_flex_search(decoder, byte)
+                                      : rflex_flex_pass(decoder, byte);
     }
     if (reason == RFLEX_NO_REASON && decoder->wire >= 782U) {
         reason = RFLEX_LENGTH;
@@ -2802,14 +2898,13 @@ static void rflex_flex_seek_on(struct rflex_flex_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void rflex_flex_reopen(struct rflex_flex_decoder *decoder) {
     rflex_flex_open(decoder);
-    (void)rflex_flex_take(decoder, 0x1B);
-    (void)rflex_flex_take(decoder, 0x02);
+    (void)rflex_flex_take(decoder, 0x1BU);
+    (void)rflex_flex_take(decoder, 0x02U);
 }
 
 static void rflex_flex_judge(struct rflex_flex_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason == RFLEX_FRAME) {
         rflex_flex_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -2873,15 +2968,19 @@ void rflex_flex_decoder_push(struct rflex_flex_decoder *decoder, uint8_t byte) {
 
 #if RFLEX_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const uint8_t *data,
+                                    size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if RFLEX_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -2899,7 +2998,7 @@ static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const ui
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_HAS(word, 0x1B) | RFLEX_HAS(word, 0x7C)) != 0U) {
+            if ((RFLEX_HAS(word, 0x1BU) | RFLEX_HAS(word, 0x7CU)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -2909,7 +3008,7 @@ static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const ui
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_HAS(word, 0x1B) | RFLEX_HAS(word, 0x7C)) == 0U) {
+            if ((RFLEX_HAS(word, 0x1BU) | RFLEX_HAS(word, 0x7CU)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2924,17 +3023,17 @@ static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const ui
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x1B:
-            if (size - from >= 1U && data[from] == 0x00) {
-                byte = 0x1B;
+        case 0x1BU:
+            if (size - from >= 1U && data[from] == 0x00U) {
+                byte = 0x1BU;
                 from += 1U;
             } else {
                 return 0;
             }
             break;
-        case 0x7C:
-            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
-                byte = 0x7C;
+        case 0x7CU:
+            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+                byte = 0x7CU;
                 from += 2U;
             } else {
                 return 0;
@@ -2951,14 +3050,15 @@ static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const ui
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const uint8_t *data,
+                                    size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 9U) {
         return 0;
     }
-    if (data[0] != 0x1B || data[1] != 0x02) {
+    if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -2976,7 +3076,7 @@ static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const ui
     if (wire == 0U) {
         return 0;
     }
-    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
         return 0;
     }
     wire += 2U;
@@ -3017,7 +3117,8 @@ static void rflex_flex_reset(struct rflex_flex_decoder *decoder) {
     rflex_flex_seek_on(decoder);
 }
 
-void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler, void *user) {
+void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler,
+                             void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -3043,7 +3144,7 @@ void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder) {
 }
 #ifndef RFLEX_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event) {
     switch (event->message) {
@@ -3193,9 +3294,9 @@ void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event) {
 
 #if defined(__GNUC__) || defined(__clang__)
 
-__attribute__((weak)) void rflex_on_request_system_status(void *user,
-                                                          const struct rflex_request_system_status *message,
-                                                          const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_request_system_status(
+    void *user, const struct rflex_request_system_status *message,
+    const struct rflex_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3230,33 +3331,33 @@ __attribute__((weak)) void rflex_on_motor_0c(void *user, const struct rflex_moto
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_start_stop_motor_packets(void *user,
-                                                             const struct rflex_start_stop_motor_packets *message,
-                                                             const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_start_stop_motor_packets(
+    void *user, const struct rflex_start_stop_motor_packets *message,
+    const struct rflex_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_request_joystick_data(void *user,
-                                                          const struct rflex_request_joystick_data *message,
-                                                          const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_request_joystick_data(
+    void *user, const struct rflex_request_joystick_data *message,
+    const struct rflex_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_start_stop_sonar_packets(void *user,
-                                                             const struct rflex_start_stop_sonar_packets *message,
-                                                             const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_start_stop_sonar_packets(
+    void *user, const struct rflex_start_stop_sonar_packets *message,
+    const struct rflex_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_initialize_digital_io(void *user,
-                                                          const struct rflex_initialize_digital_io *message,
-                                                          const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_initialize_digital_io(
+    void *user, const struct rflex_initialize_digital_io *message,
+    const struct rflex_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3278,9 +3379,9 @@ __attribute__((weak)) void rflex_on_system_status(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_confirm_motor_command(void *user,
-                                                          const struct rflex_confirm_motor_command *message,
-                                                          const struct rflex_flex_parts *parts) {
+__attribute__((weak)) void rflex_on_confirm_motor_command(
+    void *user, const struct rflex_confirm_motor_command *message,
+    const struct rflex_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3301,9 +3402,9 @@ __attribute__((weak)) void rflex_on_read_motor(void *user, const struct rflex_re
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_confirm_start_stop_motor_packets(void *user,
-                                                                     const struct rflex_confirm_start_stop_motor_packets *message,
-                                                                     const struct rflex_flex_parts *parts) {
+__attribute__((weak)) void rflex_on_confirm_start_stop_motor_packets(
+    void *user, const struct rflex_confirm_start_stop_motor_packets *message,
+    const struct rflex_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3317,9 +3418,9 @@ __attribute__((weak)) void rflex_on_joystick_data(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_confirm_start_stop_sonar_packets(void *user,
-                                                                     const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                                     const struct rflex_flex_parts *parts) {
+__attribute__((weak)) void rflex_on_confirm_start_stop_sonar_packets(
+    void *user, const struct rflex_confirm_start_stop_sonar_packets *message,
+    const struct rflex_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3332,9 +3433,9 @@ __attribute__((weak)) void rflex_on_sonar_data(void *user, const struct rflex_so
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_confirm_initialize_digital_io(void *user,
-                                                                  const struct rflex_confirm_initialize_digital_io *message,
-                                                                  const struct rflex_flex_parts *parts) {
+__attribute__((weak)) void rflex_on_confirm_initialize_digital_io(
+    void *user, const struct rflex_confirm_initialize_digital_io *message,
+    const struct rflex_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3348,9 +3449,9 @@ __attribute__((weak)) void rflex_on_changed_bumpers(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_check_io_changed_answer(void *user,
-                                                            const struct rflex_check_io_changed_answer *message,
-                                                            const struct rflex_flex_parts *parts) {
+__attribute__((weak)) void rflex_on_check_io_changed_answer(
+    void *user, const struct rflex_check_io_changed_answer *message,
+    const struct rflex_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

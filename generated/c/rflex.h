@@ -28,7 +28,7 @@ enum rflex_result {
     RFLEX_OK = 0,
     /** Too few or too many bytes. */
     RFLEX_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     RFLEX_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     RFLEX_ERROR_ENCODING,
@@ -65,7 +65,7 @@ enum rflex_message {
     RFLEX_NO_MESSAGE = 22
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** System status brake (line 61). */
 enum rflex_system_status_brake {
@@ -100,18 +100,18 @@ enum rflex_start_stop_sonar_packets_start_stop {
 };
 
 /** Joystick data buttons (line 171). */
-#define RFLEX_JOYSTICK_DATA_BUTTONS_LEFT_BUTTON 0x01u
-#define RFLEX_JOYSTICK_DATA_BUTTONS_TOP_BUTTON 0x02u
+#define RFLEX_JOYSTICK_DATA_BUTTONS_LEFT_BUTTON 0x01U
+#define RFLEX_JOYSTICK_DATA_BUTTONS_TOP_BUTTON 0x02U
 
 /**
  * New value of a byte of the digital I/O. The names hold for byte 40, the bumpers (lines 281-286).
  */
-#define RFLEX_IO_VALUE_FRONT_BUMPER 0x01u
-#define RFLEX_IO_VALUE_REAR_BUMPER 0x02u
+#define RFLEX_IO_VALUE_FRONT_BUMPER 0x01U
+#define RFLEX_IO_VALUE_REAR_BUMPER 0x02U
 
-/* --- sonar_data_readings ----------------------------------------------------------------------- */
+/* --- sonar_data_readings ---------------------------------------------------------------------- */
 
-#define RFLEX_SONAR_DATA_READINGS_DISTANCE_INVALID 32766u
+#define RFLEX_SONAR_DATA_READINGS_DISTANCE_INVALID 32766U
 
 /** Sonar data readings (lines 226-229). */
 struct rflex_sonar_data_readings {
@@ -141,13 +141,13 @@ static inline uint16_t rflex_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- request_system_status --------------------------------------------------------------------- */
+/* --- request_system_status -------------------------------------------------------------------- */
 
-#define RFLEX_REQUEST_SYSTEM_STATUS_ID_CLASS_ID 0x01u
-#define RFLEX_REQUEST_SYSTEM_STATUS_ID_SUBCLASS 0x01u
-#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0u
-#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0u
-#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0u
+#define RFLEX_REQUEST_SYSTEM_STATUS_ID_CLASS_ID 0x01U
+#define RFLEX_REQUEST_SYSTEM_STATUS_ID_SUBCLASS 0x01U
+#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0U
+#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0U
+#define RFLEX_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0U
 #define RFLEX_REQUEST_SYSTEM_STATUS_SPEC_HASH "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
 
 /** Requests the system status (lines 52, 55). */
@@ -156,21 +156,21 @@ struct rflex_request_system_status {
     uint8_t unused;
 };
 
-enum rflex_result rflex_request_system_status_encode(const struct rflex_request_system_status *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
+enum rflex_result rflex_request_system_status_encode(
+    const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_result rflex_request_system_status_decode(struct rflex_request_system_status *message,
                                                      const uint8_t *payload, size_t size);
 void rflex_request_system_status_load(struct rflex_request_system_status *message,
                                       const uint8_t *payload);
 
-/* --- system_status ----------------------------------------------------------------------------- */
+/* --- system_status ---------------------------------------------------------------------------- */
 
-#define RFLEX_SYSTEM_STATUS_ID_CLASS_ID 0x01u
-#define RFLEX_SYSTEM_STATUS_ID_SUBCLASS 0x01u
-#define RFLEX_SYSTEM_STATUS_PAYLOAD_SIZE 9u
-#define RFLEX_SYSTEM_STATUS_PAYLOAD_MIN 9u
-#define RFLEX_SYSTEM_STATUS_PAYLOAD_MAX 9u
+#define RFLEX_SYSTEM_STATUS_ID_CLASS_ID 0x01U
+#define RFLEX_SYSTEM_STATUS_ID_SUBCLASS 0x01U
+#define RFLEX_SYSTEM_STATUS_PAYLOAD_SIZE 9U
+#define RFLEX_SYSTEM_STATUS_PAYLOAD_MIN 9U
+#define RFLEX_SYSTEM_STATUS_PAYLOAD_MAX 9U
 #define RFLEX_SYSTEM_STATUS_SPEC_HASH "2eb29f62c17fcd53efcd1f4cc19ac8c73a77792b0a71b39d6380754053aacc2f"
 
 /** Battery and brake status (lines 52, 58-61). */
@@ -189,13 +189,13 @@ enum rflex_result rflex_system_status_decode(struct rflex_system_status *message
                                              const uint8_t *payload, size_t size);
 void rflex_system_status_load(struct rflex_system_status *message, const uint8_t *payload);
 
-/* --- motor_00 ---------------------------------------------------------------------------------- */
+/* --- motor_00 --------------------------------------------------------------------------------- */
 
-#define RFLEX_MOTOR_00_ID_CLASS_ID 0x02u
-#define RFLEX_MOTOR_00_ID_SUBCLASS 0x00u
-#define RFLEX_MOTOR_00_PAYLOAD_SIZE 1u
-#define RFLEX_MOTOR_00_PAYLOAD_MIN 1u
-#define RFLEX_MOTOR_00_PAYLOAD_MAX 1u
+#define RFLEX_MOTOR_00_ID_CLASS_ID 0x02U
+#define RFLEX_MOTOR_00_ID_SUBCLASS 0x00U
+#define RFLEX_MOTOR_00_PAYLOAD_SIZE 1U
+#define RFLEX_MOTOR_00_PAYLOAD_MIN 1U
+#define RFLEX_MOTOR_00_PAYLOAD_MAX 1U
 #define RFLEX_MOTOR_00_SPEC_HASH "7293bb3a96efd46bdc637332eca5fd53fb5c62df5db70d07ab7cea45c01a7b98"
 
 /** Motor packet 00, whose purpose the document does not know (lines 67-75). */
@@ -210,13 +210,13 @@ enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const ui
                                         size_t size);
 void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
 
-/* --- motor_command ----------------------------------------------------------------------------- */
+/* --- motor_command ---------------------------------------------------------------------------- */
 
-#define RFLEX_MOTOR_COMMAND_ID_CLASS_ID 0x02u
-#define RFLEX_MOTOR_COMMAND_ID_SUBCLASS 0x07u
-#define RFLEX_MOTOR_COMMAND_PAYLOAD_SIZE 14u
-#define RFLEX_MOTOR_COMMAND_PAYLOAD_MIN 14u
-#define RFLEX_MOTOR_COMMAND_PAYLOAD_MAX 14u
+#define RFLEX_MOTOR_COMMAND_ID_CLASS_ID 0x02U
+#define RFLEX_MOTOR_COMMAND_ID_SUBCLASS 0x07U
+#define RFLEX_MOTOR_COMMAND_PAYLOAD_SIZE 14U
+#define RFLEX_MOTOR_COMMAND_PAYLOAD_MIN 14U
+#define RFLEX_MOTOR_COMMAND_PAYLOAD_MAX 14U
 #define RFLEX_MOTOR_COMMAND_SPEC_HASH "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
 
 /** Sets the velocity of one axis (lines 79, 83-89). */
@@ -239,13 +239,13 @@ enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message
                                              const uint8_t *payload, size_t size);
 void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t *payload);
 
-/* --- confirm_motor_command --------------------------------------------------------------------- */
+/* --- confirm_motor_command -------------------------------------------------------------------- */
 
-#define RFLEX_CONFIRM_MOTOR_COMMAND_ID_CLASS_ID 0x02u
-#define RFLEX_CONFIRM_MOTOR_COMMAND_ID_SUBCLASS 0x07u
-#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9u
-#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9u
-#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9u
+#define RFLEX_CONFIRM_MOTOR_COMMAND_ID_CLASS_ID 0x02U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_ID_SUBCLASS 0x07U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9U
 #define RFLEX_CONFIRM_MOTOR_COMMAND_SPEC_HASH "05891bcc3fc050a3be3536fcd91278f223b335dff989ae004c704ef846da70fe"
 
 /** Confirms a motor command (lines 80, 92-95). */
@@ -258,21 +258,21 @@ struct rflex_confirm_motor_command {
     uint8_t axis;
 };
 
-enum rflex_result rflex_confirm_motor_command_encode(const struct rflex_confirm_motor_command *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
+enum rflex_result rflex_confirm_motor_command_encode(
+    const struct rflex_confirm_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_command *message,
                                                      const uint8_t *payload, size_t size);
 void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
                                       const uint8_t *payload);
 
-/* --- motor_0a ---------------------------------------------------------------------------------- */
+/* --- motor_0a --------------------------------------------------------------------------------- */
 
-#define RFLEX_MOTOR_0A_ID_CLASS_ID 0x02u
-#define RFLEX_MOTOR_0A_ID_SUBCLASS 0x0Au
-#define RFLEX_MOTOR_0A_PAYLOAD_SIZE 0u
-#define RFLEX_MOTOR_0A_PAYLOAD_MIN 0u
-#define RFLEX_MOTOR_0A_PAYLOAD_MAX 0u
+#define RFLEX_MOTOR_0A_ID_CLASS_ID 0x02U
+#define RFLEX_MOTOR_0A_ID_SUBCLASS 0x0AU
+#define RFLEX_MOTOR_0A_PAYLOAD_SIZE 0U
+#define RFLEX_MOTOR_0A_PAYLOAD_MIN 0U
+#define RFLEX_MOTOR_0A_PAYLOAD_MAX 0U
 #define RFLEX_MOTOR_0A_SPEC_HASH "eedc3fc169634e242a263c754415dd56363ce235e3048ec98cc8fb6b216defc8"
 
 /**
@@ -289,13 +289,13 @@ enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const ui
                                         size_t size);
 void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload);
 
-/* --- motor_0c ---------------------------------------------------------------------------------- */
+/* --- motor_0c --------------------------------------------------------------------------------- */
 
-#define RFLEX_MOTOR_0C_ID_CLASS_ID 0x02u
-#define RFLEX_MOTOR_0C_ID_SUBCLASS 0x0Cu
-#define RFLEX_MOTOR_0C_PAYLOAD_SIZE 0u
-#define RFLEX_MOTOR_0C_PAYLOAD_MIN 0u
-#define RFLEX_MOTOR_0C_PAYLOAD_MAX 0u
+#define RFLEX_MOTOR_0C_ID_CLASS_ID 0x02U
+#define RFLEX_MOTOR_0C_ID_SUBCLASS 0x0CU
+#define RFLEX_MOTOR_0C_PAYLOAD_SIZE 0U
+#define RFLEX_MOTOR_0C_PAYLOAD_MIN 0U
+#define RFLEX_MOTOR_0C_PAYLOAD_MAX 0U
 #define RFLEX_MOTOR_0C_SPEC_HASH "a651ee555828b7b5463b3cf907b01232f0190770a91bd51ca9e578c744e26154"
 
 /**
@@ -313,13 +313,13 @@ enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const ui
                                         size_t size);
 void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload);
 
-/* --- motor_0c_answer --------------------------------------------------------------------------- */
+/* --- motor_0c_answer -------------------------------------------------------------------------- */
 
-#define RFLEX_MOTOR_0C_ANSWER_ID_CLASS_ID 0x02u
-#define RFLEX_MOTOR_0C_ANSWER_ID_SUBCLASS 0x0Cu
-#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_SIZE 8u
-#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MIN 8u
-#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MAX 8u
+#define RFLEX_MOTOR_0C_ANSWER_ID_CLASS_ID 0x02U
+#define RFLEX_MOTOR_0C_ANSWER_ID_SUBCLASS 0x0CU
+#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_SIZE 8U
+#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MIN 8U
+#define RFLEX_MOTOR_0C_ANSWER_PAYLOAD_MAX 8U
 #define RFLEX_MOTOR_0C_ANSWER_SPEC_HASH "1ea2815558d64dfc3c23e05d49b04b3fcb73e449884f76930539bb65373172f3"
 
 /** Answers motor packet 0C (lines 108, 117-119). */
@@ -336,13 +336,13 @@ enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *mes
                                                const uint8_t *payload, size_t size);
 void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uint8_t *payload);
 
-/* --- read_motor -------------------------------------------------------------------------------- */
+/* --- read_motor ------------------------------------------------------------------------------- */
 
-#define RFLEX_READ_MOTOR_ID_CLASS_ID 0x02u
-#define RFLEX_READ_MOTOR_ID_SUBCLASS 0x21u
-#define RFLEX_READ_MOTOR_PAYLOAD_SIZE 25u
-#define RFLEX_READ_MOTOR_PAYLOAD_MIN 25u
-#define RFLEX_READ_MOTOR_PAYLOAD_MAX 25u
+#define RFLEX_READ_MOTOR_ID_CLASS_ID 0x02U
+#define RFLEX_READ_MOTOR_ID_SUBCLASS 0x21U
+#define RFLEX_READ_MOTOR_PAYLOAD_SIZE 25U
+#define RFLEX_READ_MOTOR_PAYLOAD_MIN 25U
+#define RFLEX_READ_MOTOR_PAYLOAD_MAX 25U
 #define RFLEX_READ_MOTOR_SPEC_HASH "5547561cbee182e0162fc9a912603f337a9c37b8d74ccb01e718afe3e6375395"
 
 /** State of one axis, sent while motor packets are on (lines 125-133). */
@@ -369,13 +369,13 @@ enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message, cons
                                           size_t size);
 void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload);
 
-/* --- start_stop_motor_packets ------------------------------------------------------------------ */
+/* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-#define RFLEX_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02u
-#define RFLEX_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22u
-#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02U
+#define RFLEX_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22U
+#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_START_STOP_MOTOR_PACKETS_SPEC_HASH "1f5b75aac49aad0ebd7a98ebd33a98a6722a03b17653bdee57742261c147cd3e"
 
 /** Starts or stops the sending of motor packets (lines 136, 139-141). */
@@ -386,21 +386,21 @@ struct rflex_start_stop_motor_packets {
     uint32_t start_stop;
 };
 
-enum rflex_result rflex_start_stop_motor_packets_encode(const struct rflex_start_stop_motor_packets *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
-enum rflex_result rflex_start_stop_motor_packets_decode(struct rflex_start_stop_motor_packets *message,
-                                                        const uint8_t *payload, size_t size);
+enum rflex_result rflex_start_stop_motor_packets_encode(
+    const struct rflex_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_start_stop_motor_packets_decode(
+    struct rflex_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
 void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
                                          const uint8_t *payload);
 
-/* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02u
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22u
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_SPEC_HASH "db0c491b416374f716f05cb05318badb03ba97cf34d80fdafe9bf511d6e231a1"
 
 /** Confirms the start or the stop of motor packets (lines 137, 148-150). */
@@ -411,22 +411,21 @@ struct rflex_confirm_start_stop_motor_packets {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_encode(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size);
-enum rflex_result rflex_confirm_start_stop_motor_packets_decode(struct rflex_confirm_start_stop_motor_packets *message,
-                                                                const uint8_t *payload,
-                                                                size_t size);
-void rflex_confirm_start_stop_motor_packets_load(struct rflex_confirm_start_stop_motor_packets *message,
-                                                 const uint8_t *payload);
+enum rflex_result rflex_confirm_start_stop_motor_packets_encode(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
+    struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
+void rflex_confirm_start_stop_motor_packets_load(
+    struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload);
 
-/* --- request_joystick_data --------------------------------------------------------------------- */
+/* --- request_joystick_data -------------------------------------------------------------------- */
 
-#define RFLEX_REQUEST_JOYSTICK_DATA_ID_CLASS_ID 0x03u
-#define RFLEX_REQUEST_JOYSTICK_DATA_ID_SUBCLASS 0x00u
-#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0u
-#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0u
-#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0u
+#define RFLEX_REQUEST_JOYSTICK_DATA_ID_CLASS_ID 0x03U
+#define RFLEX_REQUEST_JOYSTICK_DATA_ID_SUBCLASS 0x00U
+#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0U
+#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0U
+#define RFLEX_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0U
 #define RFLEX_REQUEST_JOYSTICK_DATA_SPEC_HASH "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
 
 /** Requests one packet with joystick data (lines 157, 160). */
@@ -435,21 +434,21 @@ struct rflex_request_joystick_data {
     uint8_t unused;
 };
 
-enum rflex_result rflex_request_joystick_data_encode(const struct rflex_request_joystick_data *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
+enum rflex_result rflex_request_joystick_data_encode(
+    const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joystick_data *message,
                                                      const uint8_t *payload, size_t size);
 void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
                                       const uint8_t *payload);
 
-/* --- joystick_data ----------------------------------------------------------------------------- */
+/* --- joystick_data ---------------------------------------------------------------------------- */
 
-#define RFLEX_JOYSTICK_DATA_ID_CLASS_ID 0x03u
-#define RFLEX_JOYSTICK_DATA_ID_SUBCLASS 0x00u
-#define RFLEX_JOYSTICK_DATA_PAYLOAD_SIZE 13u
-#define RFLEX_JOYSTICK_DATA_PAYLOAD_MIN 13u
-#define RFLEX_JOYSTICK_DATA_PAYLOAD_MAX 13u
+#define RFLEX_JOYSTICK_DATA_ID_CLASS_ID 0x03U
+#define RFLEX_JOYSTICK_DATA_ID_SUBCLASS 0x00U
+#define RFLEX_JOYSTICK_DATA_PAYLOAD_SIZE 13U
+#define RFLEX_JOYSTICK_DATA_PAYLOAD_MIN 13U
+#define RFLEX_JOYSTICK_DATA_PAYLOAD_MAX 13U
 #define RFLEX_JOYSTICK_DATA_SPEC_HASH "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
 
 /** Position and buttons of the joystick (lines 157, 167-171). */
@@ -470,13 +469,13 @@ enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message
                                              const uint8_t *payload, size_t size);
 void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t *payload);
 
-/* --- start_stop_sonar_packets ------------------------------------------------------------------ */
+/* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-#define RFLEX_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04u
-#define RFLEX_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00u
-#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13u
-#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13u
-#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13u
+#define RFLEX_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04U
+#define RFLEX_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00U
+#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13U
+#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13U
+#define RFLEX_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13U
 #define RFLEX_START_STOP_SONAR_PACKETS_SPEC_HASH "72a9c3d09304a4bb171a89dd2634b3eb779d7886baa95121a2ed3599d1b61e3d"
 
 /** Starts or stops the sending of sonar packets (lines 195, 199-203). */
@@ -491,21 +490,21 @@ struct rflex_start_stop_sonar_packets {
     uint32_t start_stop;
 };
 
-enum rflex_result rflex_start_stop_sonar_packets_encode(const struct rflex_start_stop_sonar_packets *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
-enum rflex_result rflex_start_stop_sonar_packets_decode(struct rflex_start_stop_sonar_packets *message,
-                                                        const uint8_t *payload, size_t size);
+enum rflex_result rflex_start_stop_sonar_packets_encode(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_start_stop_sonar_packets_decode(
+    struct rflex_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
 void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
                                          const uint8_t *payload);
 
-/* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04u
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00u
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_SPEC_HASH "4d773f7fcf88e3d1efc5013108ddbeb71d3b36e3da52e2e8cacda2156c80fdd0"
 
 /** Confirms the start or the stop of sonar packets (lines 196, 213-215). */
@@ -516,23 +515,22 @@ struct rflex_confirm_start_stop_sonar_packets {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size);
-enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(struct rflex_confirm_start_stop_sonar_packets *message,
-                                                                const uint8_t *payload,
-                                                                size_t size);
-void rflex_confirm_start_stop_sonar_packets_load(struct rflex_confirm_start_stop_sonar_packets *message,
-                                                 const uint8_t *payload);
+enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(
+    struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
+void rflex_confirm_start_stop_sonar_packets_load(
+    struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload);
 
-/* --- sonar_data -------------------------------------------------------------------------------- */
+/* --- sonar_data ------------------------------------------------------------------------------- */
 
-#define RFLEX_SONAR_DATA_ID_CLASS_ID 0x04u
-#define RFLEX_SONAR_DATA_ID_SUBCLASS 0x02u
-#define RFLEX_SONAR_DATA_PAYLOAD_MIN 8u
-#define RFLEX_SONAR_DATA_PAYLOAD_MAX 254u
+#define RFLEX_SONAR_DATA_ID_CLASS_ID 0x04U
+#define RFLEX_SONAR_DATA_ID_SUBCLASS 0x02U
+#define RFLEX_SONAR_DATA_PAYLOAD_MIN 8U
+#define RFLEX_SONAR_DATA_PAYLOAD_MAX 254U
 #define RFLEX_SONAR_DATA_SPEC_HASH "e56f6b5d3cf1d904dd0574bb97f415eb01b6f11b2867a18cb64f5fba0373b5c7"
-#define RFLEX_SONAR_DATA_UNKNOWN_DEFAULT 2u
+#define RFLEX_SONAR_DATA_UNKNOWN_DEFAULT 2U
 
 /**
  * Readings of the sonars of one fire group (lines 180-182, 220-239).
@@ -568,13 +566,13 @@ static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t i
     out->distance = rflex_load_u16be(at + 1);
 }
 
-/* --- initialize_digital_io --------------------------------------------------------------------- */
+/* --- initialize_digital_io -------------------------------------------------------------------- */
 
-#define RFLEX_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05u
-#define RFLEX_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00u
-#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4u
-#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4u
-#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4u
+#define RFLEX_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05U
+#define RFLEX_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00U
+#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4U
+#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4U
+#define RFLEX_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4U
 #define RFLEX_INITIALIZE_DIGITAL_IO_SPEC_HASH "6b0596a0ac36417ac36b04d5d46291da91c9f559b0e70c5c72d3ed91d6e4d4c5"
 
 /**
@@ -589,21 +587,21 @@ struct rflex_initialize_digital_io {
     uint32_t unknown;
 };
 
-enum rflex_result rflex_initialize_digital_io_encode(const struct rflex_initialize_digital_io *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
+enum rflex_result rflex_initialize_digital_io_encode(
+    const struct rflex_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_result rflex_initialize_digital_io_decode(struct rflex_initialize_digital_io *message,
                                                      const uint8_t *payload, size_t size);
 void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
                                       const uint8_t *payload);
 
-/* --- confirm_initialize_digital_io ------------------------------------------------------------- */
+/* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05u
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00u
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8u
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8u
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8u
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8U
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_SPEC_HASH "f9d86989441d3da2751ccb1718a1fef5f893e5fcdf81e2179b2ea43b6f8e4f9c"
 
 /**
@@ -618,21 +616,21 @@ struct rflex_confirm_initialize_digital_io {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_initialize_digital_io_encode(const struct rflex_confirm_initialize_digital_io *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size);
-enum rflex_result rflex_confirm_initialize_digital_io_decode(struct rflex_confirm_initialize_digital_io *message,
-                                                             const uint8_t *payload, size_t size);
+enum rflex_result rflex_confirm_initialize_digital_io_encode(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_confirm_initialize_digital_io_decode(
+    struct rflex_confirm_initialize_digital_io *message, const uint8_t *payload, size_t size);
 void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_digital_io *message,
                                               const uint8_t *payload);
 
-/* --- changed_bumpers --------------------------------------------------------------------------- */
+/* --- changed_bumpers -------------------------------------------------------------------------- */
 
-#define RFLEX_CHANGED_BUMPERS_ID_CLASS_ID 0x05u
-#define RFLEX_CHANGED_BUMPERS_ID_SUBCLASS 0x01u
-#define RFLEX_CHANGED_BUMPERS_PAYLOAD_SIZE 7u
-#define RFLEX_CHANGED_BUMPERS_PAYLOAD_MIN 7u
-#define RFLEX_CHANGED_BUMPERS_PAYLOAD_MAX 7u
+#define RFLEX_CHANGED_BUMPERS_ID_CLASS_ID 0x05U
+#define RFLEX_CHANGED_BUMPERS_ID_SUBCLASS 0x01U
+#define RFLEX_CHANGED_BUMPERS_PAYLOAD_SIZE 7U
+#define RFLEX_CHANGED_BUMPERS_PAYLOAD_MIN 7U
+#define RFLEX_CHANGED_BUMPERS_PAYLOAD_MAX 7U
 #define RFLEX_CHANGED_BUMPERS_SPEC_HASH "55a0c3985cfa7a8fbb46b94d633cd20d22ab1d223685f9f6300e045b0211b7f3"
 
 /**
@@ -658,13 +656,13 @@ enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *mes
                                                const uint8_t *payload, size_t size);
 void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uint8_t *payload);
 
-/* --- check_io_changed -------------------------------------------------------------------------- */
+/* --- check_io_changed ------------------------------------------------------------------------- */
 
-#define RFLEX_CHECK_IO_CHANGED_ID_CLASS_ID 0x05u
-#define RFLEX_CHECK_IO_CHANGED_ID_SUBCLASS 0x02u
-#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_SIZE 4u
-#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MIN 4u
-#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MAX 4u
+#define RFLEX_CHECK_IO_CHANGED_ID_CLASS_ID 0x05U
+#define RFLEX_CHECK_IO_CHANGED_ID_SUBCLASS 0x02U
+#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_SIZE 4U
+#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MIN 4U
+#define RFLEX_CHECK_IO_CHANGED_PAYLOAD_MAX 4U
 #define RFLEX_CHECK_IO_CHANGED_SPEC_HASH "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
 
 /** Asks whether digital inputs have changed (lines 261, 264-265). */
@@ -679,13 +677,13 @@ enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *m
                                                 const uint8_t *payload, size_t size);
 void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const uint8_t *payload);
 
-/* --- check_io_changed_answer ------------------------------------------------------------------- */
+/* --- check_io_changed_answer ------------------------------------------------------------------ */
 
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_ID_CLASS_ID 0x05u
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_ID_SUBCLASS 0x02u
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12u
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12u
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12u
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_ID_CLASS_ID 0x05U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_ID_SUBCLASS 0x02U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12U
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_SPEC_HASH "a71a68a30724d9f778664786ff45cd4fc0206e422bad59fa9c9a9d7247012670"
 
 /** Says how many packets answer the check (lines 261, 269-273). */
@@ -698,21 +696,21 @@ struct rflex_check_io_changed_answer {
     uint32_t package_count;
 };
 
-enum rflex_result rflex_check_io_changed_answer_encode(const struct rflex_check_io_changed_answer *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size);
-enum rflex_result rflex_check_io_changed_answer_decode(struct rflex_check_io_changed_answer *message,
-                                                       const uint8_t *payload, size_t size);
+enum rflex_result rflex_check_io_changed_answer_encode(
+    const struct rflex_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_result rflex_check_io_changed_answer_decode(
+    struct rflex_check_io_changed_answer *message, const uint8_t *payload, size_t size);
 void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
                                         const uint8_t *payload);
 
-/* --- changed_byte ------------------------------------------------------------------------------ */
+/* --- changed_byte ----------------------------------------------------------------------------- */
 
-#define RFLEX_CHANGED_BYTE_ID_CLASS_ID 0x05u
-#define RFLEX_CHANGED_BYTE_ID_SUBCLASS 0x03u
-#define RFLEX_CHANGED_BYTE_PAYLOAD_SIZE 7u
-#define RFLEX_CHANGED_BYTE_PAYLOAD_MIN 7u
-#define RFLEX_CHANGED_BYTE_PAYLOAD_MAX 7u
+#define RFLEX_CHANGED_BYTE_ID_CLASS_ID 0x05U
+#define RFLEX_CHANGED_BYTE_ID_SUBCLASS 0x03U
+#define RFLEX_CHANGED_BYTE_PAYLOAD_SIZE 7U
+#define RFLEX_CHANGED_BYTE_PAYLOAD_MIN 7U
+#define RFLEX_CHANGED_BYTE_PAYLOAD_MAX 7U
 #define RFLEX_CHANGED_BYTE_SPEC_HASH "2af4749f04df870d61315fd92d2bb5cc88b987e81b523f2ba94344f08049b5fb"
 
 /** New value of a byte of the digital I/O (lines 275, 278-281). */
@@ -733,7 +731,7 @@ enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
                                             const uint8_t *payload, size_t size);
 void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -747,17 +745,17 @@ void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *
 typedef void (*rflex_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11u
-#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23u
-enum rflex_result rflex_request_system_status_frame(const struct rflex_request_system_status *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size);
-enum rflex_result rflex_request_system_status_send(const struct rflex_request_system_status *message,
-                                                   uint8_t number, rflex_put put, void *user);
+#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
+#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
+enum rflex_result rflex_request_system_status_frame(
+    const struct rflex_request_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_request_system_status_send(
+    const struct rflex_request_system_status *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_SYSTEM_STATUS_FRAME_MAX 40u
-#define RFLEX_SYSTEM_STATUS_FRAME_ROOM 50u
+#define RFLEX_SYSTEM_STATUS_FRAME_MAX 40U
+#define RFLEX_SYSTEM_STATUS_FRAME_ROOM 50U
 enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size);
@@ -765,16 +763,16 @@ enum rflex_result rflex_system_status_send(const struct rflex_system_status *mes
                                            uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_MOTOR_00_FRAME_MAX 16u
-#define RFLEX_MOTOR_00_FRAME_ROOM 26u
+#define RFLEX_MOTOR_00_FRAME_MAX 16U
+#define RFLEX_MOTOR_00_FRAME_ROOM 26U
 enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message, uint8_t number,
                                       rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_MOTOR_COMMAND_FRAME_MAX 53u
-#define RFLEX_MOTOR_COMMAND_FRAME_ROOM 65u
+#define RFLEX_MOTOR_COMMAND_FRAME_MAX 53U
+#define RFLEX_MOTOR_COMMAND_FRAME_ROOM 65U
 enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size);
@@ -782,33 +780,33 @@ enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *mes
                                            uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_MAX 40u
-#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50u
-enum rflex_result rflex_confirm_motor_command_frame(const struct rflex_confirm_motor_command *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size);
-enum rflex_result rflex_confirm_motor_command_send(const struct rflex_confirm_motor_command *message,
-                                                   uint8_t number, rflex_put put, void *user);
+#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_MAX 40U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
+enum rflex_result rflex_confirm_motor_command_frame(
+    const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_confirm_motor_command_send(
+    const struct rflex_confirm_motor_command *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_MOTOR_0A_FRAME_MAX 11u
-#define RFLEX_MOTOR_0A_FRAME_ROOM 23u
+#define RFLEX_MOTOR_0A_FRAME_MAX 11U
+#define RFLEX_MOTOR_0A_FRAME_ROOM 23U
 enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message, uint8_t number,
                                       rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_MOTOR_0C_FRAME_MAX 11u
-#define RFLEX_MOTOR_0C_FRAME_ROOM 23u
+#define RFLEX_MOTOR_0C_FRAME_MAX 11U
+#define RFLEX_MOTOR_0C_FRAME_ROOM 23U
 enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message, uint8_t number,
                                        uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message, uint8_t number,
                                       rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35u
-#define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 47u
+#define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35U
+#define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 47U
 enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
                                               uint8_t number, uint8_t *frame, size_t capacity,
                                               size_t *size);
@@ -816,44 +814,45 @@ enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer 
                                              uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_READ_MOTOR_FRAME_MAX 88u
-#define RFLEX_READ_MOTOR_FRAME_ROOM 98u
+#define RFLEX_READ_MOTOR_FRAME_MAX 88U
+#define RFLEX_READ_MOTOR_FRAME_ROOM 98U
 enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
                                          uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message, uint8_t number,
                                         rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_MAX 35u
-#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47u
-enum rflex_result rflex_start_stop_motor_packets_frame(const struct rflex_start_stop_motor_packets *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size);
-enum rflex_result rflex_start_stop_motor_packets_send(const struct rflex_start_stop_motor_packets *message,
-                                                      uint8_t number, rflex_put put, void *user);
+#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
+#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+enum rflex_result rflex_start_stop_motor_packets_frame(
+    const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_start_stop_motor_packets_send(
+    const struct rflex_start_stop_motor_packets *message, uint8_t number, rflex_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35u
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47u
-enum rflex_result rflex_confirm_start_stop_motor_packets_frame(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_start_stop_motor_packets_send(const struct rflex_confirm_start_stop_motor_packets *message,
-                                                              uint8_t number, rflex_put put,
-                                                              void *user);
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_confirm_start_stop_motor_packets_send(
+    const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, rflex_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11u
-#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23u
-enum rflex_result rflex_request_joystick_data_frame(const struct rflex_request_joystick_data *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size);
-enum rflex_result rflex_request_joystick_data_send(const struct rflex_request_joystick_data *message,
-                                                   uint8_t number, rflex_put put, void *user);
+#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
+#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
+enum rflex_result rflex_request_joystick_data_frame(
+    const struct rflex_request_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_request_joystick_data_send(
+    const struct rflex_request_joystick_data *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_JOYSTICK_DATA_FRAME_MAX 52u
-#define RFLEX_JOYSTICK_DATA_FRAME_ROOM 62u
+#define RFLEX_JOYSTICK_DATA_FRAME_MAX 52U
+#define RFLEX_JOYSTICK_DATA_FRAME_ROOM 62U
 enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
                                             uint8_t number, uint8_t *frame, size_t capacity,
                                             size_t *size);
@@ -861,54 +860,55 @@ enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *mes
                                            uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_MAX 52u
-#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 62u
-enum rflex_result rflex_start_stop_sonar_packets_frame(const struct rflex_start_stop_sonar_packets *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size);
-enum rflex_result rflex_start_stop_sonar_packets_send(const struct rflex_start_stop_sonar_packets *message,
-                                                      uint8_t number, rflex_put put, void *user);
+#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_MAX 52U
+#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
+enum rflex_result rflex_start_stop_sonar_packets_frame(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_start_stop_sonar_packets_send(
+    const struct rflex_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35u
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47u
-enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_start_stop_sonar_packets_send(const struct rflex_confirm_start_stop_sonar_packets *message,
-                                                              uint8_t number, rflex_put put,
-                                                              void *user);
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
+enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
+    const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_SONAR_DATA_FRAME_MAX 773u
-#define RFLEX_SONAR_DATA_FRAME_ROOM 785u
+#define RFLEX_SONAR_DATA_FRAME_MAX 773U
+#define RFLEX_SONAR_DATA_FRAME_ROOM 785U
 enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
                                          uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, uint8_t number,
                                         rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_MAX 23u
-#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35u
-enum rflex_result rflex_initialize_digital_io_frame(const struct rflex_initialize_digital_io *message,
-                                                    uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size);
-enum rflex_result rflex_initialize_digital_io_send(const struct rflex_initialize_digital_io *message,
-                                                   uint8_t number, rflex_put put, void *user);
+#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
+#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
+enum rflex_result rflex_initialize_digital_io_frame(
+    const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_initialize_digital_io_send(
+    const struct rflex_initialize_digital_io *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35u
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47u
-enum rflex_result rflex_confirm_initialize_digital_io_frame(const struct rflex_confirm_initialize_digital_io *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_initialize_digital_io_send(const struct rflex_confirm_initialize_digital_io *message,
-                                                           uint8_t number, rflex_put put,
-                                                           void *user);
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
+enum rflex_result rflex_confirm_initialize_digital_io_frame(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_confirm_initialize_digital_io_send(
+    const struct rflex_confirm_initialize_digital_io *message, uint8_t number, rflex_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CHANGED_BUMPERS_FRAME_MAX 34u
-#define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 44u
+#define RFLEX_CHANGED_BUMPERS_FRAME_MAX 34U
+#define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 44U
 enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
                                               uint8_t number, uint8_t *frame, size_t capacity,
                                               size_t *size);
@@ -916,8 +916,8 @@ enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers 
                                              uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CHECK_IO_CHANGED_FRAME_MAX 23u
-#define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 35u
+#define RFLEX_CHECK_IO_CHANGED_FRAME_MAX 23U
+#define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 35U
 enum rflex_result rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
                                                uint8_t number, uint8_t *frame, size_t capacity,
                                                size_t *size);
@@ -925,23 +925,23 @@ enum rflex_result rflex_check_io_changed_send(const struct rflex_check_io_change
                                               uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47u
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59u
-enum rflex_result rflex_check_io_changed_answer_frame(const struct rflex_check_io_changed_answer *message,
-                                                      uint8_t number, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
-enum rflex_result rflex_check_io_changed_answer_send(const struct rflex_check_io_changed_answer *message,
-                                                     uint8_t number, rflex_put put, void *user);
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
+enum rflex_result rflex_check_io_changed_answer_frame(
+    const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_result rflex_check_io_changed_answer_send(
+    const struct rflex_check_io_changed_answer *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_CHANGED_BYTE_FRAME_MAX 34u
-#define RFLEX_CHANGED_BYTE_FRAME_ROOM 44u
+#define RFLEX_CHANGED_BYTE_FRAME_MAX 34U
+#define RFLEX_CHANGED_BYTE_FRAME_ROOM 44U
 enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
                                            uint8_t *frame, size_t capacity, size_t *size);
 enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message, uint8_t number,
                                           rflex_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum rflex_event_kind {
@@ -963,7 +963,7 @@ enum rflex_reason {
     RFLEX_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what linux sends -------------------------------------------------------------------- */
+/* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
 #define RFLEX_LINUX_FRAME_MAX 782U
@@ -1002,35 +1002,51 @@ typedef void (*rflex_linux_handler)(void *user, const struct rflex_linux_event *
 struct rflex_linux_decoder {
     rflex_linux_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of a delimiter that are held back. */
     uint8_t held;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
 
 /** Start at the beginning of an input. */
-void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler, void *user);
+void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler,
+                              void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rflex_linux_decoder_push(struct rflex_linux_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data, size_t size);
+void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data,
+                              size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder);
 
-/* --- what flex sends -------------------------------------------------------------------- */
+/* --- what flex sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of flex on the wire, in bytes. */
 #define RFLEX_FLEX_FRAME_MAX 782U
@@ -1069,24 +1085,39 @@ typedef void (*rflex_flex_handler)(void *user, const struct rflex_flex_event *ev
 struct rflex_flex_decoder {
     rflex_flex_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of a delimiter that are held back. */
     uint8_t held;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
 
 /** Start at the beginning of an input. */
-void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler, void *user);
+void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler,
+                             void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rflex_flex_decoder_push(struct rflex_flex_decoder *decoder, uint8_t byte);
@@ -1097,13 +1128,13 @@ void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * RFLEX_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining RFLEX_NO_HANDLERS for the source.
  */
 
 /** request_system_status came from linux. */
@@ -1168,27 +1199,27 @@ void rflex_on_read_motor(void *user, const struct rflex_read_motor *message,
                          const struct rflex_flex_parts *parts);
 
 /** confirm_start_stop_motor_packets came from flex. */
-void rflex_on_confirm_start_stop_motor_packets(void *user,
-                                               const struct rflex_confirm_start_stop_motor_packets *message,
-                                               const struct rflex_flex_parts *parts);
+void rflex_on_confirm_start_stop_motor_packets(
+    void *user, const struct rflex_confirm_start_stop_motor_packets *message,
+    const struct rflex_flex_parts *parts);
 
 /** joystick_data came from flex. */
 void rflex_on_joystick_data(void *user, const struct rflex_joystick_data *message,
                             const struct rflex_flex_parts *parts);
 
 /** confirm_start_stop_sonar_packets came from flex. */
-void rflex_on_confirm_start_stop_sonar_packets(void *user,
-                                               const struct rflex_confirm_start_stop_sonar_packets *message,
-                                               const struct rflex_flex_parts *parts);
+void rflex_on_confirm_start_stop_sonar_packets(
+    void *user, const struct rflex_confirm_start_stop_sonar_packets *message,
+    const struct rflex_flex_parts *parts);
 
 /** sonar_data came from flex. */
 void rflex_on_sonar_data(void *user, const struct rflex_sonar_data *message,
                          const struct rflex_flex_parts *parts);
 
 /** confirm_initialize_digital_io came from flex. */
-void rflex_on_confirm_initialize_digital_io(void *user,
-                                            const struct rflex_confirm_initialize_digital_io *message,
-                                            const struct rflex_flex_parts *parts);
+void rflex_on_confirm_initialize_digital_io(
+    void *user, const struct rflex_confirm_initialize_digital_io *message,
+    const struct rflex_flex_parts *parts);
 
 /** changed_bumpers came from flex. */
 void rflex_on_changed_bumpers(void *user, const struct rflex_changed_bumpers *message,

@@ -29,7 +29,8 @@ static void rflex_drivers_store_u32be(uint8_t *at, uint32_t value) {
 }
 
 static uint32_t rflex_drivers_load_u32be(const uint8_t *at) {
-    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) | ((uint32_t)at[0] << 24));
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
 }
 
 static void rflex_drivers_copy(void *to, const void *from, size_t size) {
@@ -46,41 +47,39 @@ static void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
     at[1] = (uint8_t)value;
 }
 
-/* --- request_system_status --------------------------------------------------------------------- */
+/* --- request_system_status -------------------------------------------------------------------- */
 
-static void rflex_drivers_request_system_status_store(const struct rflex_drivers_request_system_status *message,
-                                                      uint8_t *payload) {
+static void rflex_drivers_request_system_status_store(
+    const struct rflex_drivers_request_system_status *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_encode(const struct rflex_drivers_request_system_status *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_system_status_encode(
+    const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_drivers_request_system_status_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
 void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
                                               const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_decode(struct rflex_drivers_request_system_status *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size) {
-    if (size != 0u) {
+enum rflex_drivers_result rflex_drivers_request_system_status_decode(
+    struct rflex_drivers_request_system_status *message, const uint8_t *payload, size_t size) {
+    if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_request_system_status_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- system_status ----------------------------------------------------------------------------- */
+/* --- system_status ---------------------------------------------------------------------------- */
 
 static void rflex_drivers_system_status_store(const struct rflex_drivers_system_status *message,
                                               uint8_t *payload) {
@@ -89,14 +88,14 @@ static void rflex_drivers_system_status_store(const struct rflex_drivers_system_
     payload[8] = message->brake;
 }
 
-enum rflex_drivers_result rflex_drivers_system_status_encode(const struct rflex_drivers_system_status *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size) {
-    if (capacity < 9u) {
+enum rflex_drivers_result rflex_drivers_system_status_encode(
+    const struct rflex_drivers_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 9U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_system_status_store(message, payload);
-    *size = 9u;
+    *size = 9U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -107,25 +106,26 @@ void rflex_drivers_system_status_load(struct rflex_drivers_system_status *messag
     message->brake = payload[8];
 }
 
-enum rflex_drivers_result rflex_drivers_system_status_decode(struct rflex_drivers_system_status *message,
-                                                             const uint8_t *payload, size_t size) {
-    if (size != 9u) {
+enum rflex_drivers_result rflex_drivers_system_status_decode(
+    struct rflex_drivers_system_status *message, const uint8_t *payload, size_t size) {
+    if (size != 9U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_system_status_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- lcd_dump ---------------------------------------------------------------------------------- */
+/* --- lcd_dump --------------------------------------------------------------------------------- */
 
 static size_t rflex_drivers_lcd_dump_measure(const struct rflex_drivers_lcd_dump *message) {
-    size_t size = 6u;
+    size_t size = 6U;
     size += message->byte_count;
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_lcd_dump_validate(const struct rflex_drivers_lcd_dump *message) {
-    if (message->byte_count > 249u) {
+static enum rflex_drivers_result rflex_drivers_lcd_dump_validate(
+    const struct rflex_drivers_lcd_dump *message) {
+    if (message->byte_count > 249U) {
         return RFLEX_DRIVERS_ERROR_RANGE;
     }
     return RFLEX_DRIVERS_OK;
@@ -139,9 +139,8 @@ static void rflex_drivers_lcd_dump_store(const struct rflex_drivers_lcd_dump *me
     rflex_drivers_copy(payload + 6, message->pixels, message->byte_count);
 }
 
-enum rflex_drivers_result rflex_drivers_lcd_dump_encode(const struct rflex_drivers_lcd_dump *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
+enum rflex_drivers_result rflex_drivers_lcd_dump_encode(
+    const struct rflex_drivers_lcd_dump *message, uint8_t *payload, size_t capacity, size_t *size) {
     const enum rflex_drivers_result result = rflex_drivers_lcd_dump_validate(message);
     if (result != RFLEX_DRIVERS_OK) {
         return result;
@@ -158,11 +157,11 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_encode(const struct rflex_drive
 static enum rflex_drivers_result rflex_drivers_lcd_dump_check(const uint8_t *payload, size_t size,
                                                               size_t *need) {
     (void)need;
-    if (size < 6u) {
+    if (size < 6U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     const uint8_t byte_count = payload[5];
-    if (byte_count > 249u) {
+    if (byte_count > 249U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     size_t at = 6;
@@ -195,21 +194,21 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_decode(struct rflex_drivers_lcd
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- axis_get_system --------------------------------------------------------------------------- */
+/* --- axis_get_system -------------------------------------------------------------------------- */
 
 static void rflex_drivers_axis_get_system_store(const struct rflex_drivers_axis_get_system *message,
                                                 uint8_t *payload) {
     payload[0] = message->axis;
 }
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_encode(const struct rflex_drivers_axis_get_system *message,
-                                                               uint8_t *payload, size_t capacity,
-                                                               size_t *size) {
-    if (capacity < 1u) {
+enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
+    const struct rflex_drivers_axis_get_system *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 1U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_axis_get_system_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -218,17 +217,16 @@ void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *me
     message->axis = payload[0];
 }
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_decode(struct rflex_drivers_axis_get_system *message,
-                                                               const uint8_t *payload,
-                                                               size_t size) {
-    if (size != 1u) {
+enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
+    struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size) {
+    if (size != 1U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_axis_get_system_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- motor_command ----------------------------------------------------------------------------- */
+/* --- motor_command ---------------------------------------------------------------------------- */
 
 static void rflex_drivers_motor_command_store(const struct rflex_drivers_motor_command *message,
                                               uint8_t *payload) {
@@ -239,14 +237,14 @@ static void rflex_drivers_motor_command_store(const struct rflex_drivers_motor_c
     payload[13] = message->direction;
 }
 
-enum rflex_drivers_result rflex_drivers_motor_command_encode(const struct rflex_drivers_motor_command *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size) {
-    if (capacity < 14u) {
+enum rflex_drivers_result rflex_drivers_motor_command_encode(
+    const struct rflex_drivers_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 14U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_motor_command_store(message, payload);
-    *size = 14u;
+    *size = 14U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -259,33 +257,32 @@ void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *messag
     message->direction = payload[13];
 }
 
-enum rflex_drivers_result rflex_drivers_motor_command_decode(struct rflex_drivers_motor_command *message,
-                                                             const uint8_t *payload, size_t size) {
-    if (size != 14u) {
+enum rflex_drivers_result rflex_drivers_motor_command_decode(
+    struct rflex_drivers_motor_command *message, const uint8_t *payload, size_t size) {
+    if (size != 14U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_motor_command_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- confirm_motor_command --------------------------------------------------------------------- */
+/* --- confirm_motor_command -------------------------------------------------------------------- */
 
-static void rflex_drivers_confirm_motor_command_store(const struct rflex_drivers_confirm_motor_command *message,
-                                                      uint8_t *payload) {
+static void rflex_drivers_confirm_motor_command_store(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
     payload[8] = message->axis;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(const struct rflex_drivers_confirm_motor_command *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
-    if (capacity < 9u) {
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 9U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_confirm_motor_command_store(message, payload);
-    *size = 9u;
+    *size = 9U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -296,17 +293,16 @@ void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor
     message->axis = payload[8];
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(struct rflex_drivers_confirm_motor_command *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size) {
-    if (size != 9u) {
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
+    struct rflex_drivers_confirm_motor_command *message, const uint8_t *payload, size_t size) {
+    if (size != 9U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_confirm_motor_command_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- set_defaults ------------------------------------------------------------------------------ */
+/* --- set_defaults ----------------------------------------------------------------------------- */
 
 static void rflex_drivers_set_defaults_store(const struct rflex_drivers_set_defaults *message,
                                              uint8_t *payload) {
@@ -314,31 +310,31 @@ static void rflex_drivers_set_defaults_store(const struct rflex_drivers_set_defa
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_encode(const struct rflex_drivers_set_defaults *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size) {
+enum rflex_drivers_result rflex_drivers_set_defaults_encode(
+    const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_drivers_set_defaults_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
 void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
                                      const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_decode(struct rflex_drivers_set_defaults *message,
-                                                            const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+enum rflex_drivers_result rflex_drivers_set_defaults_decode(
+    struct rflex_drivers_set_defaults *message, const uint8_t *payload, size_t size) {
+    if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_set_defaults_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- brake_set --------------------------------------------------------------------------------- */
+/* --- brake_set -------------------------------------------------------------------------------- */
 
 static void rflex_drivers_brake_set_store(const struct rflex_drivers_brake_set *message,
                                           uint8_t *payload) {
@@ -346,30 +342,30 @@ static void rflex_drivers_brake_set_store(const struct rflex_drivers_brake_set *
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_encode(const struct rflex_drivers_brake_set *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_set_encode(
+    const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_drivers_brake_set_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
 void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
 enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_brake_set *message,
                                                          const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+    if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_brake_set_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- brake_release ----------------------------------------------------------------------------- */
+/* --- brake_release ---------------------------------------------------------------------------- */
 
 static void rflex_drivers_brake_release_store(const struct rflex_drivers_brake_release *message,
                                               uint8_t *payload) {
@@ -377,46 +373,46 @@ static void rflex_drivers_brake_release_store(const struct rflex_drivers_brake_r
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_encode(const struct rflex_drivers_brake_release *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_release_encode(
+    const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_drivers_brake_release_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
 void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
                                       const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_decode(struct rflex_drivers_brake_release *message,
-                                                             const uint8_t *payload, size_t size) {
-    if (size != 0u) {
+enum rflex_drivers_result rflex_drivers_brake_release_decode(
+    struct rflex_drivers_brake_release *message, const uint8_t *payload, size_t size) {
+    if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_brake_release_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- brake_release_answer ---------------------------------------------------------------------- */
+/* --- brake_release_answer --------------------------------------------------------------------- */
 
-static void rflex_drivers_brake_release_answer_store(const struct rflex_drivers_brake_release_answer *message,
-                                                     uint8_t *payload) {
+static void rflex_drivers_brake_release_answer_store(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(const struct rflex_drivers_brake_release_answer *message,
-                                                                    uint8_t *payload,
-                                                                    size_t capacity, size_t *size) {
-    if (capacity < 8u) {
+enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_brake_release_answer_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -426,17 +422,16 @@ void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(struct rflex_drivers_brake_release_answer *message,
-                                                                    const uint8_t *payload,
-                                                                    size_t size) {
-    if (size != 8u) {
+enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(
+    struct rflex_drivers_brake_release_answer *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_brake_release_answer_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- read_motor -------------------------------------------------------------------------------- */
+/* --- read_motor ------------------------------------------------------------------------------- */
 
 static void rflex_drivers_read_motor_store(const struct rflex_drivers_read_motor *message,
                                            uint8_t *payload) {
@@ -449,14 +444,14 @@ static void rflex_drivers_read_motor_store(const struct rflex_drivers_read_motor
     rflex_drivers_store_u32be(payload + 21, (uint32_t)message->torque);
 }
 
-enum rflex_drivers_result rflex_drivers_read_motor_encode(const struct rflex_drivers_read_motor *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size) {
-    if (capacity < 25u) {
+enum rflex_drivers_result rflex_drivers_read_motor_encode(
+    const struct rflex_drivers_read_motor *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 25U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_read_motor_store(message, payload);
-    *size = 25u;
+    *size = 25U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -473,120 +468,115 @@ void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
 
 enum rflex_drivers_result rflex_drivers_read_motor_decode(struct rflex_drivers_read_motor *message,
                                                           const uint8_t *payload, size_t size) {
-    if (size != 25u) {
+    if (size != 25U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_read_motor_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- start_stop_motor_packets ------------------------------------------------------------------ */
+/* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-static void rflex_drivers_start_stop_motor_packets_store(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                         uint8_t *payload) {
+static void rflex_drivers_start_stop_motor_packets_store(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->period);
     rflex_drivers_store_u32be(payload + 4, message->mask);
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                        uint8_t *payload,
-                                                                        size_t capacity,
-                                                                        size_t *size) {
-    if (capacity < 8u) {
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_start_stop_motor_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop_motor_packets *message,
-                                                 const uint8_t *payload) {
+void rflex_drivers_start_stop_motor_packets_load(
+    struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload) {
     message->period = rflex_drivers_load_u32be(payload);
     message->mask = rflex_drivers_load_u32be(payload + 4);
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(struct rflex_drivers_start_stop_motor_packets *message,
-                                                                        const uint8_t *payload,
-                                                                        size_t size) {
-    if (size != 8u) {
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(
+    struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_start_stop_motor_packets_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-static void rflex_drivers_confirm_start_stop_motor_packets_store(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                 uint8_t *payload) {
+static void rflex_drivers_confirm_start_stop_motor_packets_store(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                                uint8_t *payload,
-                                                                                size_t capacity,
-                                                                                size_t *size) {
-    if (capacity < 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload,
+    size_t capacity, size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_confirm_start_stop_motor_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                         const uint8_t *payload) {
+void rflex_drivers_confirm_start_stop_motor_packets_load(
+    struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                                const uint8_t *payload,
-                                                                                size_t size) {
-    if (size != 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
+    struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload,
+    size_t size) {
+    if (size != 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_confirm_start_stop_motor_packets_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- request_joystick_data --------------------------------------------------------------------- */
+/* --- request_joystick_data -------------------------------------------------------------------- */
 
-static void rflex_drivers_request_joystick_data_store(const struct rflex_drivers_request_joystick_data *message,
-                                                      uint8_t *payload) {
+static void rflex_drivers_request_joystick_data_store(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(const struct rflex_drivers_request_joystick_data *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     (void)capacity;
     rflex_drivers_request_joystick_data_store(message, payload);
-    *size = 0u;
+    *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
 void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
                                               const uint8_t *payload) {
     (void)payload;
-    message->unused = 0u;
+    message->unused = 0U;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(struct rflex_drivers_request_joystick_data *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size) {
-    if (size != 0u) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
+    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload, size_t size) {
+    if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_request_joystick_data_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- joystick_data ----------------------------------------------------------------------------- */
+/* --- joystick_data ---------------------------------------------------------------------------- */
 
 static void rflex_drivers_joystick_data_store(const struct rflex_drivers_joystick_data *message,
                                               uint8_t *payload) {
@@ -596,14 +586,14 @@ static void rflex_drivers_joystick_data_store(const struct rflex_drivers_joystic
     payload[12] = message->buttons;
 }
 
-enum rflex_drivers_result rflex_drivers_joystick_data_encode(const struct rflex_drivers_joystick_data *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size) {
-    if (capacity < 13u) {
+enum rflex_drivers_result rflex_drivers_joystick_data_encode(
+    const struct rflex_drivers_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 13U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_joystick_data_store(message, payload);
-    *size = 13u;
+    *size = 13U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -615,101 +605,99 @@ void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *messag
     message->buttons = payload[12];
 }
 
-enum rflex_drivers_result rflex_drivers_joystick_data_decode(struct rflex_drivers_joystick_data *message,
-                                                             const uint8_t *payload, size_t size) {
-    if (size != 13u) {
+enum rflex_drivers_result rflex_drivers_joystick_data_decode(
+    struct rflex_drivers_joystick_data *message, const uint8_t *payload, size_t size) {
+    if (size != 13U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_joystick_data_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- start_stop_sonar_packets ------------------------------------------------------------------ */
+/* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-static void rflex_drivers_start_stop_sonar_packets_store(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                         uint8_t *payload) {
+static void rflex_drivers_start_stop_sonar_packets_store(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->echo_delay);
     rflex_drivers_store_u32be(payload + 4, message->ping_delay);
     rflex_drivers_store_u32be(payload + 8, message->set_delay);
     payload[12] = message->mode;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                        uint8_t *payload,
-                                                                        size_t capacity,
-                                                                        size_t *size) {
-    if (capacity < 13u) {
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 13U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_start_stop_sonar_packets_store(message, payload);
-    *size = 13u;
+    *size = 13U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop_sonar_packets *message,
-                                                 const uint8_t *payload) {
+void rflex_drivers_start_stop_sonar_packets_load(
+    struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload) {
     message->echo_delay = rflex_drivers_load_u32be(payload);
     message->ping_delay = rflex_drivers_load_u32be(payload + 4);
     message->set_delay = rflex_drivers_load_u32be(payload + 8);
     message->mode = payload[12];
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                        const uint8_t *payload,
-                                                                        size_t size) {
-    if (size != 13u) {
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(
+    struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload, size_t size) {
+    if (size != 13U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_start_stop_sonar_packets_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-static void rflex_drivers_confirm_start_stop_sonar_packets_store(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                 uint8_t *payload) {
+static void rflex_drivers_confirm_start_stop_sonar_packets_store(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                                uint8_t *payload,
-                                                                                size_t capacity,
-                                                                                size_t *size) {
-    if (capacity < 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload,
+    size_t capacity, size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_confirm_start_stop_sonar_packets_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                         const uint8_t *payload) {
+void rflex_drivers_confirm_start_stop_sonar_packets_load(
+    struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                                const uint8_t *payload,
-                                                                                size_t size) {
-    if (size != 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(
+    struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload,
+    size_t size) {
+    if (size != 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_confirm_start_stop_sonar_packets_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- sonar_data -------------------------------------------------------------------------------- */
+/* --- sonar_data ------------------------------------------------------------------------------- */
 
 static size_t rflex_drivers_sonar_data_measure(const struct rflex_drivers_sonar_data *message) {
-    size_t size = 8u;
-    size += (size_t)3u * message->readings_count;
+    size_t size = 8U;
+    size += (size_t)3U * message->readings_count;
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_sonar_data_validate(const struct rflex_drivers_sonar_data *message) {
-    if (message->readings_count > 82u) {
+static enum rflex_drivers_result rflex_drivers_sonar_data_validate(
+    const struct rflex_drivers_sonar_data *message) {
+    if (message->readings_count > 82U) {
         return RFLEX_DRIVERS_ERROR_RANGE;
     }
     return RFLEX_DRIVERS_OK;
@@ -726,9 +714,9 @@ static void rflex_drivers_sonar_data_store(const struct rflex_drivers_sonar_data
     }
 }
 
-enum rflex_drivers_result rflex_drivers_sonar_data_encode(const struct rflex_drivers_sonar_data *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size) {
+enum rflex_drivers_result rflex_drivers_sonar_data_encode(
+    const struct rflex_drivers_sonar_data *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rflex_drivers_result result = rflex_drivers_sonar_data_validate(message);
     if (result != RFLEX_DRIVERS_OK) {
         return result;
@@ -746,11 +734,11 @@ static enum rflex_drivers_result rflex_drivers_sonar_data_check(const uint8_t *p
                                                                 size_t *need) {
     (void)payload;
     (void)need;
-    if (size < 8u) {
+    if (size < 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     size_t at = 8;
-    if (size - at > 246u) {
+    if (size - at > 246U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     while (at < size) {
@@ -767,7 +755,7 @@ void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, con
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
-    message->readings_count = 0u;
+    message->readings_count = 0U;
     while (at < payload + size) {
         message->readings[message->readings_count].cluster = at[0];
         message->readings[message->readings_count].distance = rflex_drivers_load_u16be(at + 1);
@@ -786,22 +774,21 @@ enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_s
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- initialize_digital_io --------------------------------------------------------------------- */
+/* --- initialize_digital_io -------------------------------------------------------------------- */
 
-static void rflex_drivers_initialize_digital_io_store(const struct rflex_drivers_initialize_digital_io *message,
-                                                      uint8_t *payload) {
+static void rflex_drivers_initialize_digital_io_store(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->period);
 }
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(const struct rflex_drivers_initialize_digital_io *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
-    if (capacity < 4u) {
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 4U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_initialize_digital_io_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -810,53 +797,51 @@ void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_di
     message->period = rflex_drivers_load_u32be(payload);
 }
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(struct rflex_drivers_initialize_digital_io *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size) {
-    if (size != 4u) {
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(
+    struct rflex_drivers_initialize_digital_io *message, const uint8_t *payload, size_t size) {
+    if (size != 4U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_initialize_digital_io_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- confirm_initialize_digital_io ------------------------------------------------------------- */
+/* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-static void rflex_drivers_confirm_initialize_digital_io_store(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                              uint8_t *payload) {
+static void rflex_drivers_confirm_initialize_digital_io_store(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                             uint8_t *payload,
-                                                                             size_t capacity,
-                                                                             size_t *size) {
-    if (capacity < 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload,
+    size_t capacity, size_t *size) {
+    if (capacity < 8U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_confirm_initialize_digital_io_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                      const uint8_t *payload) {
+void rflex_drivers_confirm_initialize_digital_io_load(
+    struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                             const uint8_t *payload,
-                                                                             size_t size) {
-    if (size != 8u) {
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(
+    struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload,
+    size_t size) {
+    if (size != 8U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_confirm_initialize_digital_io_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- changed_bumpers --------------------------------------------------------------------------- */
+/* --- changed_bumpers -------------------------------------------------------------------------- */
 
 static void rflex_drivers_changed_bumpers_store(const struct rflex_drivers_changed_bumpers *message,
                                                 uint8_t *payload) {
@@ -865,14 +850,14 @@ static void rflex_drivers_changed_bumpers_store(const struct rflex_drivers_chang
     rflex_drivers_store_u16be(payload + 5, message->data);
 }
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(const struct rflex_drivers_changed_bumpers *message,
-                                                               uint8_t *payload, size_t capacity,
-                                                               size_t *size) {
-    if (capacity < 7u) {
+enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 7U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_changed_bumpers_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -883,31 +868,30 @@ void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *me
     message->data = rflex_drivers_load_u16be(payload + 5);
 }
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(struct rflex_drivers_changed_bumpers *message,
-                                                               const uint8_t *payload,
-                                                               size_t size) {
-    if (size != 7u) {
+enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(
+    struct rflex_drivers_changed_bumpers *message, const uint8_t *payload, size_t size) {
+    if (size != 7U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_changed_bumpers_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- check_io_changed -------------------------------------------------------------------------- */
+/* --- check_io_changed ------------------------------------------------------------------------- */
 
-static void rflex_drivers_check_io_changed_store(const struct rflex_drivers_check_io_changed *message,
-                                                 uint8_t *payload) {
+static void rflex_drivers_check_io_changed_store(
+    const struct rflex_drivers_check_io_changed *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_encode(const struct rflex_drivers_check_io_changed *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size) {
-    if (capacity < 4u) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_encode(
+    const struct rflex_drivers_check_io_changed *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 4U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_check_io_changed_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -916,55 +900,52 @@ void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *
     message->timestamp = rflex_drivers_load_u32be(payload);
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_decode(struct rflex_drivers_check_io_changed *message,
-                                                                const uint8_t *payload,
-                                                                size_t size) {
-    if (size != 4u) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_decode(
+    struct rflex_drivers_check_io_changed *message, const uint8_t *payload, size_t size) {
+    if (size != 4U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_check_io_changed_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- check_io_changed_answer ------------------------------------------------------------------- */
+/* --- check_io_changed_answer ------------------------------------------------------------------ */
 
-static void rflex_drivers_check_io_changed_answer_store(const struct rflex_drivers_check_io_changed_answer *message,
-                                                        uint8_t *payload) {
+static void rflex_drivers_check_io_changed_answer_store(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
     rflex_drivers_store_u32be(payload + 8, message->package_count);
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                       uint8_t *payload,
-                                                                       size_t capacity,
-                                                                       size_t *size) {
-    if (capacity < 12u) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 12U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_check_io_changed_answer_store(message, payload);
-    *size = 12u;
+    *size = 12U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_changed_answer *message,
-                                                const uint8_t *payload) {
+void rflex_drivers_check_io_changed_answer_load(
+    struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload) {
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     message->package_count = rflex_drivers_load_u32be(payload + 8);
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(struct rflex_drivers_check_io_changed_answer *message,
-                                                                       const uint8_t *payload,
-                                                                       size_t size) {
-    if (size != 12u) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(
+    struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload, size_t size) {
+    if (size != 12U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_check_io_changed_answer_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- changed_byte ------------------------------------------------------------------------------ */
+/* --- changed_byte ----------------------------------------------------------------------------- */
 
 static void rflex_drivers_changed_byte_store(const struct rflex_drivers_changed_byte *message,
                                              uint8_t *payload) {
@@ -973,14 +954,14 @@ static void rflex_drivers_changed_byte_store(const struct rflex_drivers_changed_
     rflex_drivers_store_u16be(payload + 5, message->data);
 }
 
-enum rflex_drivers_result rflex_drivers_changed_byte_encode(const struct rflex_drivers_changed_byte *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size) {
-    if (capacity < 7u) {
+enum rflex_drivers_result rflex_drivers_changed_byte_encode(
+    const struct rflex_drivers_changed_byte *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 7U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_changed_byte_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -991,16 +972,16 @@ void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
     message->data = rflex_drivers_load_u16be(payload + 5);
 }
 
-enum rflex_drivers_result rflex_drivers_changed_byte_decode(struct rflex_drivers_changed_byte *message,
-                                                            const uint8_t *payload, size_t size) {
-    if (size != 7u) {
+enum rflex_drivers_result rflex_drivers_changed_byte_decode(
+    struct rflex_drivers_changed_byte *message, const uint8_t *payload, size_t size) {
+    if (size != 7U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_changed_byte_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- ir_run ------------------------------------------------------------------------------------ */
+/* --- ir_run ----------------------------------------------------------------------------------- */
 
 static void rflex_drivers_ir_run_store(const struct rflex_drivers_ir_run *message,
                                        uint8_t *payload) {
@@ -1015,11 +996,11 @@ static void rflex_drivers_ir_run_store(const struct rflex_drivers_ir_run *messag
 enum rflex_drivers_result rflex_drivers_ir_run_encode(const struct rflex_drivers_ir_run *message,
                                                       uint8_t *payload, size_t capacity,
                                                       size_t *size) {
-    if (capacity < 21u) {
+    if (capacity < 21U) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_ir_run_store(message, payload);
-    *size = 21u;
+    *size = 21U;
     return RFLEX_DRIVERS_OK;
 }
 
@@ -1034,24 +1015,25 @@ void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8
 
 enum rflex_drivers_result rflex_drivers_ir_run_decode(struct rflex_drivers_ir_run *message,
                                                       const uint8_t *payload, size_t size) {
-    if (size != 21u) {
+    if (size != 21U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     rflex_drivers_ir_run_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- ir_report --------------------------------------------------------------------------------- */
+/* --- ir_report -------------------------------------------------------------------------------- */
 
 static size_t rflex_drivers_ir_report_measure(const struct rflex_drivers_ir_report *message) {
-    size_t size = 0u;
+    size_t size = 0U;
     size += message->data_size;
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_ir_report_validate(const struct rflex_drivers_ir_report *message) {
+static enum rflex_drivers_result rflex_drivers_ir_report_validate(
+    const struct rflex_drivers_ir_report *message) {
     const size_t size = rflex_drivers_ir_report_measure(message);
-    if (size < 1u) {
+    if (size < 1U) {
         return RFLEX_DRIVERS_ERROR_RANGE;
     }
     return RFLEX_DRIVERS_OK;
@@ -1062,9 +1044,9 @@ static void rflex_drivers_ir_report_store(const struct rflex_drivers_ir_report *
     rflex_drivers_copy(payload, message->data, message->data_size);
 }
 
-enum rflex_drivers_result rflex_drivers_ir_report_encode(const struct rflex_drivers_ir_report *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size) {
+enum rflex_drivers_result rflex_drivers_ir_report_encode(
+    const struct rflex_drivers_ir_report *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rflex_drivers_result result = rflex_drivers_ir_report_validate(message);
     if (result != RFLEX_DRIVERS_OK) {
         return result;
@@ -1082,10 +1064,10 @@ static enum rflex_drivers_result rflex_drivers_ir_report_check(const uint8_t *pa
                                                                size_t *need) {
     (void)payload;
     (void)need;
-    if (size > 255u) {
+    if (size > 255U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    if (size < 1u) {
+    if (size < 1U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     return RFLEX_DRIVERS_OK;
@@ -1107,7 +1089,7 @@ enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     RFLEX_DRIVERS_SEEKING,
@@ -1117,11 +1099,11 @@ enum {
 
 enum {
     RFLEX_DRIVERS_KNOWN = 1,     /* The payload's size is known. */
-    RFLEX_DRIVERS_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    RFLEX_DRIVERS_OPEN = 2,      /* Only what follows the payload tells its size. */
     RFLEX_DRIVERS_SEARCHING = 4, /* A delimiter is looked for. */
-    RFLEX_DRIVERS_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    RFLEX_DRIVERS_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     RFLEX_DRIVERS_EMPTY = 16,    /* The stuffed region holds nothing. */
-    RFLEX_DRIVERS_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    RFLEX_DRIVERS_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -1130,7 +1112,8 @@ enum {
     RFLEX_DRIVERS_AFTER
 };
 
-#define RFLEX_DRIVERS_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define RFLEX_DRIVERS_FRAME 0xFFU
 
 #if RFLEX_DRIVERS_FAST_FEED
 #include <string.h>
@@ -1171,30 +1154,30 @@ static uint8_t rflex_drivers_xor_8_final(uint8_t sum) {
     return sum;
 }
 
-/* --- what linux sends: frames -------------------------------------------------------------- */
+/* --- what linux sends: frames ----------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rflex_drivers_linux_room(size_t payload) {
-    const size_t content = 6u + payload + 1u;
-    return 3u * content + 2u;
+    const size_t content = 6U + payload + 1U;
+    return 3U * content + 2U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *rflex_drivers_linux_payload(uint8_t *frame, size_t payload) {
-    return &frame[rflex_drivers_linux_room(payload) - 1u - payload];
+    return &frame[rflex_drivers_linux_room(payload) - 1U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
     switch (byte) {
-    case 0x1B:
-        wire[0] = 0x1B;
-        wire[1] = 0x00;
+    case 0x1BU:
+        wire[0] = 0x1BU;
+        wire[1] = 0x00U;
         return 2;
-    case 0x7C:
-        wire[0] = 0x7C;
-        wire[1] = 0x1B;
-        wire[2] = 0x01;
+    case 0x7CU:
+        wire[0] = 0x7CU;
+        wire[1] = 0x1BU;
+        wire[2] = 0x01U;
         return 3;
     default:
         wire[0] = byte;
@@ -1203,41 +1186,43 @@ static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
 }
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
-static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
+                                       uint8_t subclass, uint8_t number) {
     uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
-    uint8_t *const tail = &content[6u + payload];
+    uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
-    const uint16_t stuffed = (uint16_t)(6u + payload + 1u);
+    const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
     uint16_t from = 2;
     uint8_t *to = frame;
-    uint8_t sum = 0x00;
+    uint8_t sum = 0x00U;
     (void)tail;
-    content[0u] = 0x1B;
-    content[1u] = 0x02;
-    content[2u] = (uint8_t)class_id;
-    content[3u] = (uint8_t)number;
-    content[4u] = (uint8_t)subclass;
-    content[5u] = (uint8_t)length;
+    content[0U] = 0x1BU;
+    content[1U] = 0x02U;
+    content[2U] = (uint8_t)class_id;
+    content[3U] = (uint8_t)number;
+    content[4U] = (uint8_t)subclass;
+    content[5U] = (uint8_t)length;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     *to = content[1];
     to++;
     for (; from < stuffed; from++) {
-        uint8_t byte = from + 1u == stuffed ? (uint8_t)rflex_drivers_xor_8_final(sum) : content[from];
+        uint8_t byte = from + 1U == stuffed ? (uint8_t)rflex_drivers_xor_8_final(sum)
+                                            : content[from];
         sum = rflex_drivers_xor_8_step(sum, byte);
         switch (byte) {
-        case 0x1B:
-            *to = 0x1B;
+        case 0x1BU:
+            *to = 0x1BU;
             to++;
-            *to = 0x00;
+            *to = 0x00U;
             break;
-        case 0x7C:
-            *to = 0x7C;
+        case 0x7CU:
+            *to = 0x7CU;
             to++;
-            *to = 0x1B;
+            *to = 0x1BU;
             to++;
-            *to = 0x01;
+            *to = 0x01U;
             break;
         default:
             *to = byte;
@@ -1245,14 +1230,14 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
         }
         to++;
     }
-    *to = 0x1B;
+    *to = 0x1BU;
     to++;
-    *to = 0x03;
+    *to = 0x03U;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct rflex_drivers_writer {
     rflex_drivers_put put;
@@ -1266,10 +1251,10 @@ enum { RFLEX_DRIVERS_STUFFED = 128 };
 
 /* The next byte of content. */
 static void rflex_drivers_linux_write(struct rflex_drivers_writer *writer, uint8_t byte) {
-    if ((writer->flags & 1u) != 0u) {
+    if ((writer->flags & 1U) != 0U) {
         writer->linux_checksum = rflex_drivers_xor_8_step(writer->linux_checksum, byte);
     }
-    if ((writer->flags & RFLEX_DRIVERS_STUFFED) != 0u) {
+    if ((writer->flags & RFLEX_DRIVERS_STUFFED) != 0U) {
         uint8_t wire[3];
         const size_t size = rflex_drivers_linux_stuff(wire, byte);
         size_t index;
@@ -1281,7 +1266,8 @@ static void rflex_drivers_linux_write(struct rflex_drivers_writer *writer, uint8
     writer->put(writer->user, byte);
 }
 
-static void rflex_drivers_linux_send_head(struct rflex_drivers_writer *writer, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static void rflex_drivers_linux_send_head(struct rflex_drivers_writer *writer, size_t payload,
+                                          uint8_t class_id, uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
@@ -1289,17 +1275,18 @@ static void rflex_drivers_linux_send_head(struct rflex_drivers_writer *writer, s
     (void)class_id;
     (void)subclass;
     (void)number;
-    writer->linux_checksum = 0x00;
-    rflex_drivers_linux_write(writer, 0x1B);
-    rflex_drivers_linux_write(writer, 0x02);
-    writer->flags = 129u;
+    writer->linux_checksum = 0x00U;
+    rflex_drivers_linux_write(writer, 0x1BU);
+    rflex_drivers_linux_write(writer, 0x02U);
+    writer->flags = 129U;
     rflex_drivers_linux_write(writer, (uint8_t)class_id);
     rflex_drivers_linux_write(writer, (uint8_t)number);
     rflex_drivers_linux_write(writer, (uint8_t)subclass);
     rflex_drivers_linux_write(writer, (uint8_t)length);
 }
 
-static void rflex_drivers_linux_send_tail(struct rflex_drivers_writer *writer, size_t payload, uint8_t class_id, uint8_t subclass, uint8_t number) {
+static void rflex_drivers_linux_send_tail(struct rflex_drivers_writer *writer, size_t payload,
+                                          uint8_t class_id, uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
@@ -1307,13 +1294,13 @@ static void rflex_drivers_linux_send_tail(struct rflex_drivers_writer *writer, s
     (void)class_id;
     (void)subclass;
     (void)number;
-    writer->flags = 128u;
+    writer->flags = 128U;
     {
         const uint8_t due = rflex_drivers_xor_8_final(writer->linux_checksum);
         rflex_drivers_linux_write(writer, (uint8_t)due);
     }
-    writer->put(writer->user, 0x1B);
-    writer->put(writer->user, 0x03);
+    writer->put(writer->user, 0x1BU);
+    writer->put(writer->user, 0x03U);
 }
 
 static void rflex_drivers_write(struct rflex_drivers_writer *writer, uint8_t byte) {
@@ -1340,8 +1327,9 @@ static void rflex_drivers_write_u16be(struct rflex_drivers_writer *writer, uint1
     rflex_drivers_write(writer, (uint8_t)value);
 }
 
-static void rflex_drivers_request_system_status_put(const struct rflex_drivers_request_system_status *message,
-                                                    struct rflex_drivers_writer *writer) {
+static void rflex_drivers_request_system_status_put(
+    const struct rflex_drivers_request_system_status *message,
+    struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
@@ -1375,8 +1363,9 @@ static void rflex_drivers_motor_command_put(const struct rflex_drivers_motor_com
     rflex_drivers_write(writer, message->direction);
 }
 
-static void rflex_drivers_confirm_motor_command_put(const struct rflex_drivers_confirm_motor_command *message,
-                                                    struct rflex_drivers_writer *writer) {
+static void rflex_drivers_confirm_motor_command_put(
+    const struct rflex_drivers_confirm_motor_command *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write(writer, message->axis);
@@ -1400,8 +1389,8 @@ static void rflex_drivers_brake_release_put(const struct rflex_drivers_brake_rel
     (void)writer;
 }
 
-static void rflex_drivers_brake_release_answer_put(const struct rflex_drivers_brake_release_answer *message,
-                                                   struct rflex_drivers_writer *writer) {
+static void rflex_drivers_brake_release_answer_put(
+    const struct rflex_drivers_brake_release_answer *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
@@ -1417,20 +1406,23 @@ static void rflex_drivers_read_motor_put(const struct rflex_drivers_read_motor *
     rflex_drivers_write_u32be(writer, (uint32_t)message->torque);
 }
 
-static void rflex_drivers_start_stop_motor_packets_put(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                       struct rflex_drivers_writer *writer) {
+static void rflex_drivers_start_stop_motor_packets_put(
+    const struct rflex_drivers_start_stop_motor_packets *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->period);
     rflex_drivers_write_u32be(writer, message->mask);
 }
 
-static void rflex_drivers_confirm_start_stop_motor_packets_put(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                               struct rflex_drivers_writer *writer) {
+static void rflex_drivers_confirm_start_stop_motor_packets_put(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_request_joystick_data_put(const struct rflex_drivers_request_joystick_data *message,
-                                                    struct rflex_drivers_writer *writer) {
+static void rflex_drivers_request_joystick_data_put(
+    const struct rflex_drivers_request_joystick_data *message,
+    struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
@@ -1443,16 +1435,18 @@ static void rflex_drivers_joystick_data_put(const struct rflex_drivers_joystick_
     rflex_drivers_write(writer, message->buttons);
 }
 
-static void rflex_drivers_start_stop_sonar_packets_put(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                       struct rflex_drivers_writer *writer) {
+static void rflex_drivers_start_stop_sonar_packets_put(
+    const struct rflex_drivers_start_stop_sonar_packets *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->echo_delay);
     rflex_drivers_write_u32be(writer, message->ping_delay);
     rflex_drivers_write_u32be(writer, message->set_delay);
     rflex_drivers_write(writer, message->mode);
 }
 
-static void rflex_drivers_confirm_start_stop_sonar_packets_put(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                               struct rflex_drivers_writer *writer) {
+static void rflex_drivers_confirm_start_stop_sonar_packets_put(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
@@ -1467,13 +1461,15 @@ static void rflex_drivers_sonar_data_put(const struct rflex_drivers_sonar_data *
     }
 }
 
-static void rflex_drivers_initialize_digital_io_put(const struct rflex_drivers_initialize_digital_io *message,
-                                                    struct rflex_drivers_writer *writer) {
+static void rflex_drivers_initialize_digital_io_put(
+    const struct rflex_drivers_initialize_digital_io *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->period);
 }
 
-static void rflex_drivers_confirm_initialize_digital_io_put(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                            struct rflex_drivers_writer *writer) {
+static void rflex_drivers_confirm_initialize_digital_io_put(
+    const struct rflex_drivers_confirm_initialize_digital_io *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
@@ -1490,8 +1486,9 @@ static void rflex_drivers_check_io_changed_put(const struct rflex_drivers_check_
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_check_io_changed_answer_put(const struct rflex_drivers_check_io_changed_answer *message,
-                                                      struct rflex_drivers_writer *writer) {
+static void rflex_drivers_check_io_changed_answer_put(
+    const struct rflex_drivers_check_io_changed_answer *message,
+    struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write_u32be(writer, message->package_count);
@@ -1519,58 +1516,57 @@ static void rflex_drivers_ir_report_put(const struct rflex_drivers_ir_report *me
     rflex_drivers_write_bytes(writer, message->data, message->data_size);
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_frame(const struct rflex_drivers_request_system_status *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+enum rflex_drivers_result rflex_drivers_request_system_status_frame(
+    const struct rflex_drivers_request_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_request_system_status_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01, 0x01, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_send(const struct rflex_drivers_request_system_status *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user) {
+enum rflex_drivers_result rflex_drivers_request_system_status_send(
+    const struct rflex_drivers_request_system_status *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x01, 0x01, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
     rflex_drivers_request_system_status_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x01, 0x01, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_system_status_frame(const struct rflex_drivers_system_status *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
-    const size_t payload = 9u;
+enum rflex_drivers_result rflex_drivers_system_status_frame(
+    const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 9U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_system_status_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01, 0x01, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_system_status_send(const struct rflex_drivers_system_status *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user) {
+enum rflex_drivers_result rflex_drivers_system_status_send(
+    const struct rflex_drivers_system_status *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 9u;
+    const size_t payload = 9U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x01, 0x01, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
     rflex_drivers_system_status_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x01, 0x01, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -1587,7 +1583,7 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_frame(const struct rflex_driver
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_lcd_dump_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -1605,408 +1601,399 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x01, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x01U, 0x00U, number);
     rflex_drivers_lcd_dump_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x01, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x01U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_frame(const struct rflex_drivers_axis_get_system *message,
-                                                              uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size) {
-    const size_t payload = 1u;
+enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
+    const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 1U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_axis_get_system_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_send(const struct rflex_drivers_axis_get_system *message,
-                                                             uint8_t number, rflex_drivers_put put,
-                                                             void *user) {
+enum rflex_drivers_result rflex_drivers_axis_get_system_send(
+    const struct rflex_drivers_axis_get_system *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 1u;
+    const size_t payload = 1U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x00U, number);
     rflex_drivers_axis_get_system_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_motor_command_frame(const struct rflex_drivers_motor_command *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
-    const size_t payload = 14u;
+enum rflex_drivers_result rflex_drivers_motor_command_frame(
+    const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 14U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_motor_command_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x07, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_motor_command_send(const struct rflex_drivers_motor_command *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user) {
+enum rflex_drivers_result rflex_drivers_motor_command_send(
+    const struct rflex_drivers_motor_command *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 14u;
+    const size_t payload = 14U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x07, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x07U, number);
     rflex_drivers_motor_command_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x07, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x07U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(const struct rflex_drivers_confirm_motor_command *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
-    const size_t payload = 9u;
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 9U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_confirm_motor_command_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x07, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(const struct rflex_drivers_confirm_motor_command *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user) {
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 9u;
+    const size_t payload = 9U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x07, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x07U, number);
     rflex_drivers_confirm_motor_command_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x07, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x07U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_frame(const struct rflex_drivers_set_defaults *message,
-                                                           uint8_t number, uint8_t *frame,
-                                                           size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+enum rflex_drivers_result rflex_drivers_set_defaults_frame(
+    const struct rflex_drivers_set_defaults *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_set_defaults_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x0A, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_send(const struct rflex_drivers_set_defaults *message,
-                                                          uint8_t number, rflex_drivers_put put,
-                                                          void *user) {
+enum rflex_drivers_result rflex_drivers_set_defaults_send(
+    const struct rflex_drivers_set_defaults *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x0A, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0AU, number);
     rflex_drivers_set_defaults_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x0A, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0AU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_frame(const struct rflex_drivers_brake_set *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+enum rflex_drivers_result rflex_drivers_brake_set_frame(
+    const struct rflex_drivers_brake_set *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_brake_set_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x0B, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0BU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_send(const struct rflex_drivers_brake_set *message,
-                                                       uint8_t number, rflex_drivers_put put,
-                                                       void *user) {
+enum rflex_drivers_result rflex_drivers_brake_set_send(
+    const struct rflex_drivers_brake_set *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x0B, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0BU, number);
     rflex_drivers_brake_set_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x0B, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0BU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_frame(const struct rflex_drivers_brake_release *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+enum rflex_drivers_result rflex_drivers_brake_release_frame(
+    const struct rflex_drivers_brake_release *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_brake_release_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x0C, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_send(const struct rflex_drivers_brake_release *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user) {
+enum rflex_drivers_result rflex_drivers_brake_release_send(
+    const struct rflex_drivers_brake_release *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x0C, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
     rflex_drivers_brake_release_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x0C, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(const struct rflex_drivers_brake_release_answer *message,
-                                                                   uint8_t number, uint8_t *frame,
-                                                                   size_t capacity, size_t *size) {
-    const size_t payload = 8u;
+enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_brake_release_answer_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x0C, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_send(const struct rflex_drivers_brake_release_answer *message,
-                                                                  uint8_t number,
-                                                                  rflex_drivers_put put,
-                                                                  void *user) {
+enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x0C, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
     rflex_drivers_brake_release_answer_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x0C, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_read_motor_frame(const struct rflex_drivers_read_motor *message,
-                                                         uint8_t number, uint8_t *frame,
-                                                         size_t capacity, size_t *size) {
-    const size_t payload = 25u;
+enum rflex_drivers_result rflex_drivers_read_motor_frame(
+    const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 25U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_read_motor_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x21, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x21U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_read_motor_send(const struct rflex_drivers_read_motor *message,
-                                                        uint8_t number, rflex_drivers_put put,
-                                                        void *user) {
+enum rflex_drivers_result rflex_drivers_read_motor_send(
+    const struct rflex_drivers_read_motor *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 25u;
+    const size_t payload = 25U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x21, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x21U, number);
     rflex_drivers_read_motor_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x21, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x21U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                       uint8_t number,
-                                                                       uint8_t *frame,
-                                                                       size_t capacity,
-                                                                       size_t *size) {
-    const size_t payload = 8u;
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_start_stop_motor_packets_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x22, number);
+    rflex_drivers_start_stop_motor_packets_store(message,
+                                                 rflex_drivers_linux_payload(frame, payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                      uint8_t number,
-                                                                      rflex_drivers_put put,
-                                                                      void *user) {
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x22, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x22U, number);
     rflex_drivers_start_stop_motor_packets_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x22, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x22U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                               uint8_t number,
-                                                                               uint8_t *frame,
-                                                                               size_t capacity,
-                                                                               size_t *size) {
-    const size_t payload = 8u;
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_confirm_start_stop_motor_packets_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02, 0x22, number);
+    rflex_drivers_confirm_start_stop_motor_packets_store(message,
+                                                         rflex_drivers_linux_payload(frame,
+                                                                                     payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                              uint8_t number,
-                                                                              rflex_drivers_put put,
-                                                                              void *user) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x02, 0x22, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x22U, number);
     rflex_drivers_confirm_start_stop_motor_packets_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x02, 0x22, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x22U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(const struct rflex_drivers_request_joystick_data *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
-    const size_t payload = 0u;
+enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_request_joystick_data_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x03, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_send(const struct rflex_drivers_request_joystick_data *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 0u;
+    const size_t payload = 0U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x03, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
     rflex_drivers_request_joystick_data_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x03, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_joystick_data_frame(const struct rflex_drivers_joystick_data *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
-    const size_t payload = 13u;
+enum rflex_drivers_result rflex_drivers_joystick_data_frame(
+    const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 13U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_joystick_data_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x03, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_joystick_data_send(const struct rflex_drivers_joystick_data *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user) {
+enum rflex_drivers_result rflex_drivers_joystick_data_send(
+    const struct rflex_drivers_joystick_data *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x03, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
     rflex_drivers_joystick_data_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x03, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                       uint8_t number,
-                                                                       uint8_t *frame,
-                                                                       size_t capacity,
-                                                                       size_t *size) {
-    const size_t payload = 13u;
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 13U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_start_stop_sonar_packets_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04, 0x00, number);
+    rflex_drivers_start_stop_sonar_packets_store(message,
+                                                 rflex_drivers_linux_payload(frame, payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                      uint8_t number,
-                                                                      rflex_drivers_put put,
-                                                                      void *user) {
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 13u;
+    const size_t payload = 13U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x04, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x04U, 0x00U, number);
     rflex_drivers_start_stop_sonar_packets_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x04, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x04U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                               uint8_t number,
-                                                                               uint8_t *frame,
-                                                                               size_t capacity,
-                                                                               size_t *size) {
-    const size_t payload = 8u;
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_confirm_start_stop_sonar_packets_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04, 0x00, number);
+    rflex_drivers_confirm_start_stop_sonar_packets_store(message,
+                                                         rflex_drivers_linux_payload(frame,
+                                                                                     payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                              uint8_t number,
-                                                                              rflex_drivers_put put,
-                                                                              void *user) {
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x04, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x04U, 0x00U, number);
     rflex_drivers_confirm_start_stop_sonar_packets_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x04, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x04U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_sonar_data_frame(const struct rflex_drivers_sonar_data *message,
-                                                         uint8_t number, uint8_t *frame,
-                                                         size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_sonar_data_frame(
+    const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size) {
     size_t payload;
     const enum rflex_drivers_result result = rflex_drivers_sonar_data_validate(message);
     if (result != RFLEX_DRIVERS_OK) {
@@ -2017,13 +2004,13 @@ enum rflex_drivers_result rflex_drivers_sonar_data_frame(const struct rflex_driv
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_sonar_data_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04, 0x02, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_sonar_data_send(const struct rflex_drivers_sonar_data *message,
-                                                        uint8_t number, rflex_drivers_put put,
-                                                        void *user) {
+enum rflex_drivers_result rflex_drivers_sonar_data_send(
+    const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
     size_t payload;
     const enum rflex_drivers_result result = rflex_drivers_sonar_data_validate(message);
@@ -2035,190 +2022,185 @@ enum rflex_drivers_result rflex_drivers_sonar_data_send(const struct rflex_drive
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x04, 0x02, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x04U, 0x02U, number);
     rflex_drivers_sonar_data_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x04, 0x02, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x04U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(const struct rflex_drivers_initialize_digital_io *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 4U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_initialize_digital_io_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(const struct rflex_drivers_initialize_digital_io *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user) {
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x00U, number);
     rflex_drivers_initialize_digital_io_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                            uint8_t number,
-                                                                            uint8_t *frame,
-                                                                            size_t capacity,
-                                                                            size_t *size) {
-    const size_t payload = 8u;
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size) {
+    const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_confirm_initialize_digital_io_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x00, number);
+    rflex_drivers_confirm_initialize_digital_io_store(message,
+                                                      rflex_drivers_linux_payload(frame, payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                           uint8_t number,
-                                                                           rflex_drivers_put put,
-                                                                           void *user) {
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x00U, number);
     rflex_drivers_confirm_initialize_digital_io_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(const struct rflex_drivers_changed_bumpers *message,
-                                                              uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 7U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_changed_bumpers_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x01, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_send(const struct rflex_drivers_changed_bumpers *message,
-                                                             uint8_t number, rflex_drivers_put put,
-                                                             void *user) {
+enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x01, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x01U, number);
     rflex_drivers_changed_bumpers_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x01, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_frame(const struct rflex_drivers_check_io_changed *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
+    const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 4U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_check_io_changed_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x02, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_send(const struct rflex_drivers_check_io_changed *message,
-                                                              uint8_t number, rflex_drivers_put put,
-                                                              void *user) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_send(
+    const struct rflex_drivers_check_io_changed *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x02, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x02U, number);
     rflex_drivers_check_io_changed_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x02, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                      uint8_t number,
-                                                                      uint8_t *frame,
-                                                                      size_t capacity,
-                                                                      size_t *size) {
-    const size_t payload = 12u;
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 12U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_check_io_changed_answer_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x02, number);
+    rflex_drivers_check_io_changed_answer_store(message,
+                                                rflex_drivers_linux_payload(frame, payload));
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                     uint8_t number,
-                                                                     rflex_drivers_put put,
-                                                                     void *user) {
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t number,
+    rflex_drivers_put put, void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 12u;
+    const size_t payload = 12U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x02, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x02U, number);
     rflex_drivers_check_io_changed_answer_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x02, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x02U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_byte_frame(const struct rflex_drivers_changed_byte *message,
-                                                           uint8_t number, uint8_t *frame,
-                                                           size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+enum rflex_drivers_result rflex_drivers_changed_byte_frame(
+    const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size) {
+    const size_t payload = 7U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_changed_byte_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05, 0x03, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x03U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_byte_send(const struct rflex_drivers_changed_byte *message,
-                                                          uint8_t number, rflex_drivers_put put,
-                                                          void *user) {
+enum rflex_drivers_result rflex_drivers_changed_byte_send(
+    const struct rflex_drivers_changed_byte *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x05, 0x03, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x05U, 0x03U, number);
     rflex_drivers_changed_byte_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x05, 0x03, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x05U, 0x03U, number);
     return RFLEX_DRIVERS_OK;
 }
 
 enum rflex_drivers_result rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
                                                      uint8_t number, uint8_t *frame,
                                                      size_t capacity, size_t *size) {
-    const size_t payload = 21u;
+    const size_t payload = 21U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_ir_run_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x06, 0x00, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -2226,20 +2208,20 @@ enum rflex_drivers_result rflex_drivers_ir_run_send(const struct rflex_drivers_i
                                                     uint8_t number, rflex_drivers_put put,
                                                     void *user) {
     struct rflex_drivers_writer writer;
-    const size_t payload = 21u;
+    const size_t payload = 21U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x06, 0x00, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x06U, 0x00U, number);
     rflex_drivers_ir_run_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x06, 0x00, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x06U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_ir_report_frame(const struct rflex_drivers_ir_report *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_ir_report_frame(
+    const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size) {
     size_t payload;
     const enum rflex_drivers_result result = rflex_drivers_ir_report_validate(message);
     if (result != RFLEX_DRIVERS_OK) {
@@ -2250,13 +2232,13 @@ enum rflex_drivers_result rflex_drivers_ir_report_frame(const struct rflex_drive
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
     rflex_drivers_ir_report_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x06, 0x01, number);
+    *size = rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_ir_report_send(const struct rflex_drivers_ir_report *message,
-                                                       uint8_t number, rflex_drivers_put put,
-                                                       void *user) {
+enum rflex_drivers_result rflex_drivers_ir_report_send(
+    const struct rflex_drivers_ir_report *message, uint8_t number, rflex_drivers_put put,
+    void *user) {
     struct rflex_drivers_writer writer;
     size_t payload;
     const enum rflex_drivers_result result = rflex_drivers_ir_report_validate(message);
@@ -2268,32 +2250,32 @@ enum rflex_drivers_result rflex_drivers_ir_report_send(const struct rflex_driver
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    rflex_drivers_linux_send_head(&writer, payload, 0x06, 0x01, number);
+    rflex_drivers_linux_send_head(&writer, payload, 0x06U, 0x01U, number);
     rflex_drivers_ir_report_put(message, &writer);
-    rflex_drivers_linux_send_tail(&writer, payload, 0x06, 0x01, number);
+    rflex_drivers_linux_send_tail(&writer, payload, 0x06U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-/* --- what linux sends: the decoder --------------------------------------------------------- */
+/* --- what linux sends: the decoder ------------------------------------------------------------ */
 
 /* How much of the start the input ends with, once a byte follows so much of it. */
 static uint8_t rflex_drivers_linux_follow_start(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x02) {
+        if (byte == 0x02U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2304,20 +2286,20 @@ static uint8_t rflex_drivers_linux_follow_start(uint8_t matched, uint8_t byte) {
 static uint8_t rflex_drivers_linux_follow_end(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x03) {
+        if (byte == 0x03U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2326,7 +2308,8 @@ static uint8_t rflex_drivers_linux_follow_end(uint8_t matched, uint8_t byte) {
 
 /* Events. */
 
-static void rflex_drivers_linux_invalid(struct rflex_drivers_linux_decoder *decoder, uint8_t reason, uint16_t size) {
+static void rflex_drivers_linux_invalid(struct rflex_drivers_linux_decoder *decoder, uint8_t reason,
+                                        uint16_t size) {
     struct rflex_drivers_linux_event event;
     event.kind = RFLEX_DRIVERS_INVALID;
     event.reason = (enum rflex_drivers_reason)reason;
@@ -2350,7 +2333,8 @@ static void rflex_drivers_linux_end_noise(struct rflex_drivers_linux_decoder *de
     }
 }
 
-static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *decoder, uint16_t size) {
+static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *decoder,
+                                          uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -2362,47 +2346,84 @@ static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *de
 
 /* The message of a valid frame. */
 
-static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_parts *parts,
+                                            const uint8_t *payload, uint16_t size,
+                                            uint8_t *message) {
     *message = RFLEX_DRIVERS_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
-    case UINT16_C(0x0101):
+    case 0x0101U:
         *message = RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS;
-        return size == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0200):
+        if (size != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0200U:
         *message = RFLEX_DRIVERS_MESSAGE_AXIS_GET_SYSTEM;
-        return size == 1U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0207):
+        if (size != 1U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0207U:
         *message = RFLEX_DRIVERS_MESSAGE_MOTOR_COMMAND;
-        return size == 14U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x020A):
+        if (size != 14U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x020AU:
         *message = RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS;
-        return size == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x020B):
+        if (size != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x020BU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_SET;
-        return size == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x020C):
+        if (size != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x020CU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE;
-        return size == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0222):
+        if (size != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0222U:
         *message = RFLEX_DRIVERS_MESSAGE_START_STOP_MOTOR_PACKETS;
-        return size == 8U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0300):
+        if (size != 8U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0300U:
         *message = RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA;
-        return size == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0400):
+        if (size != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0400U:
         *message = RFLEX_DRIVERS_MESSAGE_START_STOP_SONAR_PACKETS;
-        return size == 13U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0500):
+        if (size != 13U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0500U:
         *message = RFLEX_DRIVERS_MESSAGE_INITIALIZE_DIGITAL_IO;
-        return size == 4U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0502):
+        if (size != 4U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0502U:
         *message = RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED;
-        return size == 4U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0600):
+        if (size != 4U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0600U:
         *message = RFLEX_DRIVERS_MESSAGE_IR_RUN;
-        return size == 21U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
+        if (size != 21U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
     default:
         return RFLEX_DRIVERS_NO_REASON;
     }
@@ -2415,9 +2436,10 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + decoder->payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U],
+                                      (size_t)(6U + decoder->payload) - (size_t)(2U));
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_DRIVERS_CHECKSUM;
@@ -2436,7 +2458,8 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
         return reason;
     }
     rflex_drivers_linux_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -2453,11 +2476,13 @@ static uint8_t rflex_drivers_linux_surplus(const struct rflex_drivers_linux_deco
 }
 
 /* From now on the payload's size is known. */
-static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *decoder, uint16_t size) {
+static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *decoder,
+                                            uint16_t size) {
     decoder->payload = size;
 }
 
-static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder, uint16_t length) {
+static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder,
+                                               uint16_t length) {
     uint16_t size = length;
     if (size - 0U > 255U) {
         return RFLEX_DRIVERS_LENGTH;
@@ -2467,20 +2492,18 @@ static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decode
 }
 
 /* A byte in front of the payload. */
-static uint8_t rflex_drivers_linux_take_head(struct rflex_drivers_linux_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rflex_drivers_linux_take_head(struct rflex_drivers_linux_decoder *decoder,
+                                             uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x1B) {
+        if (byte != 0x1BU) {
             return RFLEX_DRIVERS_VALUE;
         }
         break;
     case 1:
-        if (byte != 0x02) {
+        if (byte != 0x02U) {
             return RFLEX_DRIVERS_VALUE;
         }
         break;
@@ -2507,7 +2530,8 @@ static uint8_t rflex_drivers_linux_cross(struct rflex_drivers_linux_decoder *dec
 }
 
 /* One byte of content. */
-static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *decoder, uint8_t byte) {
+static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *decoder,
+                                          uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
@@ -2529,24 +2553,31 @@ static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *de
     return reason;
 }
 
-static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *decoder, uint8_t byte) {
+static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *decoder,
+                                           uint8_t byte) {
     uint8_t value = byte;
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
-        case 0x7C:
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_linux_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
+        case 0x7CU:
             decoder->node = 2;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_linux_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
         default:
             break;
         }
         break;
     case 1:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
         default:
@@ -2555,16 +2586,19 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
         break;
     case 2:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 3;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_linux_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_linux_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
         break;
     default:
         switch (byte) {
-        case 0x01:
+        case 0x01U:
             value = 0x7CU;
             break;
         default:
@@ -2610,7 +2644,8 @@ static uint8_t rflex_drivers_linux_close(struct rflex_drivers_linux_decoder *dec
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
-static uint8_t rflex_drivers_linux_search(struct rflex_drivers_linux_decoder *decoder, uint8_t byte) {
+static uint8_t rflex_drivers_linux_search(struct rflex_drivers_linux_decoder *decoder,
+                                          uint8_t byte) {
     const uint8_t held = decoder->held;
     const uint8_t longer = rflex_drivers_linux_follow_end(held, byte);
     uint8_t index;
@@ -2620,7 +2655,8 @@ static uint8_t rflex_drivers_linux_search(struct rflex_drivers_linux_decoder *de
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t reason = rflex_drivers_linux_pass(decoder, index < held ? (uint8_t)(index == 0U ? 0x1B : 0x03) : byte);
+        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
+        const uint8_t reason = rflex_drivers_linux_pass(decoder, next);
         if (reason != RFLEX_DRIVERS_NO_REASON) {
             return reason;
         }
@@ -2637,7 +2673,8 @@ static uint8_t rflex_drivers_linux_take(struct rflex_drivers_linux_decoder *deco
         decoder->behind = 2;
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else {
-        reason = (decoder->wire > 2U) ? rflex_drivers_linux_search(decoder, byte) : rflex_drivers_linux_pass(decoder, byte);
+        reason = (decoder->wire > 2U) ? rflex_drivers_linux_search(decoder, byte)
+                                      : rflex_drivers_linux_pass(decoder, byte);
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && decoder->wire >= 780U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -2667,14 +2704,14 @@ static void rflex_drivers_linux_seek_on(struct rflex_drivers_linux_decoder *deco
 /* Open a candidate with a start that was seen. */
 static void rflex_drivers_linux_reopen(struct rflex_drivers_linux_decoder *decoder) {
     rflex_drivers_linux_open(decoder);
-    (void)rflex_drivers_linux_take(decoder, 0x1B);
-    (void)rflex_drivers_linux_take(decoder, 0x02);
+    (void)rflex_drivers_linux_take(decoder, 0x1BU);
+    (void)rflex_drivers_linux_take(decoder, 0x02U);
 }
 
-static void rflex_drivers_linux_judge(struct rflex_drivers_linux_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void rflex_drivers_linux_judge(struct rflex_drivers_linux_decoder *decoder, uint8_t reason,
+                                      uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason == RFLEX_DRIVERS_FRAME) {
         rflex_drivers_linux_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -2738,15 +2775,20 @@ void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decode
 
 #if RFLEX_DRIVERS_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder *decoder,
+                                             const uint8_t *data, size_t size, size_t from,
+                                             size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if RFLEX_DRIVERS_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -2764,7 +2806,7 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) != 0U) {
+            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -2774,7 +2816,7 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) == 0U) {
+            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2789,17 +2831,17 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x1B:
-            if (size - from >= 1U && data[from] == 0x00) {
-                byte = 0x1B;
+        case 0x1BU:
+            if (size - from >= 1U && data[from] == 0x00U) {
+                byte = 0x1BU;
                 from += 1U;
             } else {
                 return 0;
             }
             break;
-        case 0x7C:
-            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
-                byte = 0x7C;
+        case 0x7CU:
+            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+                byte = 0x7CU;
                 from += 2U;
             } else {
                 return 0;
@@ -2816,14 +2858,15 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder *decoder,
+                                             const uint8_t *data, size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 9U) {
         return 0;
     }
-    if (data[0] != 0x1B || data[1] != 0x02) {
+    if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -2841,7 +2884,7 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
     if (wire == 0U) {
         return 0;
     }
-    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
         return 0;
     }
     wire += 2U;
@@ -2860,7 +2903,8 @@ static bool rflex_drivers_linux_is_idle(const struct rflex_drivers_linux_decoder
 }
 #endif
 
-void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size) {
+void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder,
+                                      const uint8_t *data, size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -2882,7 +2926,8 @@ static void rflex_drivers_linux_reset(struct rflex_drivers_linux_decoder *decode
     rflex_drivers_linux_seek_on(decoder);
 }
 
-void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder, rflex_drivers_linux_handler handler, void *user) {
+void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
+                                      rflex_drivers_linux_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2907,26 +2952,26 @@ void rflex_drivers_linux_decoder_flush(struct rflex_drivers_linux_decoder *decod
     rflex_drivers_linux_reset(decoder);
 }
 
-/* --- what flex sends: the decoder --------------------------------------------------------- */
+/* --- what flex sends: the decoder ------------------------------------------------------------- */
 
 /* How much of the start the input ends with, once a byte follows so much of it. */
 static uint8_t rflex_drivers_flex_follow_start(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x02) {
+        if (byte == 0x02U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2937,20 +2982,20 @@ static uint8_t rflex_drivers_flex_follow_start(uint8_t matched, uint8_t byte) {
 static uint8_t rflex_drivers_flex_follow_end(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
-        if (byte == 0x03) {
+        if (byte == 0x03U) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x1B) {
+        if (byte == 0x1BU) {
             return 1;
         }
         return 0;
@@ -2959,7 +3004,8 @@ static uint8_t rflex_drivers_flex_follow_end(uint8_t matched, uint8_t byte) {
 
 /* Events. */
 
-static void rflex_drivers_flex_invalid(struct rflex_drivers_flex_decoder *decoder, uint8_t reason, uint16_t size) {
+static void rflex_drivers_flex_invalid(struct rflex_drivers_flex_decoder *decoder, uint8_t reason,
+                                       uint16_t size) {
     struct rflex_drivers_flex_event event;
     event.kind = RFLEX_DRIVERS_INVALID;
     event.reason = (enum rflex_drivers_reason)reason;
@@ -2983,7 +3029,8 @@ static void rflex_drivers_flex_end_noise(struct rflex_drivers_flex_decoder *deco
     }
 }
 
-static void rflex_drivers_flex_add_noise(struct rflex_drivers_flex_decoder *decoder, uint16_t size) {
+static void rflex_drivers_flex_add_noise(struct rflex_drivers_flex_decoder *decoder,
+                                         uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -2995,53 +3042,95 @@ static void rflex_drivers_flex_add_noise(struct rflex_drivers_flex_decoder *deco
 
 /* The message of a valid frame. */
 
-static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts *parts,
+                                           const uint8_t *payload, uint16_t size,
+                                           uint8_t *message) {
     *message = RFLEX_DRIVERS_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
-    case UINT16_C(0x0101):
+    case 0x0101U:
         *message = RFLEX_DRIVERS_MESSAGE_SYSTEM_STATUS;
-        return size == 9U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0100):
+        if (size != 9U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0100U:
         *message = RFLEX_DRIVERS_MESSAGE_LCD_DUMP;
-        return (uint8_t)((size >= 6U && size <= 255U) ? (int)rflex_drivers_lcd_dump_check(payload, size, NULL) : (int)RFLEX_DRIVERS_SIZE);
-    case UINT16_C(0x0207):
+        if (size < 6U || size > 255U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return (uint8_t)rflex_drivers_lcd_dump_check(payload, size, NULL);
+    case 0x0207U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_MOTOR_COMMAND;
-        return size == 9U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x020C):
+        if (size != 9U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x020CU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE_ANSWER;
-        return size == 8U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0221):
+        if (size != 8U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0221U:
         *message = RFLEX_DRIVERS_MESSAGE_READ_MOTOR;
-        return size == 25U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0222):
+        if (size != 25U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0222U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS;
-        return size == 8U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0300):
+        if (size != 8U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0300U:
         *message = RFLEX_DRIVERS_MESSAGE_JOYSTICK_DATA;
-        return size == 13U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0400):
+        if (size != 13U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0400U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS;
-        return size == 8U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0402):
+        if (size != 8U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0402U:
         *message = RFLEX_DRIVERS_MESSAGE_SONAR_DATA;
-        return (uint8_t)((size >= 8U && size <= 254U && (size - 8U) % 3U == 0U) ? (int)rflex_drivers_sonar_data_check(payload, size, NULL) : (int)RFLEX_DRIVERS_SIZE);
-    case UINT16_C(0x0500):
+        if (size < 8U || size > 254U || (size - 8U) % 3U != 0U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return (uint8_t)rflex_drivers_sonar_data_check(payload, size, NULL);
+    case 0x0500U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO;
-        return size == 8U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0501):
+        if (size != 8U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0501U:
         *message = RFLEX_DRIVERS_MESSAGE_CHANGED_BUMPERS;
-        return size == 7U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0502):
+        if (size != 7U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0502U:
         *message = RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED_ANSWER;
-        return size == 12U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0503):
+        if (size != 12U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0503U:
         *message = RFLEX_DRIVERS_MESSAGE_CHANGED_BYTE;
-        return size == 7U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_SIZE;
-    case UINT16_C(0x0601):
+        if (size != 7U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return RFLEX_DRIVERS_NO_REASON;
+    case 0x0601U:
         *message = RFLEX_DRIVERS_MESSAGE_IR_REPORT;
-        return (uint8_t)((size >= 1U && size <= 255U) ? (int)rflex_drivers_ir_report_check(payload, size, NULL) : (int)RFLEX_DRIVERS_SIZE);
+        if (size < 1U || size > 255U) {
+            return RFLEX_DRIVERS_SIZE;
+        }
+        return (uint8_t)rflex_drivers_ir_report_check(payload, size, NULL);
     default:
         return RFLEX_DRIVERS_NO_REASON;
     }
@@ -3054,9 +3143,10 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
     uint8_t message;
     uint8_t reason;
     {
-        uint8_t sum = 0x00;
+        uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + decoder->payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U],
+                                      (size_t)(6U + decoder->payload) - (size_t)(2U));
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_DRIVERS_CHECKSUM;
@@ -3075,7 +3165,8 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
         return reason;
     }
     rflex_drivers_flex_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -3092,11 +3183,13 @@ static uint8_t rflex_drivers_flex_surplus(const struct rflex_drivers_flex_decode
 }
 
 /* From now on the payload's size is known. */
-static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *decoder, uint16_t size) {
+static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *decoder,
+                                           uint16_t size) {
     decoder->payload = size;
 }
 
-static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder, uint16_t length) {
+static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder,
+                                              uint16_t length) {
     uint16_t size = length;
     if (size - 0U > 255U) {
         return RFLEX_DRIVERS_LENGTH;
@@ -3106,20 +3199,18 @@ static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder 
 }
 
 /* A byte in front of the payload. */
-static uint8_t rflex_drivers_flex_take_head(struct rflex_drivers_flex_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rflex_drivers_flex_take_head(struct rflex_drivers_flex_decoder *decoder,
+                                            uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x1B) {
+        if (byte != 0x1BU) {
             return RFLEX_DRIVERS_VALUE;
         }
         break;
     case 1:
-        if (byte != 0x02) {
+        if (byte != 0x02U) {
             return RFLEX_DRIVERS_VALUE;
         }
         break;
@@ -3168,24 +3259,31 @@ static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *deco
     return reason;
 }
 
-static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *decoder, uint8_t byte) {
+static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *decoder,
+                                          uint8_t byte) {
     uint8_t value = byte;
     switch (decoder->node) {
     case 0:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 1;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
-        case 0x7C:
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_flex_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
+        case 0x7CU:
             decoder->node = 2;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_flex_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
         default:
             break;
         }
         break;
     case 1:
         switch (byte) {
-        case 0x00:
+        case 0x00U:
             value = 0x1BU;
             break;
         default:
@@ -3194,16 +3292,19 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
         break;
     case 2:
         switch (byte) {
-        case 0x1B:
+        case 0x1BU:
             decoder->node = 3;
-            return decoder->content == decoder->payload + 7U ? rflex_drivers_flex_surplus(decoder) : (uint8_t)RFLEX_DRIVERS_NO_REASON;
+            if (decoder->content == decoder->payload + 7U) {
+                return rflex_drivers_flex_surplus(decoder);
+            }
+            return RFLEX_DRIVERS_NO_REASON;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
         break;
     default:
         switch (byte) {
-        case 0x01:
+        case 0x01U:
             value = 0x7CU;
             break;
         default:
@@ -3259,7 +3360,8 @@ static uint8_t rflex_drivers_flex_search(struct rflex_drivers_flex_decoder *deco
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t reason = rflex_drivers_flex_pass(decoder, index < held ? (uint8_t)(index == 0U ? 0x1B : 0x03) : byte);
+        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
+        const uint8_t reason = rflex_drivers_flex_pass(decoder, next);
         if (reason != RFLEX_DRIVERS_NO_REASON) {
             return reason;
         }
@@ -3276,7 +3378,8 @@ static uint8_t rflex_drivers_flex_take(struct rflex_drivers_flex_decoder *decode
         decoder->behind = 2;
         reason = RFLEX_DRIVERS_TRUNCATED;
     } else {
-        reason = (decoder->wire > 2U) ? rflex_drivers_flex_search(decoder, byte) : rflex_drivers_flex_pass(decoder, byte);
+        reason = (decoder->wire > 2U) ? rflex_drivers_flex_search(decoder, byte)
+                                      : rflex_drivers_flex_pass(decoder, byte);
     }
     if (reason == RFLEX_DRIVERS_NO_REASON && decoder->wire >= 780U) {
         reason = RFLEX_DRIVERS_LENGTH;
@@ -3306,14 +3409,14 @@ static void rflex_drivers_flex_seek_on(struct rflex_drivers_flex_decoder *decode
 /* Open a candidate with a start that was seen. */
 static void rflex_drivers_flex_reopen(struct rflex_drivers_flex_decoder *decoder) {
     rflex_drivers_flex_open(decoder);
-    (void)rflex_drivers_flex_take(decoder, 0x1B);
-    (void)rflex_drivers_flex_take(decoder, 0x02);
+    (void)rflex_drivers_flex_take(decoder, 0x1BU);
+    (void)rflex_drivers_flex_take(decoder, 0x02U);
 }
 
-static void rflex_drivers_flex_judge(struct rflex_drivers_flex_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void rflex_drivers_flex_judge(struct rflex_drivers_flex_decoder *decoder, uint8_t reason,
+                                     uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
-    (void)reason;
     if (reason == RFLEX_DRIVERS_FRAME) {
         rflex_drivers_flex_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -3377,15 +3480,20 @@ void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder,
 
 #if RFLEX_DRIVERS_FAST_FEED
 
-/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the wire;
-   0 where something stands in between that `push` has to look at. */
-static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size, size_t from, size_t at, size_t need) {
+/* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
+   wire; 0 where something stands in between that `push` has to look at. */
+static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *decoder,
+                                            const uint8_t *data, size_t size, size_t from,
+                                            size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
 #if RFLEX_DRIVERS_SSE2
     while (need - at >= 16U && size - from >= 16U) {
         const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        const __m128i found = _mm_or_si128(_mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1B)), _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7C)));
-        unsigned int marks = (unsigned int)_mm_movemask_epi8(found);
+        __m128i found = _mm_setzero_si128();
+        unsigned int marks;
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
+        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+        marks = (unsigned int)_mm_movemask_epi8(found);
         _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
         if (marks != 0U) {
             for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
@@ -3403,7 +3511,7 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
         while (need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) != 0U) {
+            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) != 0U) {
                 break;
             }
             memcpy(&buffer[at], &word, 8);
@@ -3413,7 +3521,7 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1B) | RFLEX_DRIVERS_HAS(word, 0x7C)) == 0U) {
+            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) == 0U) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -3428,17 +3536,17 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
         byte = data[from];
         from++;
         switch (byte) {
-        case 0x1B:
-            if (size - from >= 1U && data[from] == 0x00) {
-                byte = 0x1B;
+        case 0x1BU:
+            if (size - from >= 1U && data[from] == 0x00U) {
+                byte = 0x1BU;
                 from += 1U;
             } else {
                 return 0;
             }
             break;
-        case 0x7C:
-            if (size - from >= 2U && data[from] == 0x1B && data[from + 1U] == 0x01) {
-                byte = 0x7C;
+        case 0x7CU:
+            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+                byte = 0x7CU;
                 from += 2U;
             } else {
                 return 0;
@@ -3455,14 +3563,15 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *decoder,
+                                            const uint8_t *data, size_t size) {
     const uint8_t *const content = decoder->buffer;
     size_t payload;
     size_t wire;
     if (size < 9U) {
         return 0;
     }
-    if (data[0] != 0x1B || data[1] != 0x02) {
+    if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
     decoder->buffer[0] = data[0];
@@ -3480,7 +3589,7 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
     if (wire == 0U) {
         return 0;
     }
-    if (size - wire < 2U || data[wire] != 0x1B || data[wire + 1U] != 0x03) {
+    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
         return 0;
     }
     wire += 2U;
@@ -3499,7 +3608,8 @@ static bool rflex_drivers_flex_is_idle(const struct rflex_drivers_flex_decoder *
 }
 #endif
 
-void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size) {
+void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
+                                     const uint8_t *data, size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -3521,7 +3631,8 @@ static void rflex_drivers_flex_reset(struct rflex_drivers_flex_decoder *decoder)
     rflex_drivers_flex_seek_on(decoder);
 }
 
-void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder, rflex_drivers_flex_handler handler, void *user) {
+void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
+                                     rflex_drivers_flex_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -3547,7 +3658,7 @@ void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder
 }
 #ifndef RFLEX_DRIVERS_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void rflex_drivers_linux_dispatch(void *user, const struct rflex_drivers_linux_event *event) {
     switch (event->message) {
@@ -3721,89 +3832,89 @@ void rflex_drivers_flex_dispatch(void *user, const struct rflex_drivers_flex_eve
 
 #if defined(__GNUC__) || defined(__clang__)
 
-__attribute__((weak)) void rflex_drivers_on_request_system_status(void *user,
-                                                                  const struct rflex_drivers_request_system_status *message,
-                                                                  const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_request_system_status(
+    void *user, const struct rflex_drivers_request_system_status *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_axis_get_system(void *user,
-                                                            const struct rflex_drivers_axis_get_system *message,
-                                                            const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_axis_get_system(
+    void *user, const struct rflex_drivers_axis_get_system *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_motor_command(void *user,
-                                                          const struct rflex_drivers_motor_command *message,
-                                                          const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_motor_command(
+    void *user, const struct rflex_drivers_motor_command *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_set_defaults(void *user,
-                                                         const struct rflex_drivers_set_defaults *message,
-                                                         const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_set_defaults(
+    void *user, const struct rflex_drivers_set_defaults *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_brake_set(void *user,
-                                                      const struct rflex_drivers_brake_set *message,
-                                                      const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_brake_set(
+    void *user, const struct rflex_drivers_brake_set *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_brake_release(void *user,
-                                                          const struct rflex_drivers_brake_release *message,
-                                                          const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_brake_release(
+    void *user, const struct rflex_drivers_brake_release *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_start_stop_motor_packets(void *user,
-                                                                     const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                     const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_start_stop_motor_packets(
+    void *user, const struct rflex_drivers_start_stop_motor_packets *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_request_joystick_data(void *user,
-                                                                  const struct rflex_drivers_request_joystick_data *message,
-                                                                  const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_request_joystick_data(
+    void *user, const struct rflex_drivers_request_joystick_data *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_start_stop_sonar_packets(void *user,
-                                                                     const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                     const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_start_stop_sonar_packets(
+    void *user, const struct rflex_drivers_start_stop_sonar_packets *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_initialize_digital_io(void *user,
-                                                                  const struct rflex_drivers_initialize_digital_io *message,
-                                                                  const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_initialize_digital_io(
+    void *user, const struct rflex_drivers_initialize_digital_io *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_check_io_changed(void *user,
-                                                             const struct rflex_drivers_check_io_changed *message,
-                                                             const struct rflex_drivers_linux_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_check_io_changed(
+    void *user, const struct rflex_drivers_check_io_changed *message,
+    const struct rflex_drivers_linux_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3817,9 +3928,9 @@ __attribute__((weak)) void rflex_drivers_on_ir_run(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_system_status(void *user,
-                                                          const struct rflex_drivers_system_status *message,
-                                                          const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_system_status(
+    void *user, const struct rflex_drivers_system_status *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -3833,97 +3944,97 @@ __attribute__((weak)) void rflex_drivers_on_lcd_dump(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_confirm_motor_command(void *user,
-                                                                  const struct rflex_drivers_confirm_motor_command *message,
-                                                                  const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_confirm_motor_command(
+    void *user, const struct rflex_drivers_confirm_motor_command *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_brake_release_answer(void *user,
-                                                                 const struct rflex_drivers_brake_release_answer *message,
-                                                                 const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_brake_release_answer(
+    void *user, const struct rflex_drivers_brake_release_answer *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_read_motor(void *user,
-                                                       const struct rflex_drivers_read_motor *message,
-                                                       const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_read_motor(
+    void *user, const struct rflex_drivers_read_motor *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_confirm_start_stop_motor_packets(void *user,
-                                                                             const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                             const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_confirm_start_stop_motor_packets(
+    void *user, const struct rflex_drivers_confirm_start_stop_motor_packets *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_joystick_data(void *user,
-                                                          const struct rflex_drivers_joystick_data *message,
-                                                          const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_joystick_data(
+    void *user, const struct rflex_drivers_joystick_data *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_confirm_start_stop_sonar_packets(void *user,
-                                                                             const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                             const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_confirm_start_stop_sonar_packets(
+    void *user, const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_sonar_data(void *user,
-                                                       const struct rflex_drivers_sonar_data *message,
-                                                       const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_sonar_data(
+    void *user, const struct rflex_drivers_sonar_data *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_confirm_initialize_digital_io(void *user,
-                                                                          const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                          const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_confirm_initialize_digital_io(
+    void *user, const struct rflex_drivers_confirm_initialize_digital_io *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_changed_bumpers(void *user,
-                                                            const struct rflex_drivers_changed_bumpers *message,
-                                                            const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_changed_bumpers(
+    void *user, const struct rflex_drivers_changed_bumpers *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_check_io_changed_answer(void *user,
-                                                                    const struct rflex_drivers_check_io_changed_answer *message,
-                                                                    const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_check_io_changed_answer(
+    void *user, const struct rflex_drivers_check_io_changed_answer *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_changed_byte(void *user,
-                                                         const struct rflex_drivers_changed_byte *message,
-                                                         const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_changed_byte(
+    void *user, const struct rflex_drivers_changed_byte *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_drivers_on_ir_report(void *user,
-                                                      const struct rflex_drivers_ir_report *message,
-                                                      const struct rflex_drivers_flex_parts *parts) {
+__attribute__((weak)) void rflex_drivers_on_ir_report(
+    void *user, const struct rflex_drivers_ir_report *message,
+    const struct rflex_drivers_flex_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

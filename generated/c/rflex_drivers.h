@@ -28,7 +28,7 @@ enum rflex_drivers_result {
     RFLEX_DRIVERS_OK = 0,
     /** Too few or too many bytes. */
     RFLEX_DRIVERS_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     RFLEX_DRIVERS_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     RFLEX_DRIVERS_ERROR_ENCODING,
@@ -69,7 +69,7 @@ enum rflex_drivers_message {
     RFLEX_DRIVERS_NO_MESSAGE = 26
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** System status brake (003_037af2f07b705118.txt, line 61). */
 enum rflex_drivers_system_status_brake {
@@ -107,16 +107,16 @@ enum rflex_drivers_ir_run_mode {
 };
 
 /** Axes that report; none stops the reports (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ). */
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_MASK_LINEAR 0x01u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_MASK_ANGULAR 0x02u
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_MASK_LINEAR 0x01U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_MASK_ANGULAR 0x02U
 
 /** Joystick data buttons (003_037af2f07b705118.txt, line 171). */
-#define RFLEX_DRIVERS_JOYSTICK_DATA_BUTTONS_LEFT_BUTTON 0x01u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_BUTTONS_TOP_BUTTON 0x02u
+#define RFLEX_DRIVERS_JOYSTICK_DATA_BUTTONS_LEFT_BUTTON 0x01U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_BUTTONS_TOP_BUTTON 0x02U
 
-/* --- sonar_data_readings ----------------------------------------------------------------------- */
+/* --- sonar_data_readings ---------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_SONAR_DATA_READINGS_DISTANCE_INVALID 32766u
+#define RFLEX_DRIVERS_SONAR_DATA_READINGS_DISTANCE_INVALID 32766U
 
 /** Sonar data readings (003_037af2f07b705118.txt, lines 226-229). */
 struct rflex_drivers_sonar_data_readings {
@@ -146,13 +146,13 @@ static inline uint16_t rflex_drivers_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- request_system_status --------------------------------------------------------------------- */
+/* --- request_system_status -------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_ID_CLASS_ID 0x01u
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_ID_SUBCLASS 0x01u
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0u
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0u
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_ID_CLASS_ID 0x01U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_ID_SUBCLASS 0x01U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_SIZE 0U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MIN 0U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_PAYLOAD_MAX 0U
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_SPEC_HASH "d6f6763c57c85532c4936ef7416932abedfab639224571ae4191c4b63e212c3d"
 
 /** Requests the system status (003_037af2f07b705118.txt, lines 52, 55). */
@@ -161,22 +161,21 @@ struct rflex_drivers_request_system_status {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_request_system_status_encode(const struct rflex_drivers_request_system_status *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_system_status_decode(struct rflex_drivers_request_system_status *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size);
+enum rflex_drivers_result rflex_drivers_request_system_status_encode(
+    const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_request_system_status_decode(
+    struct rflex_drivers_request_system_status *message, const uint8_t *payload, size_t size);
 void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
                                               const uint8_t *payload);
 
-/* --- system_status ----------------------------------------------------------------------------- */
+/* --- system_status ---------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_SYSTEM_STATUS_ID_CLASS_ID 0x01u
-#define RFLEX_DRIVERS_SYSTEM_STATUS_ID_SUBCLASS 0x01u
-#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_SIZE 9u
-#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MIN 9u
-#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MAX 9u
+#define RFLEX_DRIVERS_SYSTEM_STATUS_ID_CLASS_ID 0x01U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_ID_SUBCLASS 0x01U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_SIZE 9U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MIN 9U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_PAYLOAD_MAX 9U
 #define RFLEX_DRIVERS_SYSTEM_STATUS_SPEC_HASH "6f69938e34a86b398a451512f6cf826326f247453e5f4a23df80266f6ff75a6c"
 #define RFLEX_DRIVERS_SYSTEM_STATUS_BATTERY_VOLTAGE_SCALE_NUM 1
 #define RFLEX_DRIVERS_SYSTEM_STATUS_BATTERY_VOLTAGE_SCALE_DEN 100
@@ -195,20 +194,20 @@ struct rflex_drivers_system_status {
     uint8_t brake;
 };
 
-enum rflex_drivers_result rflex_drivers_system_status_encode(const struct rflex_drivers_system_status *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size);
-enum rflex_drivers_result rflex_drivers_system_status_decode(struct rflex_drivers_system_status *message,
-                                                             const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_system_status_encode(
+    const struct rflex_drivers_system_status *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_system_status_decode(
+    struct rflex_drivers_system_status *message, const uint8_t *payload, size_t size);
 void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
                                       const uint8_t *payload);
 
-/* --- lcd_dump ---------------------------------------------------------------------------------- */
+/* --- lcd_dump --------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_LCD_DUMP_ID_CLASS_ID 0x01u
-#define RFLEX_DRIVERS_LCD_DUMP_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MIN 6u
-#define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MAX 255u
+#define RFLEX_DRIVERS_LCD_DUMP_ID_CLASS_ID 0x01U
+#define RFLEX_DRIVERS_LCD_DUMP_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MIN 6U
+#define RFLEX_DRIVERS_LCD_DUMP_PAYLOAD_MAX 255U
 #define RFLEX_DRIVERS_LCD_DUMP_SPEC_HASH "49388eda07bb143bdc9960596783fb6a1b91d905ee7c099b665a19f4521bea7d"
 
 /** One row of the display (rflex-protocol.txt, SYS_LCD_DUMP). */
@@ -226,21 +225,20 @@ struct rflex_drivers_lcd_dump {
     uint8_t pixels[249];
 };
 
-enum rflex_drivers_result rflex_drivers_lcd_dump_encode(const struct rflex_drivers_lcd_dump *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
+enum rflex_drivers_result rflex_drivers_lcd_dump_encode(
+    const struct rflex_drivers_lcd_dump *message, uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_drivers_result rflex_drivers_lcd_dump_decode(struct rflex_drivers_lcd_dump *message,
                                                         const uint8_t *payload, size_t size);
 void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message, const uint8_t *payload,
                                  size_t size);
 
-/* --- axis_get_system --------------------------------------------------------------------------- */
+/* --- axis_get_system -------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_SIZE 1u
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MIN 1u
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MAX 1u
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_SIZE 1U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MIN 1U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_PAYLOAD_MAX 1U
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_SPEC_HASH "a0f780b381c972046d4069a5e2b48043d858aa1757ec175c8f5d7b0256db9572"
 
 /** Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75). */
@@ -249,21 +247,21 @@ struct rflex_drivers_axis_get_system {
     uint8_t axis;
 };
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_encode(const struct rflex_drivers_axis_get_system *message,
-                                                               uint8_t *payload, size_t capacity,
-                                                               size_t *size);
-enum rflex_drivers_result rflex_drivers_axis_get_system_decode(struct rflex_drivers_axis_get_system *message,
-                                                               const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
+    const struct rflex_drivers_axis_get_system *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
+    struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size);
 void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
                                         const uint8_t *payload);
 
-/* --- motor_command ----------------------------------------------------------------------------- */
+/* --- motor_command ---------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_MOTOR_COMMAND_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_MOTOR_COMMAND_ID_SUBCLASS 0x07u
-#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_SIZE 14u
-#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MIN 14u
-#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MAX 14u
+#define RFLEX_DRIVERS_MOTOR_COMMAND_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_ID_SUBCLASS 0x07U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_SIZE 14U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MIN 14U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_PAYLOAD_MAX 14U
 #define RFLEX_DRIVERS_MOTOR_COMMAND_SPEC_HASH "23ac316a17a981cc6238d4a6e71c7bc336277f6b4ba59ef1c110897108b8c830"
 
 /** Sets the velocity of one axis (003_037af2f07b705118.txt, lines 79, 83-89). */
@@ -286,21 +284,21 @@ struct rflex_drivers_motor_command {
     uint8_t direction;
 };
 
-enum rflex_drivers_result rflex_drivers_motor_command_encode(const struct rflex_drivers_motor_command *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size);
-enum rflex_drivers_result rflex_drivers_motor_command_decode(struct rflex_drivers_motor_command *message,
-                                                             const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_motor_command_encode(
+    const struct rflex_drivers_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_motor_command_decode(
+    struct rflex_drivers_motor_command *message, const uint8_t *payload, size_t size);
 void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
                                       const uint8_t *payload);
 
-/* --- confirm_motor_command --------------------------------------------------------------------- */
+/* --- confirm_motor_command -------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_ID_SUBCLASS 0x07u
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9u
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9u
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9u
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_ID_SUBCLASS 0x07U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_SIZE 9U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MIN 9U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_PAYLOAD_MAX 9U
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_SPEC_HASH "3ca66b4ae9df90e0b5a7f73c0a440322a4029558d515dd75e12184b4051481af"
 
 /** Confirms a motor command (003_037af2f07b705118.txt, lines 80, 92-95). */
@@ -316,22 +314,21 @@ struct rflex_drivers_confirm_motor_command {
     uint8_t axis;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(const struct rflex_drivers_confirm_motor_command *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(struct rflex_drivers_confirm_motor_command *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size);
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
+    struct rflex_drivers_confirm_motor_command *message, const uint8_t *payload, size_t size);
 void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor_command *message,
                                               const uint8_t *payload);
 
-/* --- set_defaults ------------------------------------------------------------------------------ */
+/* --- set_defaults ----------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_SET_DEFAULTS_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_SET_DEFAULTS_ID_SUBCLASS 0x0Au
-#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_SIZE 0u
-#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MIN 0u
-#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_SET_DEFAULTS_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_SET_DEFAULTS_ID_SUBCLASS 0x0AU
+#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_SIZE 0U
+#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MIN 0U
+#define RFLEX_DRIVERS_SET_DEFAULTS_PAYLOAD_MAX 0U
 #define RFLEX_DRIVERS_SET_DEFAULTS_SPEC_HASH "331dc1874e44c21540bd0a7bd437fa833e644a317fca702ac2490b670399df50"
 
 /** Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295). */
@@ -340,21 +337,21 @@ struct rflex_drivers_set_defaults {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_set_defaults_encode(const struct rflex_drivers_set_defaults *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size);
-enum rflex_drivers_result rflex_drivers_set_defaults_decode(struct rflex_drivers_set_defaults *message,
-                                                            const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_set_defaults_encode(
+    const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_set_defaults_decode(
+    struct rflex_drivers_set_defaults *message, const uint8_t *payload, size_t size);
 void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
                                      const uint8_t *payload);
 
-/* --- brake_set --------------------------------------------------------------------------------- */
+/* --- brake_set -------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_BRAKE_SET_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_BRAKE_SET_ID_SUBCLASS 0x0Bu
-#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_SIZE 0u
-#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MIN 0u
-#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_BRAKE_SET_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_BRAKE_SET_ID_SUBCLASS 0x0BU
+#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_SIZE 0U
+#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MIN 0U
+#define RFLEX_DRIVERS_BRAKE_SET_PAYLOAD_MAX 0U
 #define RFLEX_DRIVERS_BRAKE_SET_SPEC_HASH "4401cd64cb9a2ca5864d7f599ad76220a0b04b04b4d52eb3104ddff4d4bb7c57"
 
 /** Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET). */
@@ -363,20 +360,19 @@ struct rflex_drivers_brake_set {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_set_encode(const struct rflex_drivers_brake_set *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_set_encode(
+    const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_brake_set *message,
                                                          const uint8_t *payload, size_t size);
 void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload);
 
-/* --- brake_release ----------------------------------------------------------------------------- */
+/* --- brake_release ---------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ID_SUBCLASS 0x0Cu
-#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_SIZE 0u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MIN 0u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ID_SUBCLASS 0x0CU
+#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_SIZE 0U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MIN 0U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_PAYLOAD_MAX 0U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_SPEC_HASH "1f9ec56928e572d49d393a26172348d3f39304387a211b910a9ffc8e0eede26b"
 
 /** Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296). */
@@ -385,21 +381,21 @@ struct rflex_drivers_brake_release {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_release_encode(const struct rflex_drivers_brake_release *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_decode(struct rflex_drivers_brake_release *message,
-                                                             const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_brake_release_encode(
+    const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_release_decode(
+    struct rflex_drivers_brake_release *message, const uint8_t *payload, size_t size);
 void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
                                       const uint8_t *payload);
 
-/* --- brake_release_answer ---------------------------------------------------------------------- */
+/* --- brake_release_answer --------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_ID_SUBCLASS 0x0Cu
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_SIZE 8u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_ID_SUBCLASS 0x0CU
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_SIZE 8U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_PAYLOAD_MAX 8U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_SPEC_HASH "430540901eca06317db6faf09d6721d0ae4315c8d695e0335d108911f974cd66"
 
 /** Answers the release of the brake (003_037af2f07b705118.txt, lines 108, 117-119). */
@@ -413,22 +409,21 @@ struct rflex_drivers_brake_release_answer {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(const struct rflex_drivers_brake_release_answer *message,
-                                                                    uint8_t *payload,
-                                                                    size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(struct rflex_drivers_brake_release_answer *message,
-                                                                    const uint8_t *payload,
-                                                                    size_t size);
+enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(
+    struct rflex_drivers_brake_release_answer *message, const uint8_t *payload, size_t size);
 void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_answer *message,
                                              const uint8_t *payload);
 
-/* --- read_motor -------------------------------------------------------------------------------- */
+/* --- read_motor ------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_READ_MOTOR_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_READ_MOTOR_ID_SUBCLASS 0x21u
-#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_SIZE 25u
-#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MIN 25u
-#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MAX 25u
+#define RFLEX_DRIVERS_READ_MOTOR_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_READ_MOTOR_ID_SUBCLASS 0x21U
+#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_SIZE 25U
+#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MIN 25U
+#define RFLEX_DRIVERS_READ_MOTOR_PAYLOAD_MAX 25U
 #define RFLEX_DRIVERS_READ_MOTOR_SPEC_HASH "3a1e49b2023b6279334c376ce2a3d5e5ed90528bbf4875804d9956812d5e5af0"
 
 /** State of one axis, sent while motor packets are on (003_037af2f07b705118.txt, lines 125-133). */
@@ -452,21 +447,21 @@ struct rflex_drivers_read_motor {
     int32_t torque;
 };
 
-enum rflex_drivers_result rflex_drivers_read_motor_encode(const struct rflex_drivers_read_motor *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size);
+enum rflex_drivers_result rflex_drivers_read_motor_encode(
+    const struct rflex_drivers_read_motor *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_drivers_result rflex_drivers_read_motor_decode(struct rflex_drivers_read_motor *message,
                                                           const uint8_t *payload, size_t size);
 void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
                                    const uint8_t *payload);
 
-/* --- start_stop_motor_packets ------------------------------------------------------------------ */
+/* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_SPEC_HASH "2b2edc8680e95a55bb034f9a3143a06e84a4ddf752478220b9a340a4df61b2df"
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_PERIOD_UNIT "us"
 
@@ -481,23 +476,21 @@ struct rflex_drivers_start_stop_motor_packets {
     uint32_t mask;
 };
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                        uint8_t *payload,
-                                                                        size_t capacity,
-                                                                        size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(struct rflex_drivers_start_stop_motor_packets *message,
-                                                                        const uint8_t *payload,
-                                                                        size_t size);
-void rflex_drivers_start_stop_motor_packets_load(struct rflex_drivers_start_stop_motor_packets *message,
-                                                 const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(
+    struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
+void rflex_drivers_start_stop_motor_packets_load(
+    struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload);
 
-/* --- confirm_start_stop_motor_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_ID_CLASS_ID 0x02U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_ID_SUBCLASS 0x22U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_SPEC_HASH "568c8e3d73ceb23eabe0dab08301a84fe6f1d3fbea34b120fda0bac5df29f526"
 
 /**
@@ -513,23 +506,22 @@ struct rflex_drivers_confirm_start_stop_motor_packets {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                                uint8_t *payload,
-                                                                                size_t capacity,
-                                                                                size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                                const uint8_t *payload,
-                                                                                size_t size);
-void rflex_drivers_confirm_start_stop_motor_packets_load(struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                         const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
+    struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload,
+    size_t size);
+void rflex_drivers_confirm_start_stop_motor_packets_load(
+    struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload);
 
-/* --- request_joystick_data --------------------------------------------------------------------- */
+/* --- request_joystick_data -------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_ID_CLASS_ID 0x03u
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0u
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0u
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0u
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_ID_CLASS_ID 0x03U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_SIZE 0U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MIN 0U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_PAYLOAD_MAX 0U
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_SPEC_HASH "5e127e8a3df4f5786fc36368a5535d5e2aed606ef632ee0092b954dd7714301d"
 
 /** Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160). */
@@ -538,22 +530,21 @@ struct rflex_drivers_request_joystick_data {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(const struct rflex_drivers_request_joystick_data *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(struct rflex_drivers_request_joystick_data *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size);
+enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
+    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload, size_t size);
 void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
                                               const uint8_t *payload);
 
-/* --- joystick_data ----------------------------------------------------------------------------- */
+/* --- joystick_data ---------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_JOYSTICK_DATA_ID_CLASS_ID 0x03u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_SIZE 13u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MIN 13u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MAX 13u
+#define RFLEX_DRIVERS_JOYSTICK_DATA_ID_CLASS_ID 0x03U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_SIZE 13U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MIN 13U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_PAYLOAD_MAX 13U
 #define RFLEX_DRIVERS_JOYSTICK_DATA_SPEC_HASH "fa2d5eb71f7ceb505a61d5f5e67e7634f9668ce02d92cabe5dab15f3d446907e"
 
 /** Position and buttons of the joystick (003_037af2f07b705118.txt, lines 157, 167-171). */
@@ -568,21 +559,21 @@ struct rflex_drivers_joystick_data {
     uint8_t buttons;
 };
 
-enum rflex_drivers_result rflex_drivers_joystick_data_encode(const struct rflex_drivers_joystick_data *message,
-                                                             uint8_t *payload, size_t capacity,
-                                                             size_t *size);
-enum rflex_drivers_result rflex_drivers_joystick_data_decode(struct rflex_drivers_joystick_data *message,
-                                                             const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_joystick_data_encode(
+    const struct rflex_drivers_joystick_data *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_joystick_data_decode(
+    struct rflex_drivers_joystick_data *message, const uint8_t *payload, size_t size);
 void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
                                       const uint8_t *payload);
 
-/* --- start_stop_sonar_packets ------------------------------------------------------------------ */
+/* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04u
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13u
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13u
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13u
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 13U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 13U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 13U
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_SPEC_HASH "69f77567e6d8999ed17a22d8552fa6f0eba786392f52adfdf6de9af2afa2f3b1"
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_ECHO_DELAY_UNIT "us"
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_PING_DELAY_UNIT "us"
@@ -603,23 +594,21 @@ struct rflex_drivers_start_stop_sonar_packets {
     uint8_t mode;
 };
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                        uint8_t *payload,
-                                                                        size_t capacity,
-                                                                        size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                        const uint8_t *payload,
-                                                                        size_t size);
-void rflex_drivers_start_stop_sonar_packets_load(struct rflex_drivers_start_stop_sonar_packets *message,
-                                                 const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(
+    struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
+void rflex_drivers_start_stop_sonar_packets_load(
+    struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload);
 
-/* --- confirm_start_stop_sonar_packets ---------------------------------------------------------- */
+/* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_ID_CLASS_ID 0x04U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_SIZE 8U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_PAYLOAD_MAX 8U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_SPEC_HASH "d2b89644b540c7d1f7b4a429e63f299b82e18807782ff83ba34836ea1beb87fb"
 
 /**
@@ -635,24 +624,23 @@ struct rflex_drivers_confirm_start_stop_sonar_packets {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                                uint8_t *payload,
-                                                                                size_t capacity,
-                                                                                size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                                const uint8_t *payload,
-                                                                                size_t size);
-void rflex_drivers_confirm_start_stop_sonar_packets_load(struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                         const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(
+    struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload,
+    size_t size);
+void rflex_drivers_confirm_start_stop_sonar_packets_load(
+    struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload);
 
-/* --- sonar_data -------------------------------------------------------------------------------- */
+/* --- sonar_data ------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_SONAR_DATA_ID_CLASS_ID 0x04u
-#define RFLEX_DRIVERS_SONAR_DATA_ID_SUBCLASS 0x02u
-#define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MAX 254u
+#define RFLEX_DRIVERS_SONAR_DATA_ID_CLASS_ID 0x04U
+#define RFLEX_DRIVERS_SONAR_DATA_ID_SUBCLASS 0x02U
+#define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_SONAR_DATA_PAYLOAD_MAX 254U
 #define RFLEX_DRIVERS_SONAR_DATA_SPEC_HASH "3f7b333d313afc422fadcd934ad297d22287b6f29eedc44922349b2160905f5a"
-#define RFLEX_DRIVERS_SONAR_DATA_RETVAL_DEFAULT 2u
+#define RFLEX_DRIVERS_SONAR_DATA_RETVAL_DEFAULT 2U
 
 /**
  * Readings of the sonars of one fire group (003_037af2f07b705118.txt, lines 180-182, 220-239).
@@ -674,29 +662,29 @@ struct rflex_drivers_sonar_data {
     struct rflex_drivers_sonar_data_readings readings[82];
 };
 
-enum rflex_drivers_result rflex_drivers_sonar_data_encode(const struct rflex_drivers_sonar_data *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size);
+enum rflex_drivers_result rflex_drivers_sonar_data_encode(
+    const struct rflex_drivers_sonar_data *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_sonar_data *message,
                                                           const uint8_t *payload, size_t size);
 void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, const uint8_t *payload,
                                    size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
-static inline void rflex_drivers_sonar_data_readings_at(const uint8_t *payload, size_t index,
-                                                        struct rflex_drivers_sonar_data_readings *out) {
+static inline void rflex_drivers_sonar_data_readings_at(
+    const uint8_t *payload, size_t index, struct rflex_drivers_sonar_data_readings *out) {
     const uint8_t *at = payload + 8 + 3 * index;
     out->cluster = at[0];
     out->distance = rflex_drivers_load_u16be(at + 1);
 }
 
-/* --- initialize_digital_io --------------------------------------------------------------------- */
+/* --- initialize_digital_io -------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4u
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4u
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4u
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 4U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 4U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 4U
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_SPEC_HASH "45cf8ac8343154455cd86dc5ef08a85d78043f7528feeff6127146f458ce065b"
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_PERIOD_UNIT "us"
 
@@ -712,22 +700,21 @@ struct rflex_drivers_initialize_digital_io {
     uint32_t period;
 };
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(const struct rflex_drivers_initialize_digital_io *message,
-                                                                     uint8_t *payload,
-                                                                     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(struct rflex_drivers_initialize_digital_io *message,
-                                                                     const uint8_t *payload,
-                                                                     size_t size);
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(
+    struct rflex_drivers_initialize_digital_io *message, const uint8_t *payload, size_t size);
 void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_digital_io *message,
                                               const uint8_t *payload);
 
-/* --- confirm_initialize_digital_io ------------------------------------------------------------- */
+/* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8u
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8u
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8u
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_SIZE 8U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MIN 8U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_PAYLOAD_MAX 8U
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_SPEC_HASH "12a591d4d8702a5e8f3cfbf573669df908429fe0570a918f219d28df1f47ee28"
 
 /**
@@ -744,23 +731,22 @@ struct rflex_drivers_confirm_initialize_digital_io {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                             uint8_t *payload,
-                                                                             size_t capacity,
-                                                                             size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                             const uint8_t *payload,
-                                                                             size_t size);
-void rflex_drivers_confirm_initialize_digital_io_load(struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                      const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(
+    struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload,
+    size_t size);
+void rflex_drivers_confirm_initialize_digital_io_load(
+    struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload);
 
-/* --- changed_bumpers --------------------------------------------------------------------------- */
+/* --- changed_bumpers -------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_ID_SUBCLASS 0x01u
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_SIZE 7u
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MIN 7u
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MAX 7u
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_ID_SUBCLASS 0x01U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_SIZE 7U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MIN 7U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_PAYLOAD_MAX 7U
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_SPEC_HASH "883540f43f52e215cfc6eee6882bfafa05cd15f1ddb5feb45f55a318485edbc5"
 
 /** Bumpers that have changed (003_037af2f07b705118.txt, lines 253, 257-258). */
@@ -776,21 +762,21 @@ struct rflex_drivers_changed_bumpers {
     uint16_t data;
 };
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(const struct rflex_drivers_changed_bumpers *message,
-                                                               uint8_t *payload, size_t capacity,
-                                                               size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(struct rflex_drivers_changed_bumpers *message,
-                                                               const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(
+    struct rflex_drivers_changed_bumpers *message, const uint8_t *payload, size_t size);
 void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *message,
                                         const uint8_t *payload);
 
-/* --- check_io_changed -------------------------------------------------------------------------- */
+/* --- check_io_changed ------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ID_SUBCLASS 0x02u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_SIZE 4u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MIN 4u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MAX 4u
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ID_SUBCLASS 0x02U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_SIZE 4U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MIN 4U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_PAYLOAD_MAX 4U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_SPEC_HASH "16ffdd660197f39642a97f179a56cd9f978c488969ab42ea93e34e1171382891"
 
 /** Asks whether digital inputs have changed (003_037af2f07b705118.txt, lines 261, 264-265). */
@@ -799,22 +785,21 @@ struct rflex_drivers_check_io_changed {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_encode(const struct rflex_drivers_check_io_changed *message,
-                                                                uint8_t *payload, size_t capacity,
-                                                                size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_decode(struct rflex_drivers_check_io_changed *message,
-                                                                const uint8_t *payload,
-                                                                size_t size);
+enum rflex_drivers_result rflex_drivers_check_io_changed_encode(
+    const struct rflex_drivers_check_io_changed *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_check_io_changed_decode(
+    struct rflex_drivers_check_io_changed *message, const uint8_t *payload, size_t size);
 void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *message,
                                          const uint8_t *payload);
 
-/* --- check_io_changed_answer ------------------------------------------------------------------- */
+/* --- check_io_changed_answer ------------------------------------------------------------------ */
 
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_ID_SUBCLASS 0x02u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12u
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_ID_SUBCLASS 0x02U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_SIZE 12U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MIN 12U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_PAYLOAD_MAX 12U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_SPEC_HASH "377257310f5b094378ab6bc1eed42b46911c166afb17089d81880f7adc85f3be"
 
 /** Says how many packets answer the check (003_037af2f07b705118.txt, lines 261, 269-273). */
@@ -833,23 +818,21 @@ struct rflex_drivers_check_io_changed_answer {
     uint32_t package_count;
 };
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                       uint8_t *payload,
-                                                                       size_t capacity,
-                                                                       size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(struct rflex_drivers_check_io_changed_answer *message,
-                                                                       const uint8_t *payload,
-                                                                       size_t size);
-void rflex_drivers_check_io_changed_answer_load(struct rflex_drivers_check_io_changed_answer *message,
-                                                const uint8_t *payload);
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(
+    struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload, size_t size);
+void rflex_drivers_check_io_changed_answer_load(
+    struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload);
 
-/* --- changed_byte ------------------------------------------------------------------------------ */
+/* --- changed_byte ----------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_CHANGED_BYTE_ID_CLASS_ID 0x05u
-#define RFLEX_DRIVERS_CHANGED_BYTE_ID_SUBCLASS 0x03u
-#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_SIZE 7u
-#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MIN 7u
-#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MAX 7u
+#define RFLEX_DRIVERS_CHANGED_BYTE_ID_CLASS_ID 0x05U
+#define RFLEX_DRIVERS_CHANGED_BYTE_ID_SUBCLASS 0x03U
+#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_SIZE 7U
+#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MIN 7U
+#define RFLEX_DRIVERS_CHANGED_BYTE_PAYLOAD_MAX 7U
 #define RFLEX_DRIVERS_CHANGED_BYTE_SPEC_HASH "ab39fa4d9dbea5c9c3997b64d55bf98027b8cd28086e5a95a6b3b65f488417fb"
 
 /** New value of a byte of the digital I/O (003_037af2f07b705118.txt, lines 275, 278-281). */
@@ -865,21 +848,21 @@ struct rflex_drivers_changed_byte {
     uint16_t data;
 };
 
-enum rflex_drivers_result rflex_drivers_changed_byte_encode(const struct rflex_drivers_changed_byte *message,
-                                                            uint8_t *payload, size_t capacity,
-                                                            size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_byte_decode(struct rflex_drivers_changed_byte *message,
-                                                            const uint8_t *payload, size_t size);
+enum rflex_drivers_result rflex_drivers_changed_byte_encode(
+    const struct rflex_drivers_changed_byte *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_changed_byte_decode(
+    struct rflex_drivers_changed_byte *message, const uint8_t *payload, size_t size);
 void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
                                      const uint8_t *payload);
 
-/* --- ir_run ------------------------------------------------------------------------------------ */
+/* --- ir_run ----------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_IR_RUN_ID_CLASS_ID 0x06u
-#define RFLEX_DRIVERS_IR_RUN_ID_SUBCLASS 0x00u
-#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_SIZE 21u
-#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MIN 21u
-#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MAX 21u
+#define RFLEX_DRIVERS_IR_RUN_ID_CLASS_ID 0x06U
+#define RFLEX_DRIVERS_IR_RUN_ID_SUBCLASS 0x00U
+#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_SIZE 21U
+#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MIN 21U
+#define RFLEX_DRIVERS_IR_RUN_PAYLOAD_MAX 21U
 #define RFLEX_DRIVERS_IR_RUN_SPEC_HASH "d3a807bbb2b43e6530e296c5d751268dc6ee59e7e0a08ab8db62a8fc82dcb514"
 
 /** Starts or stops the infrared sensors (rflex_commands.cc, rflex_ir_on, rflex_ir_off). */
@@ -908,12 +891,12 @@ enum rflex_drivers_result rflex_drivers_ir_run_decode(struct rflex_drivers_ir_ru
                                                       const uint8_t *payload, size_t size);
 void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8_t *payload);
 
-/* --- ir_report --------------------------------------------------------------------------------- */
+/* --- ir_report -------------------------------------------------------------------------------- */
 
-#define RFLEX_DRIVERS_IR_REPORT_ID_CLASS_ID 0x06u
-#define RFLEX_DRIVERS_IR_REPORT_ID_SUBCLASS 0x01u
-#define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MIN 1u
-#define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MAX 255u
+#define RFLEX_DRIVERS_IR_REPORT_ID_CLASS_ID 0x06U
+#define RFLEX_DRIVERS_IR_REPORT_ID_SUBCLASS 0x01U
+#define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MIN 1U
+#define RFLEX_DRIVERS_IR_REPORT_PAYLOAD_MAX 255U
 #define RFLEX_DRIVERS_IR_REPORT_SPEC_HASH "4a7de9333078fa9e487b9043f2fd8178eed4689c0a1bf5d46059cb743ac8fa7c"
 
 /**
@@ -928,15 +911,14 @@ struct rflex_drivers_ir_report {
     uint8_t data[255];
 };
 
-enum rflex_drivers_result rflex_drivers_ir_report_encode(const struct rflex_drivers_ir_report *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size);
+enum rflex_drivers_result rflex_drivers_ir_report_encode(
+    const struct rflex_drivers_ir_report *message, uint8_t *payload, size_t capacity, size_t *size);
 enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir_report *message,
                                                          const uint8_t *payload, size_t size);
 void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message, const uint8_t *payload,
                                   size_t size);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -950,29 +932,28 @@ void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message, const
 typedef void (*rflex_drivers_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13u
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23u
-enum rflex_drivers_result rflex_drivers_request_system_status_frame(const struct rflex_drivers_request_system_status *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_system_status_send(const struct rflex_drivers_request_system_status *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user);
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
+enum rflex_drivers_result rflex_drivers_request_system_status_frame(
+    const struct rflex_drivers_request_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_request_system_status_send(
+    const struct rflex_drivers_request_system_status *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38u
-#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 50u
-enum rflex_drivers_result rflex_drivers_system_status_frame(const struct rflex_drivers_system_status *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_system_status_send(const struct rflex_drivers_system_status *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user);
+#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 50U
+enum rflex_drivers_result rflex_drivers_system_status_frame(
+    const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_system_status_send(
+    const struct rflex_drivers_system_status *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_LCD_DUMP_FRAME_MAX 776u
-#define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 788u
+#define RFLEX_DRIVERS_LCD_DUMP_FRAME_MAX 776U
+#define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 788U
 enum rflex_drivers_result rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
                                                        uint8_t number, uint8_t *frame,
                                                        size_t capacity, size_t *size);
@@ -981,240 +962,218 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers
                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_MAX 14u
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 26u
-enum rflex_drivers_result rflex_drivers_axis_get_system_frame(const struct rflex_drivers_axis_get_system *message,
-                                                              uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_axis_get_system_send(const struct rflex_drivers_axis_get_system *message,
-                                                             uint8_t number, rflex_drivers_put put,
-                                                             void *user);
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_MAX 14U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 26U
+enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
+    const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_axis_get_system_send(
+    const struct rflex_drivers_axis_get_system *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_MAX 53u
-#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 65u
-enum rflex_drivers_result rflex_drivers_motor_command_frame(const struct rflex_drivers_motor_command *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_motor_command_send(const struct rflex_drivers_motor_command *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user);
+#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_MAX 53U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 65U
+enum rflex_drivers_result rflex_drivers_motor_command_frame(
+    const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_motor_command_send(
+    const struct rflex_drivers_motor_command *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_MAX 38u
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50u
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(const struct rflex_drivers_confirm_motor_command *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(const struct rflex_drivers_confirm_motor_command *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user);
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_MAX 38U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
+    const struct rflex_drivers_confirm_motor_command *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11u
-#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23u
-enum rflex_drivers_result rflex_drivers_set_defaults_frame(const struct rflex_drivers_set_defaults *message,
-                                                           uint8_t number, uint8_t *frame,
-                                                           size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_set_defaults_send(const struct rflex_drivers_set_defaults *message,
-                                                          uint8_t number, rflex_drivers_put put,
-                                                          void *user);
+#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11U
+#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23U
+enum rflex_drivers_result rflex_drivers_set_defaults_frame(
+    const struct rflex_drivers_set_defaults *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_set_defaults_send(
+    const struct rflex_drivers_set_defaults *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11u
-#define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23u
-enum rflex_drivers_result rflex_drivers_brake_set_frame(const struct rflex_drivers_brake_set *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_set_send(const struct rflex_drivers_brake_set *message,
-                                                       uint8_t number, rflex_drivers_put put,
-                                                       void *user);
+#define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11U
+#define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23U
+enum rflex_drivers_result rflex_drivers_brake_set_frame(
+    const struct rflex_drivers_brake_set *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_set_send(
+    const struct rflex_drivers_brake_set *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23u
-enum rflex_drivers_result rflex_drivers_brake_release_frame(const struct rflex_drivers_brake_release *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_send(const struct rflex_drivers_brake_release *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user);
+#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23U
+enum rflex_drivers_result rflex_drivers_brake_release_frame(
+    const struct rflex_drivers_brake_release *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_release_send(
+    const struct rflex_drivers_brake_release *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35u
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 47u
-enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(const struct rflex_drivers_brake_release_answer *message,
-                                                                   uint8_t number, uint8_t *frame,
-                                                                   size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_answer_send(const struct rflex_drivers_brake_release_answer *message,
-                                                                  uint8_t number,
-                                                                  rflex_drivers_put put,
-                                                                  void *user);
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 47U
+enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
+    const struct rflex_drivers_brake_release_answer *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_READ_MOTOR_FRAME_MAX 86u
-#define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 98u
-enum rflex_drivers_result rflex_drivers_read_motor_frame(const struct rflex_drivers_read_motor *message,
-                                                         uint8_t number, uint8_t *frame,
-                                                         size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_read_motor_send(const struct rflex_drivers_read_motor *message,
-                                                        uint8_t number, rflex_drivers_put put,
-                                                        void *user);
+#define RFLEX_DRIVERS_READ_MOTOR_FRAME_MAX 86U
+#define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 98U
+enum rflex_drivers_result rflex_drivers_read_motor_frame(
+    const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_read_motor_send(
+    const struct rflex_drivers_read_motor *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_MAX 35u
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47u
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                       uint8_t number,
-                                                                       uint8_t *frame,
-                                                                       size_t capacity,
-                                                                       size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(const struct rflex_drivers_start_stop_motor_packets *message,
-                                                                      uint8_t number,
-                                                                      rflex_drivers_put put,
-                                                                      void *user);
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
+    const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47u
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                               uint8_t number,
-                                                                               uint8_t *frame,
-                                                                               size_t capacity,
-                                                                               size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                                              uint8_t number,
-                                                                              rflex_drivers_put put,
-                                                                              void *user);
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
+    const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11u
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23u
-enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(const struct rflex_drivers_request_joystick_data *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_joystick_data_send(const struct rflex_drivers_request_joystick_data *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user);
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
+enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
+    const struct rflex_drivers_request_joystick_data *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50u
-#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 62u
-enum rflex_drivers_result rflex_drivers_joystick_data_frame(const struct rflex_drivers_joystick_data *message,
-                                                            uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_joystick_data_send(const struct rflex_drivers_joystick_data *message,
-                                                           uint8_t number, rflex_drivers_put put,
-                                                           void *user);
+#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 62U
+enum rflex_drivers_result rflex_drivers_joystick_data_frame(
+    const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_joystick_data_send(
+    const struct rflex_drivers_joystick_data *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_MAX 50u
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 62u
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                       uint8_t number,
-                                                                       uint8_t *frame,
-                                                                       size_t capacity,
-                                                                       size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(const struct rflex_drivers_start_stop_sonar_packets *message,
-                                                                      uint8_t number,
-                                                                      rflex_drivers_put put,
-                                                                      void *user);
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_MAX 50U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
+    const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35u
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47u
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                               uint8_t number,
-                                                                               uint8_t *frame,
-                                                                               size_t capacity,
-                                                                               size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                                              uint8_t number,
-                                                                              rflex_drivers_put put,
-                                                                              void *user);
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
+    const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_SONAR_DATA_FRAME_MAX 773u
-#define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 785u
-enum rflex_drivers_result rflex_drivers_sonar_data_frame(const struct rflex_drivers_sonar_data *message,
-                                                         uint8_t number, uint8_t *frame,
-                                                         size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_sonar_data_send(const struct rflex_drivers_sonar_data *message,
-                                                        uint8_t number, rflex_drivers_put put,
-                                                        void *user);
+#define RFLEX_DRIVERS_SONAR_DATA_FRAME_MAX 773U
+#define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 785U
+enum rflex_drivers_result rflex_drivers_sonar_data_frame(
+    const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_sonar_data_send(
+    const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_MAX 23u
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35u
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(const struct rflex_drivers_initialize_digital_io *message,
-                                                                    uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(const struct rflex_drivers_initialize_digital_io *message,
-                                                                   uint8_t number,
-                                                                   rflex_drivers_put put,
-                                                                   void *user);
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
+    const struct rflex_drivers_initialize_digital_io *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35u
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47u
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                            uint8_t number,
-                                                                            uint8_t *frame,
-                                                                            size_t capacity,
-                                                                            size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                                           uint8_t number,
-                                                                           rflex_drivers_put put,
-                                                                           void *user);
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
+    uint8_t *frame, size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
+    const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_MAX 32u
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 44u
-enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(const struct rflex_drivers_changed_bumpers *message,
-                                                              uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_bumpers_send(const struct rflex_drivers_changed_bumpers *message,
-                                                             uint8_t number, rflex_drivers_put put,
-                                                             void *user);
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_MAX 32U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 44U
+enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_MAX 23u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 35u
-enum rflex_drivers_result rflex_drivers_check_io_changed_frame(const struct rflex_drivers_check_io_changed *message,
-                                                               uint8_t number, uint8_t *frame,
-                                                               size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_send(const struct rflex_drivers_check_io_changed *message,
-                                                              uint8_t number, rflex_drivers_put put,
-                                                              void *user);
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_MAX 23U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 35U
+enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
+    const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_check_io_changed_send(
+    const struct rflex_drivers_check_io_changed *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47u
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59u
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                      uint8_t number,
-                                                                      uint8_t *frame,
-                                                                      size_t capacity,
-                                                                      size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(const struct rflex_drivers_check_io_changed_answer *message,
-                                                                     uint8_t number,
-                                                                     rflex_drivers_put put,
-                                                                     void *user);
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
+    const struct rflex_drivers_check_io_changed_answer *message, uint8_t number,
+    rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_MAX 32u
-#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 44u
-enum rflex_drivers_result rflex_drivers_changed_byte_frame(const struct rflex_drivers_changed_byte *message,
-                                                           uint8_t number, uint8_t *frame,
-                                                           size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_byte_send(const struct rflex_drivers_changed_byte *message,
-                                                          uint8_t number, rflex_drivers_put put,
-                                                          void *user);
+#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_MAX 32U
+#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 44U
+enum rflex_drivers_result rflex_drivers_changed_byte_frame(
+    const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
+    size_t capacity, size_t *size);
+enum rflex_drivers_result rflex_drivers_changed_byte_send(
+    const struct rflex_drivers_changed_byte *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_IR_RUN_FRAME_MAX 74u
-#define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 86u
+#define RFLEX_DRIVERS_IR_RUN_FRAME_MAX 74U
+#define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 86U
 enum rflex_drivers_result rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
                                                      uint8_t number, uint8_t *frame,
                                                      size_t capacity, size_t *size);
@@ -1223,16 +1182,16 @@ enum rflex_drivers_result rflex_drivers_ir_run_send(const struct rflex_drivers_i
                                                     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RFLEX_DRIVERS_IR_REPORT_FRAME_MAX 776u
-#define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788u
-enum rflex_drivers_result rflex_drivers_ir_report_frame(const struct rflex_drivers_ir_report *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_ir_report_send(const struct rflex_drivers_ir_report *message,
-                                                       uint8_t number, rflex_drivers_put put,
-                                                       void *user);
+#define RFLEX_DRIVERS_IR_REPORT_FRAME_MAX 776U
+#define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788U
+enum rflex_drivers_result rflex_drivers_ir_report_frame(
+    const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rflex_drivers_result rflex_drivers_ir_report_send(
+    const struct rflex_drivers_ir_report *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum rflex_drivers_event_kind {
@@ -1254,7 +1213,7 @@ enum rflex_drivers_reason {
     RFLEX_DRIVERS_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what linux sends -------------------------------------------------------------------- */
+/* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
 #define RFLEX_DRIVERS_LINUX_FRAME_MAX 780U
@@ -1284,7 +1243,8 @@ struct rflex_drivers_linux_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*rflex_drivers_linux_handler)(void *user, const struct rflex_drivers_linux_event *event);
+typedef void (*rflex_drivers_linux_handler)(void *user,
+                                            const struct rflex_drivers_linux_event *event);
 
 /**
  * Cuts what linux sends into events. Its members are nobody's business. It takes
@@ -1293,35 +1253,51 @@ typedef void (*rflex_drivers_linux_handler)(void *user, const struct rflex_drive
 struct rflex_drivers_linux_decoder {
     rflex_drivers_linux_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of a delimiter that are held back. */
     uint8_t held;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
 
 /** Start at the beginning of an input. */
-void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder, rflex_drivers_linux_handler handler, void *user);
+void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
+                                      rflex_drivers_linux_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder, const uint8_t *data, size_t size);
+void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder,
+                                      const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_drivers_linux_decoder_flush(struct rflex_drivers_linux_decoder *decoder);
 
-/* --- what flex sends -------------------------------------------------------------------- */
+/* --- what flex sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of flex on the wire, in bytes. */
 #define RFLEX_DRIVERS_FLEX_FRAME_MAX 780U
@@ -1351,7 +1327,8 @@ struct rflex_drivers_flex_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*rflex_drivers_flex_handler)(void *user, const struct rflex_drivers_flex_event *event);
+typedef void (*rflex_drivers_flex_handler)(void *user,
+                                           const struct rflex_drivers_flex_event *event);
 
 /**
  * Cuts what flex sends into events. Its members are nobody's business. It takes
@@ -1360,47 +1337,63 @@ typedef void (*rflex_drivers_flex_handler)(void *user, const struct rflex_driver
 struct rflex_drivers_flex_decoder {
     rflex_drivers_flex_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of the candidate that failed. */
     uint16_t failed;
+    /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Why the candidate failed. */
     uint8_t reason;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that the input ends with. */
     uint8_t match;
+    /** Bytes of a delimiter that are held back. */
     uint8_t held;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
 
 /** Start at the beginning of an input. */
-void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder, rflex_drivers_flex_handler handler, void *user);
+void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
+                                     rflex_drivers_flex_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder, const uint8_t *data, size_t size);
+void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
+                                     const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * RFLEX_DRIVERS_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining RFLEX_DRIVERS_NO_HANDLERS for the source.
  */
 
 /** request_system_status came from linux. */
-void rflex_drivers_on_request_system_status(void *user,
-                                            const struct rflex_drivers_request_system_status *message,
-                                            const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_request_system_status(
+    void *user, const struct rflex_drivers_request_system_status *message,
+    const struct rflex_drivers_linux_parts *parts);
 
 /** axis_get_system came from linux. */
 void rflex_drivers_on_axis_get_system(void *user,
@@ -1424,24 +1417,24 @@ void rflex_drivers_on_brake_release(void *user, const struct rflex_drivers_brake
                                     const struct rflex_drivers_linux_parts *parts);
 
 /** start_stop_motor_packets came from linux. */
-void rflex_drivers_on_start_stop_motor_packets(void *user,
-                                               const struct rflex_drivers_start_stop_motor_packets *message,
-                                               const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_start_stop_motor_packets(
+    void *user, const struct rflex_drivers_start_stop_motor_packets *message,
+    const struct rflex_drivers_linux_parts *parts);
 
 /** request_joystick_data came from linux. */
-void rflex_drivers_on_request_joystick_data(void *user,
-                                            const struct rflex_drivers_request_joystick_data *message,
-                                            const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_request_joystick_data(
+    void *user, const struct rflex_drivers_request_joystick_data *message,
+    const struct rflex_drivers_linux_parts *parts);
 
 /** start_stop_sonar_packets came from linux. */
-void rflex_drivers_on_start_stop_sonar_packets(void *user,
-                                               const struct rflex_drivers_start_stop_sonar_packets *message,
-                                               const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_start_stop_sonar_packets(
+    void *user, const struct rflex_drivers_start_stop_sonar_packets *message,
+    const struct rflex_drivers_linux_parts *parts);
 
 /** initialize_digital_io came from linux. */
-void rflex_drivers_on_initialize_digital_io(void *user,
-                                            const struct rflex_drivers_initialize_digital_io *message,
-                                            const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_initialize_digital_io(
+    void *user, const struct rflex_drivers_initialize_digital_io *message,
+    const struct rflex_drivers_linux_parts *parts);
 
 /** check_io_changed came from linux. */
 void rflex_drivers_on_check_io_changed(void *user,
@@ -1464,9 +1457,9 @@ void rflex_drivers_on_lcd_dump(void *user, const struct rflex_drivers_lcd_dump *
                                const struct rflex_drivers_flex_parts *parts);
 
 /** confirm_motor_command came from flex. */
-void rflex_drivers_on_confirm_motor_command(void *user,
-                                            const struct rflex_drivers_confirm_motor_command *message,
-                                            const struct rflex_drivers_flex_parts *parts);
+void rflex_drivers_on_confirm_motor_command(
+    void *user, const struct rflex_drivers_confirm_motor_command *message,
+    const struct rflex_drivers_flex_parts *parts);
 
 /** brake_release_answer came from flex. */
 void rflex_drivers_on_brake_release_answer(void *user,
@@ -1478,27 +1471,27 @@ void rflex_drivers_on_read_motor(void *user, const struct rflex_drivers_read_mot
                                  const struct rflex_drivers_flex_parts *parts);
 
 /** confirm_start_stop_motor_packets came from flex. */
-void rflex_drivers_on_confirm_start_stop_motor_packets(void *user,
-                                                       const struct rflex_drivers_confirm_start_stop_motor_packets *message,
-                                                       const struct rflex_drivers_flex_parts *parts);
+void rflex_drivers_on_confirm_start_stop_motor_packets(
+    void *user, const struct rflex_drivers_confirm_start_stop_motor_packets *message,
+    const struct rflex_drivers_flex_parts *parts);
 
 /** joystick_data came from flex. */
 void rflex_drivers_on_joystick_data(void *user, const struct rflex_drivers_joystick_data *message,
                                     const struct rflex_drivers_flex_parts *parts);
 
 /** confirm_start_stop_sonar_packets came from flex. */
-void rflex_drivers_on_confirm_start_stop_sonar_packets(void *user,
-                                                       const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
-                                                       const struct rflex_drivers_flex_parts *parts);
+void rflex_drivers_on_confirm_start_stop_sonar_packets(
+    void *user, const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
+    const struct rflex_drivers_flex_parts *parts);
 
 /** sonar_data came from flex. */
 void rflex_drivers_on_sonar_data(void *user, const struct rflex_drivers_sonar_data *message,
                                  const struct rflex_drivers_flex_parts *parts);
 
 /** confirm_initialize_digital_io came from flex. */
-void rflex_drivers_on_confirm_initialize_digital_io(void *user,
-                                                    const struct rflex_drivers_confirm_initialize_digital_io *message,
-                                                    const struct rflex_drivers_flex_parts *parts);
+void rflex_drivers_on_confirm_initialize_digital_io(
+    void *user, const struct rflex_drivers_confirm_initialize_digital_io *message,
+    const struct rflex_drivers_flex_parts *parts);
 
 /** changed_bumpers came from flex. */
 void rflex_drivers_on_changed_bumpers(void *user,
@@ -1506,9 +1499,9 @@ void rflex_drivers_on_changed_bumpers(void *user,
                                       const struct rflex_drivers_flex_parts *parts);
 
 /** check_io_changed_answer came from flex. */
-void rflex_drivers_on_check_io_changed_answer(void *user,
-                                              const struct rflex_drivers_check_io_changed_answer *message,
-                                              const struct rflex_drivers_flex_parts *parts);
+void rflex_drivers_on_check_io_changed_answer(
+    void *user, const struct rflex_drivers_check_io_changed_answer *message,
+    const struct rflex_drivers_flex_parts *parts);
 
 /** changed_byte came from flex. */
 void rflex_drivers_on_changed_byte(void *user, const struct rflex_drivers_changed_byte *message,

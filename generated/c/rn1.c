@@ -23,20 +23,20 @@
 
 static bool rn1_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0u;
+    uint8_t all = 0U;
     for (size_t i = 0; i < size; i++) {
         all |= bytes[i];
     }
-    return all <= 0x7Fu;
+    return all <= 0x7FU;
 }
 
 static int8_t rn1_load_s7(const uint8_t *at) {
-    return (int8_t)((at[0] ^ 0x40u) - 0x40u);
+    return (int8_t)((at[0] ^ 0x40U) - 0x40U);
 }
 
 static void rn1_store_u14le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
+    at[0] = (uint8_t)(value & 0x7FU);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
 }
 
 static uint16_t rn1_load_u14le(const uint8_t *at) {
@@ -44,12 +44,12 @@ static uint16_t rn1_load_u14le(const uint8_t *at) {
 }
 
 static int16_t rn1_load_s14le(const uint8_t *at) {
-    return (int16_t)((rn1_load_u14le(at) ^ 0x2000u) - 0x2000u);
+    return (int16_t)((rn1_load_u14le(at) ^ 0x2000U) - 0x2000U);
 }
 
 static void rn1_store_u16le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
+    at[0] = (uint8_t)(value & 0x7FU);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
     at[2] = (uint8_t)(value >> 14);
 }
 
@@ -67,7 +67,7 @@ static uint16_t rn1_load_u16le(const uint8_t *at) {
 }
 
 static uint16_t rn1_all_bits_u16(const uint16_t *numbers, size_t count) {
-    uint16_t all = 0u;
+    uint16_t all = 0U;
     for (size_t i = 0; i < count; i++) {
         all |= numbers[i];
     }
@@ -77,8 +77,8 @@ static uint16_t rn1_all_bits_u16(const uint16_t *numbers, size_t count) {
 static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
     size_t i = 0;
 #if RN1_SSE2
-    for (; count - i >= 8u; i += 8u) {
-        const void *const from = &at[2u * i];
+    for (; count - i >= 8U; i += 8U) {
+        const void *const from = &at[2U * i];
         const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
         const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));
         const __m128i next = _mm_srli_epi16(pairs, 1);
@@ -87,11 +87,11 @@ static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t coun
     }
 #endif
     for (; i < count; i++) {
-        numbers[i] = rn1_load_u14le(&at[2u * i]);
+        numbers[i] = rn1_load_u14le(&at[2U * i]);
     }
 }
 
-/* --- move_manual ------------------------------------------------------------------------------- */
+/* --- move_manual ------------------------------------------------------------------------------ */
 
 static enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
     if (message->speed < -64 || message->speed > 63) {
@@ -104,8 +104,8 @@ static enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *me
 }
 
 static void rn1_move_manual_store(const struct rn1_move_manual *message, uint8_t *payload) {
-    payload[0] = (uint8_t)((uint8_t)message->speed & 0x7Fu);
-    payload[1] = (uint8_t)((uint8_t)message->arc & 0x7Fu);
+    payload[0] = (uint8_t)((uint8_t)message->speed & 0x7FU);
+    payload[1] = (uint8_t)((uint8_t)message->arc & 0x7FU);
 }
 
 enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message, uint8_t *payload,
@@ -114,17 +114,17 @@ enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message, ui
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 2u) {
+    if (capacity < 2U) {
         return RN1_ERROR_SPACE;
     }
     rn1_move_manual_store(message, payload);
-    *size = 2u;
+    *size = 2U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_move_manual_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 2u) {
+    if (size != 2U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 2)) {
@@ -148,9 +148,10 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
     return RN1_OK;
 }
 
-/* --- move_relative_twostep --------------------------------------------------------------------- */
+/* --- move_relative_twostep -------------------------------------------------------------------- */
 
-static enum rn1_result rn1_move_relative_twostep_validate(const struct rn1_move_relative_twostep *message) {
+static enum rn1_result rn1_move_relative_twostep_validate(
+    const struct rn1_move_relative_twostep *message) {
     if (message->angle < -8192 || message->angle > 8191) {
         return RN1_ERROR_RANGE;
     }
@@ -172,18 +173,18 @@ enum rn1_result rn1_move_relative_twostep_encode(const struct rn1_move_relative_
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return RN1_ERROR_SPACE;
     }
     rn1_move_relative_twostep_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_move_relative_twostep_check(const uint8_t *payload, size_t size,
                                                        size_t *need) {
     (void)need;
-    if (size != 4u) {
+    if (size != 4U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 4)) {
@@ -208,7 +209,7 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
     return RN1_OK;
 }
 
-/* --- move_relative_arc ------------------------------------------------------------------------- */
+/* --- move_relative_arc ------------------------------------------------------------------------ */
 
 static enum rn1_result rn1_move_relative_arc_validate(const struct rn1_move_relative_arc *message) {
     if (message->angle < -8192 || message->angle > 8191) {
@@ -232,18 +233,18 @@ enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc 
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return RN1_ERROR_SPACE;
     }
     rn1_move_relative_arc_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_move_relative_arc_check(const uint8_t *payload, size_t size,
                                                    size_t *need) {
     (void)need;
-    if (size != 4u) {
+    if (size != 4U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 4)) {
@@ -267,18 +268,18 @@ enum rn1_result rn1_move_relative_arc_decode(struct rn1_move_relative_arc *messa
     return RN1_OK;
 }
 
-/* --- maintenance ------------------------------------------------------------------------------- */
+/* --- maintenance ------------------------------------------------------------------------------ */
 
 static size_t rn1_maintenance_measure(const struct rn1_maintenance *message) {
-    size_t size = 4u;
+    size_t size = 4U;
     switch (message->operation) {
-    case 65u:
+    case 65U:
         size += 3;
         break;
-    case 81u:
-    case 82u:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         size += 1;
         break;
     default:
@@ -289,22 +290,22 @@ static size_t rn1_maintenance_measure(const struct rn1_maintenance *message) {
 }
 
 static enum rn1_result rn1_maintenance_validate(const struct rn1_maintenance *message) {
-    if (message->operation > 127u) {
+    if (message->operation > 127U) {
         return RN1_ERROR_RANGE;
     }
     switch (message->operation) {
-    case 65u:
-    case 81u:
-    case 82u:
+    case 65U:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
-        if (message->argument.run_motor_controller_flasher.motor_controller < 1u ||
-            message->argument.run_motor_controller_flasher.motor_controller > 4u) {
+    case 83U:
+        if (message->argument.run_motor_controller_flasher.motor_controller < 1U ||
+            message->argument.run_motor_controller_flasher.motor_controller > 4U) {
             return RN1_ERROR_RANGE;
         }
         break;
     default:
-        if (message->argument.other.size > 3u) {
+        if (message->argument.other.size > 3U) {
             return RN1_ERROR_RANGE;
         }
         if (!rn1_is_seven_bit(message->argument.other.bytes, message->argument.other.size)) {
@@ -316,18 +317,18 @@ static enum rn1_result rn1_maintenance_validate(const struct rn1_maintenance *me
 }
 
 static void rn1_maintenance_store(const struct rn1_maintenance *message, uint8_t *payload) {
-    payload[0] = 0x42u;
-    payload[1] = 0x11u;
-    payload[2] = 0x7Au;
+    payload[0] = 0x42U;
+    payload[1] = 0x11U;
+    payload[2] = 0x7AU;
     payload[3] = message->operation;
     switch (message->operation) {
-    case 65u:
+    case 65U:
         rn1_store_u16le(payload + 4, message->argument.reconfig_uart.baud_rate_register);
         break;
-    case 81u:
-    case 82u:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         payload[4] = message->argument.run_motor_controller_flasher.motor_controller;
         break;
     default:
@@ -353,68 +354,68 @@ enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message, ui
 
 static enum rn1_result rn1_maintenance_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size < 1u) {
+    if (size < 1U) {
         return RN1_ERROR_SIZE;
     }
-    if (payload[0] > 0x7Fu) {
+    if (payload[0] > 0x7FU) {
         return RN1_ERROR_ENCODING;
     }
-    if (size < 2u) {
+    if (size < 2U) {
         return RN1_ERROR_SIZE;
     }
-    if (payload[1] > 0x7Fu) {
+    if (payload[1] > 0x7FU) {
         return RN1_ERROR_ENCODING;
     }
-    if (size < 3u) {
+    if (size < 3U) {
         return RN1_ERROR_SIZE;
     }
-    if (payload[2] > 0x7Fu) {
+    if (payload[2] > 0x7FU) {
         return RN1_ERROR_ENCODING;
     }
-    if (payload[0] != 0x42u) {
+    if (payload[0] != 0x42U) {
         return RN1_ERROR_VALUE;
     }
-    if (payload[1] != 0x11u) {
+    if (payload[1] != 0x11U) {
         return RN1_ERROR_VALUE;
     }
-    if (payload[2] != 0x7Au) {
+    if (payload[2] != 0x7AU) {
         return RN1_ERROR_VALUE;
     }
-    if (size < 4u) {
+    if (size < 4U) {
         return RN1_ERROR_SIZE;
     }
-    if (payload[3] > 0x7Fu) {
+    if (payload[3] > 0x7FU) {
         return RN1_ERROR_ENCODING;
     }
     const uint8_t operation = payload[3];
     size_t at = 4;
     switch (operation) {
-    case 65u:
-        if (size - at < 3u) {
+    case 65U:
+        if (size - at < 3U) {
             return RN1_ERROR_SIZE;
         }
         if (!rn1_is_seven_bit(payload + at, 3)) {
             return RN1_ERROR_ENCODING;
         }
-        if (payload[at + 2] > 0x03u) {
+        if (payload[at + 2] > 0x03U) {
             return RN1_ERROR_VALUE;
         }
         at += 3;
         break;
-    case 81u:
-    case 82u:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
-        if (size - at < 1u) {
+    case 83U:
+        if (size - at < 1U) {
             return RN1_ERROR_SIZE;
         }
-        if (payload[at] > 0x7Fu) {
+        if (payload[at] > 0x7FU) {
             return RN1_ERROR_ENCODING;
         }
         at += 1;
         break;
     default:
-        if (size - at > 3u) {
+        if (size - at > 3U) {
             return RN1_ERROR_SIZE;
         }
         if (!rn1_is_seven_bit(payload + at, size - at)) {
@@ -432,17 +433,17 @@ static enum rn1_result rn1_maintenance_check(const uint8_t *payload, size_t size
 void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload, size_t size) {
     message->operation = payload[3];
     switch (message->operation) {
-    case 65u:
+    case 65U:
         message->argument.reconfig_uart.baud_rate_register = rn1_load_u16le(payload + 4);
         break;
-    case 81u:
-    case 82u:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         message->argument.run_motor_controller_flasher.motor_controller = payload[4];
         break;
     default:
-        message->argument.other.size = (uint8_t)(size - 4u);
+        message->argument.other.size = (uint8_t)(size - 4U);
         rn1_copy(message->argument.other.bytes, payload + 4, message->argument.other.size);
         break;
     }
@@ -458,10 +459,10 @@ enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message, const ui
     return RN1_OK;
 }
 
-/* --- gyro -------------------------------------------------------------------------------------- */
+/* --- gyro ------------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
     if (message->int_x < -8192 || message->int_x > 8191) {
@@ -489,17 +490,17 @@ enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_ERROR_SPACE;
     }
     rn1_gyro_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_gyro_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 7)) {
@@ -524,10 +525,10 @@ enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload
     return RN1_OK;
 }
 
-/* --- xcel -------------------------------------------------------------------------------------- */
+/* --- xcel ------------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
     if (message->int_x < -8192 || message->int_x > 8191) {
@@ -555,17 +556,17 @@ enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_ERROR_SPACE;
     }
     rn1_xcel_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_xcel_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 7)) {
@@ -590,10 +591,10 @@ enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload
     return RN1_OK;
 }
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_compass_validate(const struct rn1_compass *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
     if (message->avg_x < -8192 || message->avg_x > 8191) {
@@ -621,17 +622,17 @@ enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *p
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_ERROR_SPACE;
     }
     rn1_compass_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_compass_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 7)) {
@@ -657,10 +658,10 @@ enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *p
     return RN1_OK;
 }
 
-/* --- optflow ----------------------------------------------------------------------------------- */
+/* --- optflow ---------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_optflow_validate(const struct rn1_optflow *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
     if (message->dx < -8192 || message->dx > 8191) {
@@ -669,7 +670,7 @@ static enum rn1_result rn1_optflow_validate(const struct rn1_optflow *message) {
     if (message->dy < -8192 || message->dy > 8191) {
         return RN1_ERROR_RANGE;
     }
-    if (message->q > 127u) {
+    if (message->q > 127U) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -688,17 +689,17 @@ enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *p
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 6u) {
+    if (capacity < 6U) {
         return RN1_ERROR_SPACE;
     }
     rn1_optflow_store(message, payload);
-    *size = 6u;
+    *size = 6U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_optflow_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 6u) {
+    if (size != 6U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 6)) {
@@ -724,13 +725,13 @@ enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *p
     return RN1_OK;
 }
 
-/* --- lidar ------------------------------------------------------------------------------------- */
+/* --- lidar ------------------------------------------------------------------------------------ */
 
 static enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (rn1_all_bits_u16(message->distances, 360u) > 16383u) {
+    if (rn1_all_bits_u16(message->distances, 360U) > 16383U) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -738,7 +739,7 @@ static enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
 
 static void rn1_lidar_store(const struct rn1_lidar *message, uint8_t *payload) {
     payload[0] = message->status;
-    for (size_t i = 0; i < 360u; i++) {
+    for (size_t i = 0; i < 360U; i++) {
         rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
     }
 }
@@ -749,17 +750,17 @@ enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *paylo
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 721u) {
+    if (capacity < 721U) {
         return RN1_ERROR_SPACE;
     }
     rn1_lidar_store(message, payload);
-    *size = 721u;
+    *size = 721U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_lidar_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 721u) {
+    if (size != 721U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 721)) {
@@ -770,7 +771,7 @@ static enum rn1_result rn1_lidar_check(const uint8_t *payload, size_t size, size
 
 void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
-    rn1_load_u14le_run(message->distances, payload + 1, 360u);
+    rn1_load_u14le_run(message->distances, payload + 1, 360U);
 }
 
 enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *payload, size_t size) {
@@ -782,13 +783,13 @@ enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *paylo
     return RN1_OK;
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
 static enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (rn1_all_bits_u16(message->distances, 7u) > 16383u) {
+    if (rn1_all_bits_u16(message->distances, 7U) > 16383U) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -796,7 +797,7 @@ static enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
 
 static void rn1_sonar_store(const struct rn1_sonar *message, uint8_t *payload) {
     payload[0] = message->status;
-    for (size_t i = 0; i < 7u; i++) {
+    for (size_t i = 0; i < 7U; i++) {
         rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
     }
 }
@@ -807,17 +808,17 @@ enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *paylo
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 15u) {
+    if (capacity < 15U) {
         return RN1_ERROR_SPACE;
     }
     rn1_sonar_store(message, payload);
-    *size = 15u;
+    *size = 15U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_sonar_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 15u) {
+    if (size != 15U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 15)) {
@@ -828,7 +829,7 @@ static enum rn1_result rn1_sonar_check(const uint8_t *payload, size_t size, size
 
 void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
-    rn1_load_u14le_run(message->distances, payload + 1, 7u);
+    rn1_load_u14le_run(message->distances, payload + 1, 7U);
 }
 
 enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *payload, size_t size) {
@@ -840,13 +841,13 @@ enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *paylo
     return RN1_OK;
 }
 
-/* --- facing ------------------------------------------------------------------------------------ */
+/* --- facing ----------------------------------------------------------------------------------- */
 
 static enum rn1_result rn1_facing_validate(const struct rn1_facing *message) {
-    if (message->status > 127u) {
+    if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (message->heading > 16383u) {
+    if (message->heading > 16383U) {
         return RN1_ERROR_RANGE;
     }
     if (message->speed < -8192 || message->speed > 8191) {
@@ -867,17 +868,17 @@ enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *pay
     if (result != RN1_OK) {
         return result;
     }
-    if (capacity < 5u) {
+    if (capacity < 5U) {
         return RN1_ERROR_SPACE;
     }
     rn1_facing_store(message, payload);
-    *size = 5u;
+    *size = 5U;
     return RN1_OK;
 }
 
 static enum rn1_result rn1_facing_check(const uint8_t *payload, size_t size, size_t *need) {
     (void)need;
-    if (size != 5u) {
+    if (size != 5U) {
         return RN1_ERROR_SIZE;
     }
     if (!rn1_is_seven_bit(payload, 5)) {
@@ -901,7 +902,7 @@ enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *pay
     return RN1_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     RN1_SEEKING,
@@ -911,11 +912,11 @@ enum {
 
 enum {
     RN1_KNOWN = 1,     /* The payload's size is known. */
-    RN1_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    RN1_OPEN = 2,      /* Only what follows the payload tells its size. */
     RN1_SEARCHING = 4, /* A delimiter is looked for. */
-    RN1_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    RN1_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     RN1_EMPTY = 16,    /* The stuffed region holds nothing. */
-    RN1_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    RN1_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -924,7 +925,8 @@ enum {
     RN1_AFTER
 };
 
-#define RN1_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define RN1_FRAME 0xFFU
 
 #if RN1_FAST_FEED
 #include <string.h>
@@ -956,12 +958,12 @@ static bool rn1_is_high(const uint8_t *data, size_t size) {
 }
 #endif
 
-/* --- what host sends: frames -------------------------------------------------------------- */
+/* --- what host sends: frames ------------------------------------------------------------------ */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_host_room(size_t payload) {
-    const size_t content = 1u + payload + 0u;
-    return content + 1u;
+    const size_t content = 1U + payload + 0U;
+    return content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -973,20 +975,20 @@ static uint8_t *rn1_host_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_host_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + 0u;
+    uint8_t *const tail = &content[1U + payload];
+    size_t size = 1U + payload + 0U;
     (void)tail;
-    content[0u] = (uint8_t)start;
-    frame[size + 0u] = 0xFF;
-    return size + 1u;
+    content[0U] = (uint8_t)start;
+    frame[size + 0U] = 0xFFU;
+    return size + 1U;
 }
 
-/* --- what brain sends: frames -------------------------------------------------------------- */
+/* --- what brain sends: frames ----------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_brain_room(size_t payload) {
-    const size_t content = 1u + payload + 0u;
-    return content + 0u;
+    const size_t content = 1U + payload + 0U;
+    return content + 0U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -998,14 +1000,14 @@ static uint8_t *rn1_brain_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_brain_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + 0u;
+    uint8_t *const tail = &content[1U + payload];
+    size_t size = 1U + payload + 0U;
     (void)tail;
-    content[0u] = (uint8_t)start;
-    return size + 0u;
+    content[0U] = (uint8_t)start;
+    return size + 0U;
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 static inline void rn1_write(rn1_put put, void *user, uint8_t byte) {
     put(user, byte);
@@ -1020,7 +1022,7 @@ static void rn1_host_send_head(rn1_put put, void *user, size_t payload, uint8_t 
 static void rn1_host_send_tail(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
     (void)start;
-    put(user, 0xFF);
+    put(user, 0xFFU);
 }
 
 static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t start) {
@@ -1030,13 +1032,13 @@ static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t
 }
 
 static void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
-    rn1_write(put, user, (uint8_t)(value & 0x7Fu));
-    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
+    rn1_write(put, user, (uint8_t)(value & 0x7FU));
+    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
 }
 
 static void rn1_write_u16le(rn1_put put, void *user, uint16_t value) {
-    rn1_write(put, user, (uint8_t)(value & 0x7Fu));
-    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
+    rn1_write(put, user, (uint8_t)(value & 0x7FU));
+    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
     rn1_write(put, user, (uint8_t)(value >> 14));
 }
 
@@ -1048,8 +1050,8 @@ static void rn1_write_bytes(rn1_put put, void *user, const void *from, size_t si
 }
 
 static void rn1_move_manual_put(const struct rn1_move_manual *message, rn1_put put, void *user) {
-    rn1_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7Fu));
-    rn1_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7Fu));
+    rn1_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7FU));
+    rn1_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7FU));
 }
 
 static void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
@@ -1065,18 +1067,18 @@ static void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *messag
 }
 
 static void rn1_maintenance_put(const struct rn1_maintenance *message, rn1_put put, void *user) {
-    rn1_write(put, user, 0x42u);
-    rn1_write(put, user, 0x11u);
-    rn1_write(put, user, 0x7Au);
+    rn1_write(put, user, 0x42U);
+    rn1_write(put, user, 0x11U);
+    rn1_write(put, user, 0x7AU);
     rn1_write(put, user, message->operation);
     switch (message->operation) {
-    case 65u:
+    case 65U:
         rn1_write_u16le(put, user, message->argument.reconfig_uart.baud_rate_register);
         break;
-    case 81u:
-    case 82u:
+    case 81U:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         rn1_write(put, user, message->argument.run_motor_controller_flasher.motor_controller);
         break;
     default:
@@ -1115,14 +1117,14 @@ static void rn1_optflow_put(const struct rn1_optflow *message, rn1_put put, void
 
 static void rn1_lidar_put(const struct rn1_lidar *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    for (size_t i = 0; i < 360u; i++) {
+    for (size_t i = 0; i < 360U; i++) {
         rn1_write_u14le(put, user, message->distances[i]);
     }
 }
 
 static void rn1_sonar_put(const struct rn1_sonar *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    for (size_t i = 0; i < 7u; i++) {
+    for (size_t i = 0; i < 7U; i++) {
         rn1_write_u14le(put, user, message->distances[i]);
     }
 }
@@ -1135,7 +1137,7 @@ static void rn1_facing_put(const struct rn1_facing *message, rn1_put put, void *
 
 enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
                                       size_t capacity, size_t *size) {
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     const enum rn1_result result = rn1_move_manual_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1144,26 +1146,26 @@ enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uin
         return RN1_ERROR_SPACE;
     }
     rn1_move_manual_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x80);
+    *size = rn1_host_wrap(frame, payload, 0x80U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
                                      void *user) {
-    const size_t payload = 2u;
+    const size_t payload = 2U;
     const enum rn1_result result = rn1_move_manual_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_host_send_head(put, user, payload, 0x80);
+    rn1_host_send_head(put, user, payload, 0x80U);
     rn1_move_manual_put(message, put, user);
-    rn1_host_send_tail(put, user, payload, 0x80);
+    rn1_host_send_tail(put, user, payload, 0x80U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
                                                 uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum rn1_result result = rn1_move_relative_twostep_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1172,26 +1174,26 @@ enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_t
         return RN1_ERROR_SPACE;
     }
     rn1_move_relative_twostep_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x81);
+    *size = rn1_host_wrap(frame, payload, 0x81U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_twostep *message,
                                                rn1_put put, void *user) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum rn1_result result = rn1_move_relative_twostep_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_host_send_head(put, user, payload, 0x81);
+    rn1_host_send_head(put, user, payload, 0x81U);
     rn1_move_relative_twostep_put(message, put, user);
-    rn1_host_send_tail(put, user, payload, 0x81);
+    rn1_host_send_tail(put, user, payload, 0x81U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
                                             uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum rn1_result result = rn1_move_relative_arc_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1200,20 +1202,20 @@ enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *
         return RN1_ERROR_SPACE;
     }
     rn1_move_relative_arc_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x82);
+    *size = rn1_host_wrap(frame, payload, 0x82U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message, rn1_put put,
                                            void *user) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     const enum rn1_result result = rn1_move_relative_arc_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_host_send_head(put, user, payload, 0x82);
+    rn1_host_send_head(put, user, payload, 0x82U);
     rn1_move_relative_arc_put(message, put, user);
-    rn1_host_send_tail(put, user, payload, 0x82);
+    rn1_host_send_tail(put, user, payload, 0x82U);
     return RN1_OK;
 }
 
@@ -1229,7 +1231,7 @@ enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uin
         return RN1_ERROR_SPACE;
     }
     rn1_maintenance_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0xFE);
+    *size = rn1_host_wrap(frame, payload, 0xFEU);
     return RN1_OK;
 }
 
@@ -1241,15 +1243,15 @@ enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_
         return result;
     }
     payload = rn1_maintenance_measure(message);
-    rn1_host_send_head(put, user, payload, 0xFE);
+    rn1_host_send_head(put, user, payload, 0xFEU);
     rn1_maintenance_put(message, put, user);
-    rn1_host_send_tail(put, user, payload, 0xFE);
+    rn1_host_send_tail(put, user, payload, 0xFEU);
     return RN1_OK;
 }
 
 enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity,
                                size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_gyro_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1258,24 +1260,24 @@ enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, s
         return RN1_ERROR_SPACE;
     }
     rn1_gyro_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x80);
+    *size = rn1_brain_wrap(frame, payload, 0x80U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_gyro_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x80);
+    rn1_brain_send_head(put, user, payload, 0x80U);
     rn1_gyro_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity,
                                size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_xcel_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1284,24 +1286,24 @@ enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, s
         return RN1_ERROR_SPACE;
     }
     rn1_xcel_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x81);
+    *size = rn1_brain_wrap(frame, payload, 0x81U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_xcel_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x81);
+    rn1_brain_send_head(put, user, payload, 0x81U);
     rn1_xcel_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
                                   size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_compass_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1310,24 +1312,24 @@ enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *fr
         return RN1_ERROR_SPACE;
     }
     rn1_compass_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x82);
+    *size = rn1_brain_wrap(frame, payload, 0x82U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_result result = rn1_compass_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x82);
+    rn1_brain_send_head(put, user, payload, 0x82U);
     rn1_compass_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
                                   size_t capacity, size_t *size) {
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     const enum rn1_result result = rn1_optflow_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1336,24 +1338,24 @@ enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *fr
         return RN1_ERROR_SPACE;
     }
     rn1_optflow_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x83);
+    *size = rn1_brain_wrap(frame, payload, 0x83U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put, void *user) {
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     const enum rn1_result result = rn1_optflow_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x83);
+    rn1_brain_send_head(put, user, payload, 0x83U);
     rn1_optflow_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity,
                                 size_t *size) {
-    const size_t payload = 721u;
+    const size_t payload = 721U;
     const enum rn1_result result = rn1_lidar_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1362,24 +1364,24 @@ enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
         return RN1_ERROR_SPACE;
     }
     rn1_lidar_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x84);
+    *size = rn1_brain_wrap(frame, payload, 0x84U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user) {
-    const size_t payload = 721u;
+    const size_t payload = 721U;
     const enum rn1_result result = rn1_lidar_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x84);
+    rn1_brain_send_head(put, user, payload, 0x84U);
     rn1_lidar_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity,
                                 size_t *size) {
-    const size_t payload = 15u;
+    const size_t payload = 15U;
     const enum rn1_result result = rn1_sonar_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1388,24 +1390,24 @@ enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame,
         return RN1_ERROR_SPACE;
     }
     rn1_sonar_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x85);
+    *size = rn1_brain_wrap(frame, payload, 0x85U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user) {
-    const size_t payload = 15u;
+    const size_t payload = 15U;
     const enum rn1_result result = rn1_sonar_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0x85);
+    rn1_brain_send_head(put, user, payload, 0x85U);
     rn1_sonar_put(message, put, user);
     return RN1_OK;
 }
 
 enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity,
                                  size_t *size) {
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     const enum rn1_result result = rn1_facing_validate(message);
     if (result != RN1_OK) {
         return result;
@@ -1414,22 +1416,22 @@ enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *fram
         return RN1_ERROR_SPACE;
     }
     rn1_facing_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0xA0);
+    *size = rn1_brain_wrap(frame, payload, 0xA0U);
     return RN1_OK;
 }
 
 enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user) {
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     const enum rn1_result result = rn1_facing_validate(message);
     if (result != RN1_OK) {
         return result;
     }
-    rn1_brain_send_head(put, user, payload, 0xA0);
+    rn1_brain_send_head(put, user, payload, 0xA0U);
     rn1_facing_put(message, put, user);
     return RN1_OK;
 }
 
-/* --- what host sends: the decoder --------------------------------------------------------- */
+/* --- what host sends: the decoder ------------------------------------------------------------- */
 
 /* Events. */
 
@@ -1467,23 +1469,34 @@ static void rn1_host_add_noise(struct rn1_host_decoder *decoder, uint8_t size) {
 
 /* The message of a valid frame. */
 
-static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8_t *payload, uint8_t size, uint8_t *message) {
+static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8_t *payload,
+                                 uint8_t size, uint8_t *message) {
     *message = RN1_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->start) {
-    case UINT8_C(0x80):
+    case 0x80U:
         *message = RN1_MESSAGE_MOVE_MANUAL;
-        return size == 2U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x81):
+        if (size != 2U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x81U:
         *message = RN1_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        return size == 4U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x82):
+        if (size != 4U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x82U:
         *message = RN1_MESSAGE_MOVE_RELATIVE_ARC;
-        return size == 4U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0xFE):
+        if (size != 4U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0xFEU:
         *message = RN1_MESSAGE_MAINTENANCE;
-        return (uint8_t)((size >= 4U && size <= 7U) ? (int)rn1_maintenance_check(payload, size, NULL) : (int)RN1_SIZE);
+        if (size < 4U || size > 7U) {
+            return RN1_SIZE;
+        }
+        return (uint8_t)rn1_maintenance_check(payload, size, NULL);
     default:
         return RN1_NO_REASON;
     }
@@ -1533,16 +1546,16 @@ static void rn1_host_set_payload(struct rn1_host_decoder *decoder, uint8_t size)
 /* What the identity says of the payload's size. */
 static uint8_t rn1_host_find_size(struct rn1_host_decoder *decoder, uint8_t key) {
     switch (key) {
-    case UINT8_C(0x80):
+    case 0x80U:
         rn1_host_set_payload(decoder, 2U);
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         rn1_host_set_payload(decoder, 4U);
         break;
-    case UINT8_C(0x82):
+    case 0x82U:
         rn1_host_set_payload(decoder, 4U);
         break;
-    case UINT8_C(0xFE):
+    case 0xFEU:
         decoder->limit = 8U;
         break;
     default:
@@ -1563,8 +1576,6 @@ static uint8_t rn1_host_enter_payload(struct rn1_host_decoder *decoder) {
 static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1651,7 +1662,7 @@ static uint8_t rn1_host_close(struct rn1_host_decoder *decoder) {
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t rn1_host_search(struct rn1_host_decoder *decoder, uint8_t byte) {
-    if (byte == 0xFF) {
+    if (byte == 0xFFU) {
         return rn1_host_close(decoder);
     }
     return rn1_host_pass(decoder, byte);
@@ -1705,8 +1716,6 @@ static void rn1_host_reopen(struct rn1_host_decoder *decoder, uint8_t byte) {
 
 static void rn1_host_judge(struct rn1_host_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint8_t size = (uint8_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason != RN1_FRAME) {
         rn1_host_invalid(decoder, reason, (uint8_t)(size - decoder->behind));
     }
@@ -1768,7 +1777,7 @@ void rn1_host_decoder_flush(struct rn1_host_decoder *decoder) {
     rn1_host_reset(decoder);
 }
 
-/* --- what brain sends: the decoder --------------------------------------------------------- */
+/* --- what brain sends: the decoder ------------------------------------------------------------ */
 
 /* Events. */
 
@@ -1806,32 +1815,53 @@ static void rn1_brain_add_noise(struct rn1_brain_decoder *decoder, uint16_t size
 
 /* The message of a valid frame. */
 
-static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uint8_t *payload,
+                                  uint16_t size, uint8_t *message) {
     *message = RN1_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->start) {
-    case UINT8_C(0x80):
+    case 0x80U:
         *message = RN1_MESSAGE_GYRO;
-        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x81):
+        if (size != 7U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x81U:
         *message = RN1_MESSAGE_XCEL;
-        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x82):
+        if (size != 7U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x82U:
         *message = RN1_MESSAGE_COMPASS;
-        return size == 7U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x83):
+        if (size != 7U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x83U:
         *message = RN1_MESSAGE_OPTFLOW;
-        return size == 6U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x84):
+        if (size != 6U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x84U:
         *message = RN1_MESSAGE_LIDAR;
-        return size == 721U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0x85):
+        if (size != 721U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0x85U:
         *message = RN1_MESSAGE_SONAR;
-        return size == 15U ? RN1_NO_REASON : RN1_SIZE;
-    case UINT8_C(0xA0):
+        if (size != 15U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
+    case 0xA0U:
         *message = RN1_MESSAGE_FACING;
-        return size == 5U ? RN1_NO_REASON : RN1_SIZE;
+        if (size != 5U) {
+            return RN1_SIZE;
+        }
+        return RN1_NO_REASON;
     default:
         return RN1_NO_REASON;
     }
@@ -1880,25 +1910,25 @@ static void rn1_brain_set_payload(struct rn1_brain_decoder *decoder, uint16_t si
 /* What the identity says of the payload's size. */
 static uint8_t rn1_brain_find_size(struct rn1_brain_decoder *decoder, uint8_t key) {
     switch (key) {
-    case UINT8_C(0x80):
+    case 0x80U:
         rn1_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         rn1_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x82):
+    case 0x82U:
         rn1_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x83):
+    case 0x83U:
         rn1_brain_set_payload(decoder, 6U);
         break;
-    case UINT8_C(0x84):
+    case 0x84U:
         rn1_brain_set_payload(decoder, 721U);
         break;
-    case UINT8_C(0x85):
+    case 0x85U:
         rn1_brain_set_payload(decoder, 15U);
         break;
-    case UINT8_C(0xA0):
+    case 0xA0U:
         rn1_brain_set_payload(decoder, 5U);
         break;
     default:
@@ -1916,11 +1946,10 @@ static uint8_t rn1_brain_enter_payload(struct rn1_brain_decoder *decoder) {
 }
 
 /* A byte in front of the payload. */
-static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t index,
+                                   uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1941,7 +1970,8 @@ static uint8_t rn1_brain_cross(struct rn1_brain_decoder *decoder) {
         if ((decoder->flags & RN1_SEARCHING) == 0U) {
             return rn1_brain_complete(decoder, decoder->buffer);
         }
-    } else if ((decoder->flags & RN1_OPEN) != 0U && (decoder->flags & RN1_KNOWN) == 0U && (decoder->flags & RN1_SEARCHING) == 0U) {
+    } else if ((decoder->flags & RN1_OPEN) != 0U && (decoder->flags & RN1_KNOWN) == 0U &&
+               (decoder->flags & RN1_SEARCHING) == 0U) {
         decoder->flags |= RN1_SEARCHING;
         decoder->open_from = decoder->wire;
     } else {
@@ -2025,7 +2055,8 @@ static uint8_t rn1_brain_take(struct rn1_brain_decoder *decoder, uint8_t byte) {
             reason = RN1_TRUNCATED;
         }
     } else {
-        reason = (decoder->flags & RN1_SEARCHING) != 0U ? rn1_brain_search(decoder, byte) : rn1_brain_pass(decoder, byte);
+        reason = (decoder->flags & RN1_SEARCHING) != 0U ? rn1_brain_search(decoder, byte)
+                                                        : rn1_brain_pass(decoder, byte);
     }
     if (reason == RN1_NO_REASON && decoder->wire >= 722U) {
         reason = RN1_LENGTH;
@@ -2074,8 +2105,6 @@ static void rn1_brain_reopen(struct rn1_brain_decoder *decoder, uint8_t byte) {
 
 static void rn1_brain_judge(struct rn1_brain_decoder *decoder, uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason != RN1_FRAME) {
         rn1_brain_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }
@@ -2110,7 +2139,8 @@ void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte) {
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rn1_brain_take_whole(struct rn1_brain_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rn1_brain_take_whole(struct rn1_brain_decoder *decoder, const uint8_t *data,
+                                   size_t size) {
     const uint8_t *const content = data;
     size_t payload;
     size_t wire;
@@ -2121,25 +2151,25 @@ static size_t rn1_brain_take_whole(struct rn1_brain_decoder *decoder, const uint
         return 0;
     }
     switch (content[0]) {
-    case UINT8_C(0x80):
+    case 0x80U:
         payload = 7;
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         payload = 7;
         break;
-    case UINT8_C(0x82):
+    case 0x82U:
         payload = 7;
         break;
-    case UINT8_C(0x83):
+    case 0x83U:
         payload = 6;
         break;
-    case UINT8_C(0x84):
+    case 0x84U:
         payload = 721;
         break;
-    case UINT8_C(0x85):
+    case 0x85U:
         payload = 15;
         break;
-    case UINT8_C(0xA0):
+    case 0xA0U:
         payload = 5;
         break;
     default:
@@ -2186,7 +2216,8 @@ static void rn1_brain_reset(struct rn1_brain_decoder *decoder) {
     rn1_brain_seek_on(decoder);
 }
 
-void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler, void *user) {
+void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
+                            void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2209,7 +2240,7 @@ void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder) {
 }
 #ifndef RN1_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void rn1_host_dispatch(void *user, const struct rn1_host_event *event) {
     switch (event->message) {
@@ -2300,9 +2331,9 @@ __attribute__((weak)) void rn1_on_move_manual(void *user, const struct rn1_move_
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_on_move_relative_twostep(void *user,
-                                                        const struct rn1_move_relative_twostep *message,
-                                                        const struct rn1_host_parts *parts) {
+__attribute__((weak)) void rn1_on_move_relative_twostep(
+    void *user, const struct rn1_move_relative_twostep *message,
+    const struct rn1_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

@@ -29,7 +29,7 @@ enum rn1_result {
     RN1_OK = 0,
     /** Too few or too many bytes. */
     RN1_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     RN1_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     RN1_ERROR_ENCODING,
@@ -55,7 +55,7 @@ enum rn1_message {
     RN1_NO_MESSAGE = 11
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** What to do (lines 44-56). */
 enum rn1_maintenance_operation {
@@ -88,20 +88,20 @@ enum rn1_compass_status {
 
 /** State of the LIDAR (lines 87-89). */
 /** It should be working. */
-#define RN1_LIDAR_STATUS_INITIALIZED 0x01u
+#define RN1_LIDAR_STATUS_INITIALIZED 0x01U
 /** Its speed is held within its limits. */
-#define RN1_LIDAR_STATUS_SPEED_IN_SPEC 0x02u
+#define RN1_LIDAR_STATUS_SPEED_IN_SPEC 0x02U
 
 /** The sonars that are enabled (line 93). */
-#define RN1_SONAR_STATUS_SONAR_0 0x01u
-#define RN1_SONAR_STATUS_SONAR_1 0x02u
-#define RN1_SONAR_STATUS_SONAR_2 0x04u
-#define RN1_SONAR_STATUS_SONAR_3 0x08u
-#define RN1_SONAR_STATUS_SONAR_4 0x10u
-#define RN1_SONAR_STATUS_SONAR_5 0x20u
-#define RN1_SONAR_STATUS_SONAR_6 0x40u
+#define RN1_SONAR_STATUS_SONAR_0 0x01U
+#define RN1_SONAR_STATUS_SONAR_1 0x02U
+#define RN1_SONAR_STATUS_SONAR_2 0x04U
+#define RN1_SONAR_STATUS_SONAR_3 0x08U
+#define RN1_SONAR_STATUS_SONAR_4 0x10U
+#define RN1_SONAR_STATUS_SONAR_5 0x20U
+#define RN1_SONAR_STATUS_SONAR_6 0x40U
 
-/* --- maintenance_argument_reconfig_uart -------------------------------------------------------- */
+/* --- maintenance_argument_reconfig_uart ------------------------------------------------------- */
 
 /** The speed. */
 struct rn1_maintenance_argument_reconfig_uart {
@@ -109,7 +109,7 @@ struct rn1_maintenance_argument_reconfig_uart {
     uint16_t baud_rate_register;
 };
 
-/* --- maintenance_argument_run_motor_controller_flasher ----------------------------------------- */
+/* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
 
 /** The motor controller. */
 struct rn1_maintenance_argument_run_motor_controller_flasher {
@@ -125,12 +125,12 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- move_manual ------------------------------------------------------------------------------- */
+/* --- move_manual ------------------------------------------------------------------------------ */
 
-#define RN1_MOVE_MANUAL_ID 0x80u
-#define RN1_MOVE_MANUAL_PAYLOAD_SIZE 2u
-#define RN1_MOVE_MANUAL_PAYLOAD_MIN 2u
-#define RN1_MOVE_MANUAL_PAYLOAD_MAX 2u
+#define RN1_MOVE_MANUAL_ID 0x80U
+#define RN1_MOVE_MANUAL_PAYLOAD_SIZE 2U
+#define RN1_MOVE_MANUAL_PAYLOAD_MIN 2U
+#define RN1_MOVE_MANUAL_PAYLOAD_MAX 2U
 #define RN1_MOVE_MANUAL_SPEC_HASH "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
 
 /** Drive by hand, with a speed and an arc (lines 27-29). */
@@ -147,12 +147,12 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
                                        size_t size);
 void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload);
 
-/* --- move_relative_twostep --------------------------------------------------------------------- */
+/* --- move_relative_twostep -------------------------------------------------------------------- */
 
-#define RN1_MOVE_RELATIVE_TWOSTEP_ID 0x81u
-#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4u
-#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4u
-#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4u
+#define RN1_MOVE_RELATIVE_TWOSTEP_ID 0x81U
+#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4U
+#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4U
+#define RN1_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4U
 #define RN1_MOVE_RELATIVE_TWOSTEP_SPEC_HASH "8899d8d9e8f1b2e393754f2e8d16ba3097990ea5eae139ee75cab21b6da512e0"
 #define RN1_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_NUM 1
 #define RN1_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_DEN 16
@@ -174,12 +174,12 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
 void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
                                     const uint8_t *payload);
 
-/* --- move_relative_arc ------------------------------------------------------------------------- */
+/* --- move_relative_arc ------------------------------------------------------------------------ */
 
-#define RN1_MOVE_RELATIVE_ARC_ID 0x82u
-#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_SIZE 4u
-#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MIN 4u
-#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MAX 4u
+#define RN1_MOVE_RELATIVE_ARC_ID 0x82U
+#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_SIZE 4U
+#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MIN 4U
+#define RN1_MOVE_RELATIVE_ARC_PAYLOAD_MAX 4U
 #define RN1_MOVE_RELATIVE_ARC_SPEC_HASH "980f315812fd5f9713cf02b09ac9d205ebfa87721c6d03abe676a8d20f3425aa"
 #define RN1_MOVE_RELATIVE_ARC_ANGLE_SCALE_NUM 1
 #define RN1_MOVE_RELATIVE_ARC_ANGLE_SCALE_DEN 16
@@ -200,11 +200,11 @@ enum rn1_result rn1_move_relative_arc_decode(struct rn1_move_relative_arc *messa
                                              const uint8_t *payload, size_t size);
 void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message, const uint8_t *payload);
 
-/* --- maintenance ------------------------------------------------------------------------------- */
+/* --- maintenance ------------------------------------------------------------------------------ */
 
-#define RN1_MAINTENANCE_ID 0xFEu
-#define RN1_MAINTENANCE_PAYLOAD_MIN 4u
-#define RN1_MAINTENANCE_PAYLOAD_MAX 7u
+#define RN1_MAINTENANCE_ID 0xFEU
+#define RN1_MAINTENANCE_PAYLOAD_MIN 4U
+#define RN1_MAINTENANCE_PAYLOAD_MAX 7U
 #define RN1_MAINTENANCE_SPEC_HASH "8497d314dbcc95ad3ef4b0e82f9704e0e6b88aaf1317d59ea6a4f31cbe958650"
 
 /**
@@ -234,12 +234,12 @@ enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message, const ui
                                        size_t size);
 void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload, size_t size);
 
-/* --- gyro -------------------------------------------------------------------------------------- */
+/* --- gyro ------------------------------------------------------------------------------------- */
 
-#define RN1_GYRO_ID 0x80u
-#define RN1_GYRO_PAYLOAD_SIZE 7u
-#define RN1_GYRO_PAYLOAD_MIN 7u
-#define RN1_GYRO_PAYLOAD_MAX 7u
+#define RN1_GYRO_ID 0x80U
+#define RN1_GYRO_PAYLOAD_SIZE 7U
+#define RN1_GYRO_PAYLOAD_MIN 7U
+#define RN1_GYRO_PAYLOAD_MAX 7U
 #define RN1_GYRO_SPEC_HASH "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
 
 /** Readings of the three-axis gyroscope (lines 61-65). */
@@ -259,12 +259,12 @@ enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload
 enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload, size_t size);
 void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
 
-/* --- xcel -------------------------------------------------------------------------------------- */
+/* --- xcel ------------------------------------------------------------------------------------- */
 
-#define RN1_XCEL_ID 0x81u
-#define RN1_XCEL_PAYLOAD_SIZE 7u
-#define RN1_XCEL_PAYLOAD_MIN 7u
-#define RN1_XCEL_PAYLOAD_MAX 7u
+#define RN1_XCEL_ID 0x81U
+#define RN1_XCEL_PAYLOAD_SIZE 7U
+#define RN1_XCEL_PAYLOAD_MIN 7U
+#define RN1_XCEL_PAYLOAD_MAX 7U
 #define RN1_XCEL_SPEC_HASH "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
 
 /** Readings of the three-axis accelerometer (lines 67-71). */
@@ -284,12 +284,12 @@ enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload
 enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload, size_t size);
 void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
-#define RN1_COMPASS_ID 0x82u
-#define RN1_COMPASS_PAYLOAD_SIZE 7u
-#define RN1_COMPASS_PAYLOAD_MIN 7u
-#define RN1_COMPASS_PAYLOAD_MAX 7u
+#define RN1_COMPASS_ID 0x82U
+#define RN1_COMPASS_PAYLOAD_SIZE 7U
+#define RN1_COMPASS_PAYLOAD_MIN 7U
+#define RN1_COMPASS_PAYLOAD_MAX 7U
 #define RN1_COMPASS_SPEC_HASH "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
 
 /** Readings of the three-axis compass (lines 73-77). */
@@ -310,12 +310,12 @@ enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *p
                                    size_t size);
 void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload);
 
-/* --- optflow ----------------------------------------------------------------------------------- */
+/* --- optflow ---------------------------------------------------------------------------------- */
 
-#define RN1_OPTFLOW_ID 0x83u
-#define RN1_OPTFLOW_PAYLOAD_SIZE 6u
-#define RN1_OPTFLOW_PAYLOAD_MIN 6u
-#define RN1_OPTFLOW_PAYLOAD_MAX 6u
+#define RN1_OPTFLOW_ID 0x83U
+#define RN1_OPTFLOW_PAYLOAD_SIZE 6U
+#define RN1_OPTFLOW_PAYLOAD_MIN 6U
+#define RN1_OPTFLOW_PAYLOAD_MAX 6U
 #define RN1_OPTFLOW_SPEC_HASH "4ebf89451caf104fff63d2a46ce408af0b778e36a4cec12e95571b633104dcb6"
 
 /** Readings of the optical flow sensor that looks at the ground (lines 79-83). */
@@ -336,16 +336,16 @@ enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *p
                                    size_t size);
 void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload);
 
-/* --- lidar ------------------------------------------------------------------------------------- */
+/* --- lidar ------------------------------------------------------------------------------------ */
 
-#define RN1_LIDAR_ID 0x84u
-#define RN1_LIDAR_PAYLOAD_SIZE 721u
-#define RN1_LIDAR_PAYLOAD_MIN 721u
-#define RN1_LIDAR_PAYLOAD_MAX 721u
+#define RN1_LIDAR_ID 0x84U
+#define RN1_LIDAR_PAYLOAD_SIZE 721U
+#define RN1_LIDAR_PAYLOAD_MIN 721U
+#define RN1_LIDAR_PAYLOAD_MAX 721U
 #define RN1_LIDAR_SPEC_HASH "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
 #define RN1_LIDAR_DISTANCES_UNIT "mm"
 /** Nothing measured, for one because too little came back. */
-#define RN1_LIDAR_DISTANCES_NO_DATAPOINT 0u
+#define RN1_LIDAR_DISTANCES_NO_DATAPOINT 0U
 
 /**
  * The latest full turn of the LIDAR (lines 85-90).
@@ -374,16 +374,16 @@ static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t ind
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
-#define RN1_SONAR_ID 0x85u
-#define RN1_SONAR_PAYLOAD_SIZE 15u
-#define RN1_SONAR_PAYLOAD_MIN 15u
-#define RN1_SONAR_PAYLOAD_MAX 15u
+#define RN1_SONAR_ID 0x85U
+#define RN1_SONAR_PAYLOAD_SIZE 15U
+#define RN1_SONAR_PAYLOAD_MIN 15U
+#define RN1_SONAR_PAYLOAD_MAX 15U
 #define RN1_SONAR_SPEC_HASH "b29ce61f6f2f4fec2fc7c20f7af74e4a9b76f8c7334ebda8a480d9a43837a6a1"
 #define RN1_SONAR_DISTANCES_UNIT "mm"
 /** No echo came back. */
-#define RN1_SONAR_DISTANCES_NO_DATAPOINT 0u
+#define RN1_SONAR_DISTANCES_NO_DATAPOINT 0U
 
 /** The latest distances of up to seven sonars (lines 92-94). */
 struct rn1_sonar {
@@ -404,12 +404,12 @@ static inline uint16_t rn1_sonar_distances_at(const uint8_t *payload, size_t ind
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
-/* --- facing ------------------------------------------------------------------------------------ */
+/* --- facing ----------------------------------------------------------------------------------- */
 
-#define RN1_FACING_ID 0xA0u
-#define RN1_FACING_PAYLOAD_SIZE 5u
-#define RN1_FACING_PAYLOAD_MIN 5u
-#define RN1_FACING_PAYLOAD_MAX 5u
+#define RN1_FACING_ID 0xA0U
+#define RN1_FACING_PAYLOAD_SIZE 5U
+#define RN1_FACING_PAYLOAD_MIN 5U
+#define RN1_FACING_PAYLOAD_MAX 5U
 #define RN1_FACING_SPEC_HASH "8333c607be579b90036b72f07f4bdd75d9b8a0a7e6af8113457d0b12e550a3ea"
 #define RN1_FACING_HEADING_UNIT "deg"
 #define RN1_FACING_SPEED_UNIT "mm/s"
@@ -429,7 +429,7 @@ enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *pay
 enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *payload, size_t size);
 void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -443,87 +443,87 @@ void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload);
 typedef void (*rn1_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_MOVE_MANUAL_FRAME_MAX 4u
-#define RN1_MOVE_MANUAL_FRAME_ROOM 4u
+#define RN1_MOVE_MANUAL_FRAME_MAX 4U
+#define RN1_MOVE_MANUAL_FRAME_ROOM 4U
 enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
                                       size_t capacity, size_t *size);
 enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
                                      void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6u
-#define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6u
+#define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
+#define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
 enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
                                                 uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_twostep *message,
                                                rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_MOVE_RELATIVE_ARC_FRAME_MAX 6u
-#define RN1_MOVE_RELATIVE_ARC_FRAME_ROOM 6u
+#define RN1_MOVE_RELATIVE_ARC_FRAME_MAX 6U
+#define RN1_MOVE_RELATIVE_ARC_FRAME_ROOM 6U
 enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
                                             uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message, rn1_put put,
                                            void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_MAINTENANCE_FRAME_MAX 9u
-#define RN1_MAINTENANCE_FRAME_ROOM 9u
+#define RN1_MAINTENANCE_FRAME_MAX 9U
+#define RN1_MAINTENANCE_FRAME_ROOM 9U
 enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
                                       size_t capacity, size_t *size);
 enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
                                      void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_GYRO_FRAME_MAX 8u
-#define RN1_GYRO_FRAME_ROOM 8u
+#define RN1_GYRO_FRAME_MAX 8U
+#define RN1_GYRO_FRAME_ROOM 8U
 enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity,
                                size_t *size);
 enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_XCEL_FRAME_MAX 8u
-#define RN1_XCEL_FRAME_ROOM 8u
+#define RN1_XCEL_FRAME_MAX 8U
+#define RN1_XCEL_FRAME_ROOM 8U
 enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity,
                                size_t *size);
 enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_COMPASS_FRAME_MAX 8u
-#define RN1_COMPASS_FRAME_ROOM 8u
+#define RN1_COMPASS_FRAME_MAX 8U
+#define RN1_COMPASS_FRAME_ROOM 8U
 enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
                                   size_t capacity, size_t *size);
 enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_OPTFLOW_FRAME_MAX 7u
-#define RN1_OPTFLOW_FRAME_ROOM 7u
+#define RN1_OPTFLOW_FRAME_MAX 7U
+#define RN1_OPTFLOW_FRAME_ROOM 7U
 enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
                                   size_t capacity, size_t *size);
 enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_LIDAR_FRAME_MAX 722u
-#define RN1_LIDAR_FRAME_ROOM 722u
+#define RN1_LIDAR_FRAME_MAX 722U
+#define RN1_LIDAR_FRAME_ROOM 722U
 enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity,
                                 size_t *size);
 enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_SONAR_FRAME_MAX 16u
-#define RN1_SONAR_FRAME_ROOM 16u
+#define RN1_SONAR_FRAME_MAX 16U
+#define RN1_SONAR_FRAME_ROOM 16U
 enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity,
                                 size_t *size);
 enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FACING_FRAME_MAX 6u
-#define RN1_FACING_FRAME_ROOM 6u
+#define RN1_FACING_FRAME_MAX 6U
+#define RN1_FACING_FRAME_ROOM 6U
 enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity,
                                  size_t *size);
 enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum rn1_event_kind {
@@ -545,7 +545,7 @@ enum rn1_reason {
     RN1_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what host sends -------------------------------------------------------------------- */
+/* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
 #define RN1_HOST_FRAME_MAX 9U
@@ -582,15 +582,25 @@ typedef void (*rn1_host_handler)(void *user, const struct rn1_host_event *event)
 struct rn1_host_decoder {
     rn1_host_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint8_t noise;
+    /** Bytes of the candidate on the wire. */
     uint8_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint8_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint8_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint8_t limit;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of the candidate. */
     uint8_t buffer[9];
 };
 
@@ -606,7 +616,7 @@ void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_host_decoder_flush(struct rn1_host_decoder *decoder);
 
-/* --- what brain sends -------------------------------------------------------------------- */
+/* --- what brain sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of brain on the wire, in bytes. */
 #define RN1_BRAIN_FRAME_MAX 722U
@@ -643,21 +653,33 @@ typedef void (*rn1_brain_handler)(void *user, const struct rn1_brain_event *even
 struct rn1_brain_decoder {
     rn1_brain_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Bytes on the wire in front of the first that may be a start. */
     uint16_t open_from;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of the candidate. */
     uint8_t buffer[722];
 };
 
 /** Start at the beginning of an input. */
-void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler, void *user);
+void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
+                            void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte);
@@ -668,13 +690,13 @@ void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *da
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * RN1_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining RN1_NO_HANDLERS for the source.
  */
 
 /** move_manual came from host. */

@@ -23,20 +23,20 @@
 
 static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0u;
+    uint8_t all = 0U;
     for (size_t i = 0; i < size; i++) {
         all |= bytes[i];
     }
-    return all <= 0x7Fu;
+    return all <= 0x7FU;
 }
 
 static int8_t rn1_firmware_load_s7(const uint8_t *at) {
-    return (int8_t)((at[0] ^ 0x40u) - 0x40u);
+    return (int8_t)((at[0] ^ 0x40U) - 0x40U);
 }
 
 static void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
-    at[1] = (uint8_t)(value & 0x7Fu);
+    at[0] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    at[1] = (uint8_t)(value & 0x7FU);
 }
 
 static uint16_t rn1_firmware_load_u14be(const uint8_t *at) {
@@ -44,7 +44,7 @@ static uint16_t rn1_firmware_load_u14be(const uint8_t *at) {
 }
 
 static int16_t rn1_firmware_load_s14be(const uint8_t *at) {
-    return (int16_t)((rn1_firmware_load_u14be(at) ^ 0x2000u) - 0x2000u);
+    return (int16_t)((rn1_firmware_load_u14be(at) ^ 0x2000U) - 0x2000U);
 }
 
 static void rn1_firmware_copy(void *to, const void *from, size_t size) {
@@ -57,8 +57,8 @@ static void rn1_firmware_copy(void *to, const void *from, size_t size) {
 }
 
 static void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7Fu);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu);
+    at[0] = (uint8_t)(value & 0x7FU);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
 }
 
 static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
@@ -66,11 +66,11 @@ static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
 }
 
 static int16_t rn1_firmware_load_s14le(const uint8_t *at) {
-    return (int16_t)((rn1_firmware_load_u14le(at) ^ 0x2000u) - 0x2000u);
+    return (int16_t)((rn1_firmware_load_u14le(at) ^ 0x2000U) - 0x2000U);
 }
 
 static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count) {
-    uint16_t all = 0u;
+    uint16_t all = 0U;
     for (size_t i = 0; i < count; i++) {
         all |= numbers[i];
     }
@@ -80,8 +80,8 @@ static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count)
 static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
     size_t i = 0;
 #if RN1_FIRMWARE_SSE2
-    for (; count - i >= 8u; i += 8u) {
-        const void *const from = &at[2u * i];
+    for (; count - i >= 8U; i += 8U) {
+        const void *const from = &at[2U * i];
         const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
         const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));
         const __m128i next = _mm_srli_epi16(pairs, 1);
@@ -90,29 +90,30 @@ static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, si
     }
 #endif
     for (; i < count; i++) {
-        numbers[i] = rn1_firmware_load_u14le(&at[2u * i]);
+        numbers[i] = rn1_firmware_load_u14le(&at[2U * i]);
     }
 }
 
 static void rn1_firmware_store_u32be(uint8_t *at, uint32_t value) {
     at[0] = (uint8_t)(value >> 28);
-    at[1] = (uint8_t)((value >> 21) & 0x7Fu);
-    at[2] = (uint8_t)((value >> 14) & 0x7Fu);
-    at[3] = (uint8_t)((value >> 7) & 0x7Fu);
-    at[4] = (uint8_t)(value & 0x7Fu);
+    at[1] = (uint8_t)((value >> 21) & 0x7FU);
+    at[2] = (uint8_t)((value >> 14) & 0x7FU);
+    at[3] = (uint8_t)((value >> 7) & 0x7FU);
+    at[4] = (uint8_t)(value & 0x7FU);
 }
 
 static uint32_t rn1_firmware_load_u32be(const uint8_t *at) {
-    uint32_t value = 0u;
+    uint32_t value = 0U;
     for (size_t i = 0; i < 5; i++) {
         value = (uint32_t)(value << 7) | at[i];
     }
     return value;
 }
 
-/* --- move_manual ------------------------------------------------------------------------------- */
+/* --- move_manual ------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_move_manual_validate(const struct rn1_firmware_move_manual *message) {
+static enum rn1_firmware_result rn1_firmware_move_manual_validate(
+    const struct rn1_firmware_move_manual *message) {
     if (message->speed < -64 || message->speed > 63) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
@@ -124,29 +125,29 @@ static enum rn1_firmware_result rn1_firmware_move_manual_validate(const struct r
 
 static void rn1_firmware_move_manual_store(const struct rn1_firmware_move_manual *message,
                                            uint8_t *payload) {
-    payload[0] = (uint8_t)((uint8_t)message->speed & 0x7Fu);
-    payload[1] = (uint8_t)((uint8_t)message->arc & 0x7Fu);
+    payload[0] = (uint8_t)((uint8_t)message->speed & 0x7FU);
+    payload[1] = (uint8_t)((uint8_t)message->arc & 0x7FU);
 }
 
-enum rn1_firmware_result rn1_firmware_move_manual_encode(const struct rn1_firmware_move_manual *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size) {
+enum rn1_firmware_result rn1_firmware_move_manual_encode(
+    const struct rn1_firmware_move_manual *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 2u) {
+    if (capacity < 2U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_move_manual_store(message, payload);
-    *size = 2u;
+    *size = 2U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_move_manual_check(const uint8_t *payload, size_t size,
                                                                size_t *need) {
     (void)need;
-    if (size != 2u) {
+    if (size != 2U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 2)) {
@@ -171,9 +172,10 @@ enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_mov
     return RN1_FIRMWARE_OK;
 }
 
-/* --- move_relative_twostep --------------------------------------------------------------------- */
+/* --- move_relative_twostep -------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(const struct rn1_firmware_move_relative_twostep *message) {
+static enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
+    const struct rn1_firmware_move_relative_twostep *message) {
     if (message->angle < -8192 || message->angle > 8191) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
@@ -183,24 +185,24 @@ static enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(cons
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_move_relative_twostep_store(const struct rn1_firmware_move_relative_twostep *message,
-                                                     uint8_t *payload) {
+static void rn1_firmware_move_relative_twostep_store(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload) {
     rn1_firmware_store_u14be(payload, (uint16_t)message->angle);
     rn1_firmware_store_u14be(payload + 2, (uint16_t)message->forward);
 }
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(const struct rn1_firmware_move_relative_twostep *message,
-                                                                   uint8_t *payload,
-                                                                   size_t capacity, size_t *size) {
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_move_relative_twostep_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return RN1_FIRMWARE_OK;
 }
 
@@ -208,7 +210,7 @@ static enum rn1_firmware_result rn1_firmware_move_relative_twostep_check(const u
                                                                          size_t size,
                                                                          size_t *need) {
     (void)need;
-    if (size != 4u) {
+    if (size != 4U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 4)) {
@@ -223,10 +225,10 @@ void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_t
     message->forward = rn1_firmware_load_s14be(payload + 2);
 }
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(struct rn1_firmware_move_relative_twostep *message,
-                                                                   const uint8_t *payload,
-                                                                   size_t size) {
-    const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_check(payload, size, NULL);
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(
+    struct rn1_firmware_move_relative_twostep *message, const uint8_t *payload, size_t size) {
+    const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_check(payload, size,
+                                                                                     NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
@@ -234,42 +236,43 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(struct rn1_fi
     return RN1_FIRMWARE_OK;
 }
 
-/* --- decrease_phase_angle ---------------------------------------------------------------------- */
+/* --- decrease_phase_angle --------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_validate(const struct rn1_firmware_decrease_phase_angle *message) {
-    if (message->ignored > 127u) {
+static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_validate(
+    const struct rn1_firmware_decrease_phase_angle *message) {
+    if (message->ignored > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_decrease_phase_angle_store(const struct rn1_firmware_decrease_phase_angle *message,
-                                                    uint8_t *payload) {
+static void rn1_firmware_decrease_phase_angle_store(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload) {
     payload[0] = message->ignored;
 }
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                  uint8_t *payload, size_t capacity,
-                                                                  size_t *size) {
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_decrease_phase_angle_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_check(const uint8_t *payload,
                                                                         size_t size, size_t *need) {
     (void)need;
-    if (size != 1u) {
+    if (size != 1U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[0] > 0x7Fu) {
+    if (payload[0] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     return RN1_FIRMWARE_OK;
@@ -280,10 +283,10 @@ void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_a
     message->ignored = payload[0];
 }
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(struct rn1_firmware_decrease_phase_angle *message,
-                                                                  const uint8_t *payload,
-                                                                  size_t size) {
-    const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_check(payload, size, NULL);
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
+    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size) {
+    const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_check(payload, size,
+                                                                                    NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
@@ -291,42 +294,43 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(struct rn1_fir
     return RN1_FIRMWARE_OK;
 }
 
-/* --- increase_phase_angle ---------------------------------------------------------------------- */
+/* --- increase_phase_angle --------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_increase_phase_angle_validate(const struct rn1_firmware_increase_phase_angle *message) {
-    if (message->ignored > 127u) {
+static enum rn1_firmware_result rn1_firmware_increase_phase_angle_validate(
+    const struct rn1_firmware_increase_phase_angle *message) {
+    if (message->ignored > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_increase_phase_angle_store(const struct rn1_firmware_increase_phase_angle *message,
-                                                    uint8_t *payload) {
+static void rn1_firmware_increase_phase_angle_store(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload) {
     payload[0] = message->ignored;
 }
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(const struct rn1_firmware_increase_phase_angle *message,
-                                                                  uint8_t *payload, size_t capacity,
-                                                                  size_t *size) {
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 1u) {
+    if (capacity < 1U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_increase_phase_angle_store(message, payload);
-    *size = 1u;
+    *size = 1U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_increase_phase_angle_check(const uint8_t *payload,
                                                                         size_t size, size_t *need) {
     (void)need;
-    if (size != 1u) {
+    if (size != 1U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[0] > 0x7Fu) {
+    if (payload[0] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     return RN1_FIRMWARE_OK;
@@ -337,10 +341,10 @@ void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_a
     message->ignored = payload[0];
 }
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(struct rn1_firmware_increase_phase_angle *message,
-                                                                  const uint8_t *payload,
-                                                                  size_t size) {
-    const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_check(payload, size, NULL);
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
+    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload, size_t size) {
+    const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_check(payload, size,
+                                                                                    NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
@@ -348,14 +352,14 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(struct rn1_fir
     return RN1_FIRMWARE_OK;
 }
 
-/* --- maintenance ------------------------------------------------------------------------------- */
+/* --- maintenance ------------------------------------------------------------------------------ */
 
 static size_t rn1_firmware_maintenance_measure(const struct rn1_firmware_maintenance *message) {
-    size_t size = 4u;
+    size_t size = 4U;
     switch (message->operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         size += 1;
         break;
     default:
@@ -365,24 +369,26 @@ static size_t rn1_firmware_maintenance_measure(const struct rn1_firmware_mainten
     return size;
 }
 
-static enum rn1_firmware_result rn1_firmware_maintenance_validate(const struct rn1_firmware_maintenance *message) {
-    if (message->operation > 127u) {
+static enum rn1_firmware_result rn1_firmware_maintenance_validate(
+    const struct rn1_firmware_maintenance *message) {
+    if (message->operation > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     switch (message->operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
-        if (message->argument.run_motor_controller_flasher.motor_controller < 1u ||
-            message->argument.run_motor_controller_flasher.motor_controller > 4u) {
+    case 83U:
+        if (message->argument.run_motor_controller_flasher.motor_controller < 1U ||
+            message->argument.run_motor_controller_flasher.motor_controller > 4U) {
             return RN1_FIRMWARE_ERROR_RANGE;
         }
         break;
     default:
-        if (message->argument.other.size > 1u) {
+        if (message->argument.other.size > 1U) {
             return RN1_FIRMWARE_ERROR_RANGE;
         }
-        if (!rn1_firmware_is_seven_bit(message->argument.other.bytes, message->argument.other.size)) {
+        if (!rn1_firmware_is_seven_bit(message->argument.other.bytes,
+                                       message->argument.other.size)) {
             return RN1_FIRMWARE_ERROR_RANGE;
         }
         break;
@@ -392,14 +398,14 @@ static enum rn1_firmware_result rn1_firmware_maintenance_validate(const struct r
 
 static void rn1_firmware_maintenance_store(const struct rn1_firmware_maintenance *message,
                                            uint8_t *payload) {
-    payload[0] = 0x42u;
-    payload[1] = 0x11u;
-    payload[2] = 0x7Au;
+    payload[0] = 0x42U;
+    payload[1] = 0x11U;
+    payload[2] = 0x7AU;
     payload[3] = message->operation;
     switch (message->operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         payload[4] = message->argument.run_motor_controller_flasher.motor_controller;
         break;
     default:
@@ -408,9 +414,9 @@ static void rn1_firmware_maintenance_store(const struct rn1_firmware_maintenance
     }
 }
 
-enum rn1_firmware_result rn1_firmware_maintenance_encode(const struct rn1_firmware_maintenance *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size) {
+enum rn1_firmware_result rn1_firmware_maintenance_encode(
+    const struct rn1_firmware_maintenance *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -427,55 +433,55 @@ enum rn1_firmware_result rn1_firmware_maintenance_encode(const struct rn1_firmwa
 static enum rn1_firmware_result rn1_firmware_maintenance_check(const uint8_t *payload, size_t size,
                                                                size_t *need) {
     (void)need;
-    if (size < 1u) {
+    if (size < 1U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[0] > 0x7Fu) {
+    if (payload[0] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (size < 2u) {
+    if (size < 2U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[1] > 0x7Fu) {
+    if (payload[1] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (size < 3u) {
+    if (size < 3U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[2] > 0x7Fu) {
+    if (payload[2] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (payload[0] != 0x42u) {
+    if (payload[0] != 0x42U) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
-    if (payload[1] != 0x11u) {
+    if (payload[1] != 0x11U) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
-    if (payload[2] != 0x7Au) {
+    if (payload[2] != 0x7AU) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
-    if (size < 4u) {
+    if (size < 4U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
-    if (payload[3] > 0x7Fu) {
+    if (payload[3] > 0x7FU) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     const uint8_t operation = payload[3];
     size_t at = 4;
     switch (operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
-        if (size - at < 1u) {
+    case 83U:
+        if (size - at < 1U) {
             return RN1_FIRMWARE_ERROR_SIZE;
         }
-        if (payload[at] > 0x7Fu) {
+        if (payload[at] > 0x7FU) {
             return RN1_FIRMWARE_ERROR_ENCODING;
         }
         at += 1;
         break;
     default:
-        if (size - at > 1u) {
+        if (size - at > 1U) {
             return RN1_FIRMWARE_ERROR_SIZE;
         }
         if (!rn1_firmware_is_seven_bit(payload + at, size - at)) {
@@ -494,13 +500,13 @@ void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, con
                                    size_t size) {
     message->operation = payload[3];
     switch (message->operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
+    case 83U:
         message->argument.run_motor_controller_flasher.motor_controller = payload[4];
         break;
     default:
-        message->argument.other.size = (uint8_t)(size - 4u);
+        message->argument.other.size = (uint8_t)(size - 4U);
         rn1_firmware_copy(message->argument.other.bytes, payload + 4, message->argument.other.size);
         break;
     }
@@ -516,10 +522,11 @@ enum rn1_firmware_result rn1_firmware_maintenance_decode(struct rn1_firmware_mai
     return RN1_FIRMWARE_OK;
 }
 
-/* --- gyro -------------------------------------------------------------------------------------- */
+/* --- gyro ------------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_gyro_validate(const struct rn1_firmware_gyro *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_gyro_validate(
+    const struct rn1_firmware_gyro *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     if (message->int_x < -8192 || message->int_x > 8191) {
@@ -547,18 +554,18 @@ enum rn1_firmware_result rn1_firmware_gyro_encode(const struct rn1_firmware_gyro
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_gyro_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_gyro_check(const uint8_t *payload, size_t size,
                                                         size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 7)) {
@@ -584,10 +591,11 @@ enum rn1_firmware_result rn1_firmware_gyro_decode(struct rn1_firmware_gyro *mess
     return RN1_FIRMWARE_OK;
 }
 
-/* --- xcel -------------------------------------------------------------------------------------- */
+/* --- xcel ------------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_xcel_validate(const struct rn1_firmware_xcel *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_xcel_validate(
+    const struct rn1_firmware_xcel *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     if (message->int_x < -8192 || message->int_x > 8191) {
@@ -615,18 +623,18 @@ enum rn1_firmware_result rn1_firmware_xcel_encode(const struct rn1_firmware_xcel
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_xcel_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_xcel_check(const uint8_t *payload, size_t size,
                                                         size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 7)) {
@@ -652,10 +660,11 @@ enum rn1_firmware_result rn1_firmware_xcel_decode(struct rn1_firmware_xcel *mess
     return RN1_FIRMWARE_OK;
 }
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_compass_validate(const struct rn1_firmware_compass *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_compass_validate(
+    const struct rn1_firmware_compass *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     if (message->avg_x < -8192 || message->avg_x > 8191) {
@@ -685,18 +694,18 @@ enum rn1_firmware_result rn1_firmware_compass_encode(const struct rn1_firmware_c
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_compass_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_compass_check(const uint8_t *payload, size_t size,
                                                            size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 7)) {
@@ -722,13 +731,14 @@ enum rn1_firmware_result rn1_firmware_compass_decode(struct rn1_firmware_compass
     return RN1_FIRMWARE_OK;
 }
 
-/* --- lidar ------------------------------------------------------------------------------------- */
+/* --- lidar ------------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_lidar_validate(const struct rn1_firmware_lidar *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_lidar_validate(
+    const struct rn1_firmware_lidar *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (rn1_firmware_all_bits_u16(message->distances, 360u) > 16383u) {
+    if (rn1_firmware_all_bits_u16(message->distances, 360U) > 16383U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -736,7 +746,7 @@ static enum rn1_firmware_result rn1_firmware_lidar_validate(const struct rn1_fir
 
 static void rn1_firmware_lidar_store(const struct rn1_firmware_lidar *message, uint8_t *payload) {
     payload[0] = message->status;
-    for (size_t i = 0; i < 360u; i++) {
+    for (size_t i = 0; i < 360U; i++) {
         rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
     }
 }
@@ -748,18 +758,18 @@ enum rn1_firmware_result rn1_firmware_lidar_encode(const struct rn1_firmware_lid
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 721u) {
+    if (capacity < 721U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_lidar_store(message, payload);
-    *size = 721u;
+    *size = 721U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_lidar_check(const uint8_t *payload, size_t size,
                                                          size_t *need) {
     (void)need;
-    if (size != 721u) {
+    if (size != 721U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 721)) {
@@ -770,7 +780,7 @@ static enum rn1_firmware_result rn1_firmware_lidar_check(const uint8_t *payload,
 
 void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload) {
     message->status = payload[0];
-    rn1_firmware_load_u14le_run(message->distances, payload + 1, 360u);
+    rn1_firmware_load_u14le_run(message->distances, payload + 1, 360U);
 }
 
 enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *message,
@@ -783,13 +793,14 @@ enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *me
     return RN1_FIRMWARE_OK;
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_sonar_validate(const struct rn1_firmware_sonar *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_sonar_validate(
+    const struct rn1_firmware_sonar *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (rn1_firmware_all_bits_u16(message->distances, 3u) > 16383u) {
+    if (rn1_firmware_all_bits_u16(message->distances, 3U) > 16383U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -797,7 +808,7 @@ static enum rn1_firmware_result rn1_firmware_sonar_validate(const struct rn1_fir
 
 static void rn1_firmware_sonar_store(const struct rn1_firmware_sonar *message, uint8_t *payload) {
     payload[0] = message->status;
-    for (size_t i = 0; i < 3u; i++) {
+    for (size_t i = 0; i < 3U; i++) {
         rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
     }
 }
@@ -809,18 +820,18 @@ enum rn1_firmware_result rn1_firmware_sonar_encode(const struct rn1_firmware_son
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 7u) {
+    if (capacity < 7U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_sonar_store(message, payload);
-    *size = 7u;
+    *size = 7U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_sonar_check(const uint8_t *payload, size_t size,
                                                          size_t *need) {
     (void)need;
-    if (size != 7u) {
+    if (size != 7U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 7)) {
@@ -831,7 +842,7 @@ static enum rn1_firmware_result rn1_firmware_sonar_check(const uint8_t *payload,
 
 void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload) {
     message->status = payload[0];
-    rn1_firmware_load_u14le_run(message->distances, payload + 1, 3u);
+    rn1_firmware_load_u14le_run(message->distances, payload + 1, 3U);
 }
 
 enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *message,
@@ -844,10 +855,11 @@ enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *me
     return RN1_FIRMWARE_OK;
 }
 
-/* --- facing ------------------------------------------------------------------------------------ */
+/* --- facing ----------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_facing_validate(const struct rn1_firmware_facing *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_facing_validate(
+    const struct rn1_firmware_facing *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     if (message->heading < -8192 || message->heading > 8191) {
@@ -872,18 +884,18 @@ enum rn1_firmware_result rn1_firmware_facing_encode(const struct rn1_firmware_fa
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 5u) {
+    if (capacity < 5U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_facing_store(message, payload);
-    *size = 5u;
+    *size = 5U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_facing_check(const uint8_t *payload, size_t size,
                                                           size_t *need) {
     (void)need;
-    if (size != 5u) {
+    if (size != 5U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 5)) {
@@ -908,10 +920,11 @@ enum rn1_firmware_result rn1_firmware_facing_decode(struct rn1_firmware_facing *
     return RN1_FIRMWARE_OK;
 }
 
-/* --- optflow_integral -------------------------------------------------------------------------- */
+/* --- optflow_integral ------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_optflow_integral_validate(const struct rn1_firmware_optflow_integral *message) {
-    if (message->status > 127u) {
+static enum rn1_firmware_result rn1_firmware_optflow_integral_validate(
+    const struct rn1_firmware_optflow_integral *message) {
+    if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     if (message->int_x < -8192 || message->int_x > 8191) {
@@ -930,25 +943,25 @@ static void rn1_firmware_optflow_integral_store(const struct rn1_firmware_optflo
     rn1_firmware_store_u14be(payload + 3, (uint16_t)message->int_y);
 }
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_encode(const struct rn1_firmware_optflow_integral *message,
-                                                              uint8_t *payload, size_t capacity,
-                                                              size_t *size) {
+enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 5u) {
+    if (capacity < 5U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_optflow_integral_store(message, payload);
-    *size = 5u;
+    *size = 5U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_optflow_integral_check(const uint8_t *payload,
                                                                     size_t size, size_t *need) {
     (void)need;
-    if (size != 5u) {
+    if (size != 5U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 5)) {
@@ -964,9 +977,10 @@ void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *me
     message->int_y = rn1_firmware_load_s14be(payload + 3);
 }
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_decode(struct rn1_firmware_optflow_integral *message,
-                                                              const uint8_t *payload, size_t size) {
-    const enum rn1_firmware_result result = rn1_firmware_optflow_integral_check(payload, size, NULL);
+enum rn1_firmware_result rn1_firmware_optflow_integral_decode(
+    struct rn1_firmware_optflow_integral *message, const uint8_t *payload, size_t size) {
+    const enum rn1_firmware_result result = rn1_firmware_optflow_integral_check(payload, size,
+                                                                                NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
@@ -974,33 +988,33 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_decode(struct rn1_firmwar
     return RN1_FIRMWARE_OK;
 }
 
-/* --- motor_controller_message ------------------------------------------------------------------ */
+/* --- motor_controller_message ----------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_motor_controller_message_validate(const struct rn1_firmware_motor_controller_message *message) {
-    if (message->last_msg > 16383u) {
+static enum rn1_firmware_result rn1_firmware_motor_controller_message_validate(
+    const struct rn1_firmware_motor_controller_message *message) {
+    if (message->last_msg > 16383U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_motor_controller_message_store(const struct rn1_firmware_motor_controller_message *message,
-                                                        uint8_t *payload) {
+static void rn1_firmware_motor_controller_message_store(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *payload) {
     rn1_firmware_store_u14be(payload, message->last_msg);
 }
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(const struct rn1_firmware_motor_controller_message *message,
-                                                                      uint8_t *payload,
-                                                                      size_t capacity,
-                                                                      size_t *size) {
+enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    if (capacity < 2u) {
+    if (capacity < 2U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_motor_controller_message_store(message, payload);
-    *size = 2u;
+    *size = 2U;
     return RN1_FIRMWARE_OK;
 }
 
@@ -1008,7 +1022,7 @@ static enum rn1_firmware_result rn1_firmware_motor_controller_message_check(cons
                                                                             size_t size,
                                                                             size_t *need) {
     (void)need;
-    if (size != 2u) {
+    if (size != 2U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 2)) {
@@ -1017,15 +1031,15 @@ static enum rn1_firmware_result rn1_firmware_motor_controller_message_check(cons
     return RN1_FIRMWARE_OK;
 }
 
-void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_controller_message *message,
-                                                const uint8_t *payload) {
+void rn1_firmware_motor_controller_message_load(
+    struct rn1_firmware_motor_controller_message *message, const uint8_t *payload) {
     message->last_msg = rn1_firmware_load_u14be(payload);
 }
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(struct rn1_firmware_motor_controller_message *message,
-                                                                      const uint8_t *payload,
-                                                                      size_t size) {
-    const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_check(payload, size, NULL);
+enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(
+    struct rn1_firmware_motor_controller_message *message, const uint8_t *payload, size_t size) {
+    const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_check(payload,
+                                                                                        size, NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
@@ -1033,7 +1047,7 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(struct rn1
     return RN1_FIRMWARE_OK;
 }
 
-/* --- debug_numbers ----------------------------------------------------------------------------- */
+/* --- debug_numbers ---------------------------------------------------------------------------- */
 
 static void rn1_firmware_debug_numbers_store(const struct rn1_firmware_debug_numbers *message,
                                              uint8_t *payload) {
@@ -1043,45 +1057,45 @@ static void rn1_firmware_debug_numbers_store(const struct rn1_firmware_debug_num
     rn1_firmware_store_u32be(payload + 15, (uint32_t)message->dbg4);
 }
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_encode(const struct rn1_firmware_debug_numbers *message,
-                                                           uint8_t *payload, size_t capacity,
-                                                           size_t *size) {
-    if (capacity < 20u) {
+enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 20U) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_debug_numbers_store(message, payload);
-    *size = 20u;
+    *size = 20U;
     return RN1_FIRMWARE_OK;
 }
 
 static enum rn1_firmware_result rn1_firmware_debug_numbers_check(const uint8_t *payload,
                                                                  size_t size, size_t *need) {
     (void)need;
-    if (size != 20u) {
+    if (size != 20U) {
         return RN1_FIRMWARE_ERROR_SIZE;
     }
     if (!rn1_firmware_is_seven_bit(payload, 5)) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (payload[0] > 0x0Fu) {
+    if (payload[0] > 0x0FU) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
     if (!rn1_firmware_is_seven_bit(payload + 5, 5)) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (payload[5] > 0x0Fu) {
+    if (payload[5] > 0x0FU) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
     if (!rn1_firmware_is_seven_bit(payload + 10, 5)) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (payload[10] > 0x0Fu) {
+    if (payload[10] > 0x0FU) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
     if (!rn1_firmware_is_seven_bit(payload + 15, 5)) {
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
-    if (payload[15] > 0x0Fu) {
+    if (payload[15] > 0x0FU) {
         return RN1_FIRMWARE_ERROR_VALUE;
     }
     return RN1_FIRMWARE_OK;
@@ -1095,8 +1109,8 @@ void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
     message->dbg4 = (int32_t)rn1_firmware_load_u32be(payload + 15);
 }
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_decode(struct rn1_firmware_debug_numbers *message,
-                                                           const uint8_t *payload, size_t size) {
+enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
+    struct rn1_firmware_debug_numbers *message, const uint8_t *payload, size_t size) {
     const enum rn1_firmware_result result = rn1_firmware_debug_numbers_check(payload, size, NULL);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1105,7 +1119,7 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_decode(struct rn1_firmware_d
     return RN1_FIRMWARE_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     RN1_FIRMWARE_SEEKING,
@@ -1115,11 +1129,11 @@ enum {
 
 enum {
     RN1_FIRMWARE_KNOWN = 1,     /* The payload's size is known. */
-    RN1_FIRMWARE_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    RN1_FIRMWARE_OPEN = 2,      /* Only what follows the payload tells its size. */
     RN1_FIRMWARE_SEARCHING = 4, /* A delimiter is looked for. */
-    RN1_FIRMWARE_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    RN1_FIRMWARE_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     RN1_FIRMWARE_EMPTY = 16,    /* The stuffed region holds nothing. */
-    RN1_FIRMWARE_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    RN1_FIRMWARE_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -1128,7 +1142,8 @@ enum {
     RN1_FIRMWARE_AFTER
 };
 
-#define RN1_FIRMWARE_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define RN1_FIRMWARE_FRAME 0xFFU
 
 #if RN1_FIRMWARE_FAST_FEED
 #include <string.h>
@@ -1160,12 +1175,12 @@ static bool rn1_firmware_is_high(const uint8_t *data, size_t size) {
 }
 #endif
 
-/* --- what host sends: frames -------------------------------------------------------------- */
+/* --- what host sends: frames ------------------------------------------------------------------ */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_firmware_host_room(size_t payload) {
-    const size_t content = 1u + payload + 0u;
-    return content + 1u;
+    const size_t content = 1U + payload + 0U;
+    return content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -1177,20 +1192,20 @@ static uint8_t *rn1_firmware_host_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_firmware_host_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_firmware_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + 0u;
+    uint8_t *const tail = &content[1U + payload];
+    size_t size = 1U + payload + 0U;
     (void)tail;
-    content[0u] = (uint8_t)start;
-    frame[size + 0u] = 0xFF;
-    return size + 1u;
+    content[0U] = (uint8_t)start;
+    frame[size + 0U] = 0xFFU;
+    return size + 1U;
 }
 
-/* --- what brain sends: frames -------------------------------------------------------------- */
+/* --- what brain sends: frames ----------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_firmware_brain_room(size_t payload) {
-    const size_t content = 1u + payload + 0u;
-    return content + 0u;
+    const size_t content = 1U + payload + 0U;
+    return content + 0U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -1202,40 +1217,43 @@ static uint8_t *rn1_firmware_brain_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_firmware_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_firmware_brain_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1u + payload];
-    size_t size = 1u + payload + 0u;
+    uint8_t *const tail = &content[1U + payload];
+    size_t size = 1U + payload + 0U;
     (void)tail;
-    content[0u] = (uint8_t)start;
-    return size + 0u;
+    content[0U] = (uint8_t)start;
+    return size + 0U;
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 static inline void rn1_firmware_write(rn1_firmware_put put, void *user, uint8_t byte) {
     put(user, byte);
 }
 
-static void rn1_firmware_host_send_head(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
+static void rn1_firmware_host_send_head(rn1_firmware_put put, void *user, size_t payload,
+                                        uint8_t start) {
     (void)payload;
     (void)start;
     rn1_firmware_write(put, user, (uint8_t)start);
 }
 
-static void rn1_firmware_host_send_tail(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
+static void rn1_firmware_host_send_tail(rn1_firmware_put put, void *user, size_t payload,
+                                        uint8_t start) {
     (void)payload;
     (void)start;
-    put(user, 0xFF);
+    put(user, 0xFFU);
 }
 
-static void rn1_firmware_brain_send_head(rn1_firmware_put put, void *user, size_t payload, uint8_t start) {
+static void rn1_firmware_brain_send_head(rn1_firmware_put put, void *user, size_t payload,
+                                         uint8_t start) {
     (void)payload;
     (void)start;
     rn1_firmware_write(put, user, (uint8_t)start);
 }
 
 static void rn1_firmware_write_u14be(rn1_firmware_put put, void *user, uint16_t value) {
-    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
 }
 
 static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const void *from,
@@ -1247,54 +1265,56 @@ static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const voi
 }
 
 static void rn1_firmware_write_u14le(rn1_firmware_put put, void *user, uint16_t value) {
-    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
 }
 
 static void rn1_firmware_write_u32be(rn1_firmware_put put, void *user, uint32_t value) {
     rn1_firmware_write(put, user, (uint8_t)(value >> 28));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 21) & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 14) & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 7) & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)(value & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 21) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 14) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((value >> 7) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
 }
 
 static void rn1_firmware_move_manual_put(const struct rn1_firmware_move_manual *message,
                                          rn1_firmware_put put, void *user) {
-    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7Fu));
-    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7Fu));
+    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7FU));
 }
 
-static void rn1_firmware_move_relative_twostep_put(const struct rn1_firmware_move_relative_twostep *message,
-                                                   rn1_firmware_put put, void *user) {
+static void rn1_firmware_move_relative_twostep_put(
+    const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write_u14be(put, user, (uint16_t)message->angle);
     rn1_firmware_write_u14be(put, user, (uint16_t)message->forward);
 }
 
-static void rn1_firmware_decrease_phase_angle_put(const struct rn1_firmware_decrease_phase_angle *message,
-                                                  rn1_firmware_put put, void *user) {
+static void rn1_firmware_decrease_phase_angle_put(
+    const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->ignored);
 }
 
-static void rn1_firmware_increase_phase_angle_put(const struct rn1_firmware_increase_phase_angle *message,
-                                                  rn1_firmware_put put, void *user) {
+static void rn1_firmware_increase_phase_angle_put(
+    const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->ignored);
 }
 
 static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *message,
                                          rn1_firmware_put put, void *user) {
-    rn1_firmware_write(put, user, 0x42u);
-    rn1_firmware_write(put, user, 0x11u);
-    rn1_firmware_write(put, user, 0x7Au);
+    rn1_firmware_write(put, user, 0x42U);
+    rn1_firmware_write(put, user, 0x11U);
+    rn1_firmware_write(put, user, 0x7AU);
     rn1_firmware_write(put, user, message->operation);
     switch (message->operation) {
-    case 82u:
+    case 82U:
         break;
-    case 83u:
-        rn1_firmware_write(put, user, message->argument.run_motor_controller_flasher.motor_controller);
+    case 83U:
+        rn1_firmware_write(put, user,
+                           message->argument.run_motor_controller_flasher.motor_controller);
         break;
     default:
-        rn1_firmware_write_bytes(put, user, message->argument.other.bytes, message->argument.other.size);
+        rn1_firmware_write_bytes(put, user, message->argument.other.bytes,
+                                 message->argument.other.size);
         break;
     }
 }
@@ -1326,7 +1346,7 @@ static void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
 static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
                                    rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    for (size_t i = 0; i < 360u; i++) {
+    for (size_t i = 0; i < 360U; i++) {
         rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
@@ -1334,7 +1354,7 @@ static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
 static void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
                                    rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    for (size_t i = 0; i < 3u; i++) {
+    for (size_t i = 0; i < 3U; i++) {
         rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
@@ -1353,8 +1373,8 @@ static void rn1_firmware_optflow_integral_put(const struct rn1_firmware_optflow_
     rn1_firmware_write_u14be(put, user, (uint16_t)message->int_y);
 }
 
-static void rn1_firmware_motor_controller_message_put(const struct rn1_firmware_motor_controller_message *message,
-                                                      rn1_firmware_put put, void *user) {
+static void rn1_firmware_motor_controller_message_put(
+    const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write_u14be(put, user, message->last_msg);
 }
 
@@ -1366,10 +1386,9 @@ static void rn1_firmware_debug_numbers_put(const struct rn1_firmware_debug_numbe
     rn1_firmware_write_u32be(put, user, (uint32_t)message->dbg4);
 }
 
-enum rn1_firmware_result rn1_firmware_move_manual_frame(const struct rn1_firmware_move_manual *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size) {
-    const size_t payload = 2u;
+enum rn1_firmware_result rn1_firmware_move_manual_frame(
+    const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity, size_t *size) {
+    const size_t payload = 2U;
     const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1378,27 +1397,27 @@ enum rn1_firmware_result rn1_firmware_move_manual_frame(const struct rn1_firmwar
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_move_manual_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0x80);
+    *size = rn1_firmware_host_wrap(frame, payload, 0x80U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_move_manual_send(const struct rn1_firmware_move_manual *message,
-                                                       rn1_firmware_put put, void *user) {
-    const size_t payload = 2u;
+enum rn1_firmware_result rn1_firmware_move_manual_send(
+    const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 2U;
     const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_host_send_head(put, user, payload, 0x80);
+    rn1_firmware_host_send_head(put, user, payload, 0x80U);
     rn1_firmware_move_manual_put(message, put, user);
-    rn1_firmware_host_send_tail(put, user, payload, 0x80);
+    rn1_firmware_host_send_tail(put, user, payload, 0x80U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(const struct rn1_firmware_move_relative_twostep *message,
-                                                                  uint8_t *frame, size_t capacity,
-                                                                  size_t *size) {
-    const size_t payload = 4u;
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 4U;
     const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1407,27 +1426,27 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(const struct r
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_move_relative_twostep_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0x81);
+    *size = rn1_firmware_host_wrap(frame, payload, 0x81U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(const struct rn1_firmware_move_relative_twostep *message,
-                                                                 rn1_firmware_put put, void *user) {
-    const size_t payload = 4u;
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
+    const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 4U;
     const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_host_send_head(put, user, payload, 0x81);
+    rn1_firmware_host_send_head(put, user, payload, 0x81U);
     rn1_firmware_move_relative_twostep_put(message, put, user);
-    rn1_firmware_host_send_tail(put, user, payload, 0x81);
+    rn1_firmware_host_send_tail(put, user, payload, 0x81U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                 uint8_t *frame, size_t capacity,
-                                                                 size_t *size) {
-    const size_t payload = 1u;
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 1U;
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1436,27 +1455,27 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(const struct rn
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_decrease_phase_angle_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xD1);
+    *size = rn1_firmware_host_wrap(frame, payload, 0xD1U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                rn1_firmware_put put, void *user) {
-    const size_t payload = 1u;
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
+    const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 1U;
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_host_send_head(put, user, payload, 0xD1);
+    rn1_firmware_host_send_head(put, user, payload, 0xD1U);
     rn1_firmware_decrease_phase_angle_put(message, put, user);
-    rn1_firmware_host_send_tail(put, user, payload, 0xD1);
+    rn1_firmware_host_send_tail(put, user, payload, 0xD1U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(const struct rn1_firmware_increase_phase_angle *message,
-                                                                 uint8_t *frame, size_t capacity,
-                                                                 size_t *size) {
-    const size_t payload = 1u;
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 1U;
     const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1465,26 +1484,25 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(const struct rn
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_increase_phase_angle_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xD2);
+    *size = rn1_firmware_host_wrap(frame, payload, 0xD2U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(const struct rn1_firmware_increase_phase_angle *message,
-                                                                rn1_firmware_put put, void *user) {
-    const size_t payload = 1u;
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
+    const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 1U;
     const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_host_send_head(put, user, payload, 0xD2);
+    rn1_firmware_host_send_head(put, user, payload, 0xD2U);
     rn1_firmware_increase_phase_angle_put(message, put, user);
-    rn1_firmware_host_send_tail(put, user, payload, 0xD2);
+    rn1_firmware_host_send_tail(put, user, payload, 0xD2U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_maintenance_frame(const struct rn1_firmware_maintenance *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size) {
+enum rn1_firmware_result rn1_firmware_maintenance_frame(
+    const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity, size_t *size) {
     size_t payload;
     const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
     if (result != RN1_FIRMWARE_OK) {
@@ -1495,27 +1513,27 @@ enum rn1_firmware_result rn1_firmware_maintenance_frame(const struct rn1_firmwar
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_maintenance_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xFE);
+    *size = rn1_firmware_host_wrap(frame, payload, 0xFEU);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_maintenance_send(const struct rn1_firmware_maintenance *message,
-                                                       rn1_firmware_put put, void *user) {
+enum rn1_firmware_result rn1_firmware_maintenance_send(
+    const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user) {
     size_t payload;
     const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
     payload = rn1_firmware_maintenance_measure(message);
-    rn1_firmware_host_send_head(put, user, payload, 0xFE);
+    rn1_firmware_host_send_head(put, user, payload, 0xFEU);
     rn1_firmware_maintenance_put(message, put, user);
-    rn1_firmware_host_send_tail(put, user, payload, 0xFE);
+    rn1_firmware_host_send_tail(put, user, payload, 0xFEU);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message,
                                                  uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_gyro_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1524,25 +1542,25 @@ enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro 
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_gyro_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x80);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0x80U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *message,
                                                 rn1_firmware_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_gyro_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0x80);
+    rn1_firmware_brain_send_head(put, user, payload, 0x80U);
     rn1_firmware_gyro_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message,
                                                  uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_xcel_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1551,25 +1569,25 @@ enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel 
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_xcel_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x81);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0x81U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *message,
                                                 rn1_firmware_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_xcel_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0x81);
+    rn1_firmware_brain_send_head(put, user, payload, 0x81U);
     rn1_firmware_xcel_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_compass *message,
                                                     uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_compass_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1578,25 +1596,25 @@ enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_co
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_compass_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x82);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0x82U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_compass *message,
                                                    rn1_firmware_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_compass_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0x82);
+    rn1_firmware_brain_send_head(put, user, payload, 0x82U);
     rn1_firmware_compass_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message,
                                                   uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 721u;
+    const size_t payload = 721U;
     const enum rn1_firmware_result result = rn1_firmware_lidar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1605,25 +1623,25 @@ enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lida
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_lidar_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x84);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0x84U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar *message,
                                                  rn1_firmware_put put, void *user) {
-    const size_t payload = 721u;
+    const size_t payload = 721U;
     const enum rn1_firmware_result result = rn1_firmware_lidar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0x84);
+    rn1_firmware_brain_send_head(put, user, payload, 0x84U);
     rn1_firmware_lidar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message,
                                                   uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_sonar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1632,25 +1650,25 @@ enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sona
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_sonar_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x85);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0x85U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar *message,
                                                  rn1_firmware_put put, void *user) {
-    const size_t payload = 7u;
+    const size_t payload = 7U;
     const enum rn1_firmware_result result = rn1_firmware_sonar_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0x85);
+    rn1_firmware_brain_send_head(put, user, payload, 0x85U);
     rn1_firmware_sonar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_facing *message,
                                                    uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     const enum rn1_firmware_result result = rn1_firmware_facing_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1659,26 +1677,26 @@ enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_fac
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_facing_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xA0);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0xA0U);
     return RN1_FIRMWARE_OK;
 }
 
 enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_facing *message,
                                                   rn1_firmware_put put, void *user) {
-    const size_t payload = 5u;
+    const size_t payload = 5U;
     const enum rn1_firmware_result result = rn1_firmware_facing_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0xA0);
+    rn1_firmware_brain_send_head(put, user, payload, 0xA0U);
     rn1_firmware_facing_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_frame(const struct rn1_firmware_optflow_integral *message,
-                                                             uint8_t *frame, size_t capacity,
-                                                             size_t *size) {
-    const size_t payload = 5u;
+enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 5U;
     const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1687,27 +1705,26 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_frame(const struct rn1_fi
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_optflow_integral_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xA1);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0xA1U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_send(const struct rn1_firmware_optflow_integral *message,
-                                                            rn1_firmware_put put, void *user) {
-    const size_t payload = 5u;
+enum rn1_firmware_result rn1_firmware_optflow_integral_send(
+    const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 5U;
     const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0xA1);
+    rn1_firmware_brain_send_head(put, user, payload, 0xA1U);
     rn1_firmware_optflow_integral_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(const struct rn1_firmware_motor_controller_message *message,
-                                                                     uint8_t *frame,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
-    const size_t payload = 2u;
+enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 2U;
     const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
@@ -1715,49 +1732,50 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(const struc
     if (capacity < rn1_firmware_brain_room(payload)) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
-    rn1_firmware_motor_controller_message_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xD1);
+    rn1_firmware_motor_controller_message_store(message,
+                                                rn1_firmware_brain_payload(frame, payload));
+    *size = rn1_firmware_brain_wrap(frame, payload, 0xD1U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_send(const struct rn1_firmware_motor_controller_message *message,
-                                                                    rn1_firmware_put put,
-                                                                    void *user) {
-    const size_t payload = 2u;
+enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
+    const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 2U;
     const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
     if (result != RN1_FIRMWARE_OK) {
         return result;
     }
-    rn1_firmware_brain_send_head(put, user, payload, 0xD1);
+    rn1_firmware_brain_send_head(put, user, payload, 0xD1U);
     rn1_firmware_motor_controller_message_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_frame(const struct rn1_firmware_debug_numbers *message,
-                                                          uint8_t *frame, size_t capacity,
-                                                          size_t *size) {
-    const size_t payload = 20u;
+enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 20U;
     if (capacity < rn1_firmware_brain_room(payload)) {
         return RN1_FIRMWARE_ERROR_SPACE;
     }
     rn1_firmware_debug_numbers_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xD2);
+    *size = rn1_firmware_brain_wrap(frame, payload, 0xD2U);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_send(const struct rn1_firmware_debug_numbers *message,
-                                                         rn1_firmware_put put, void *user) {
-    const size_t payload = 20u;
-    rn1_firmware_brain_send_head(put, user, payload, 0xD2);
+enum rn1_firmware_result rn1_firmware_debug_numbers_send(
+    const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user) {
+    const size_t payload = 20U;
+    rn1_firmware_brain_send_head(put, user, payload, 0xD2U);
     rn1_firmware_debug_numbers_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-/* --- what host sends: the decoder --------------------------------------------------------- */
+/* --- what host sends: the decoder ------------------------------------------------------------- */
 
 /* Events. */
 
-static void rn1_firmware_host_invalid(struct rn1_firmware_host_decoder *decoder, uint8_t reason, uint8_t size) {
+static void rn1_firmware_host_invalid(struct rn1_firmware_host_decoder *decoder, uint8_t reason,
+                                      uint8_t size) {
     struct rn1_firmware_host_event event;
     event.kind = RN1_FIRMWARE_INVALID;
     event.reason = (enum rn1_firmware_reason)reason;
@@ -1791,26 +1809,40 @@ static void rn1_firmware_host_add_noise(struct rn1_firmware_host_decoder *decode
 
 /* The message of a valid frame. */
 
-static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *parts, const uint8_t *payload, uint8_t size, uint8_t *message) {
+static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *parts,
+                                          const uint8_t *payload, uint8_t size, uint8_t *message) {
     *message = RN1_FIRMWARE_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->start) {
-    case UINT8_C(0x80):
+    case 0x80U:
         *message = RN1_FIRMWARE_MESSAGE_MOVE_MANUAL;
-        return size == 2U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0x81):
+        if (size != 2U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0x81U:
         *message = RN1_FIRMWARE_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        return size == 4U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xD1):
+        if (size != 4U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xD1U:
         *message = RN1_FIRMWARE_MESSAGE_DECREASE_PHASE_ANGLE;
-        return size == 1U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xD2):
+        if (size != 1U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xD2U:
         *message = RN1_FIRMWARE_MESSAGE_INCREASE_PHASE_ANGLE;
-        return size == 1U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xFE):
+        if (size != 1U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xFEU:
         *message = RN1_FIRMWARE_MESSAGE_MAINTENANCE;
-        return (uint8_t)((size >= 4U && size <= 5U) ? (int)rn1_firmware_maintenance_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        if (size < 4U || size > 5U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return (uint8_t)rn1_firmware_maintenance_check(payload, size, NULL);
     default:
         return RN1_FIRMWARE_NO_REASON;
     }
@@ -1860,19 +1892,19 @@ static void rn1_firmware_host_set_payload(struct rn1_firmware_host_decoder *deco
 /* What the identity says of the payload's size. */
 static uint8_t rn1_firmware_host_find_size(struct rn1_firmware_host_decoder *decoder, uint8_t key) {
     switch (key) {
-    case UINT8_C(0x80):
+    case 0x80U:
         rn1_firmware_host_set_payload(decoder, 2U);
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         rn1_firmware_host_set_payload(decoder, 4U);
         break;
-    case UINT8_C(0xD1):
+    case 0xD1U:
         rn1_firmware_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0xD2):
+    case 0xD2U:
         rn1_firmware_host_set_payload(decoder, 1U);
         break;
-    case UINT8_C(0xFE):
+    case 0xFEU:
         decoder->limit = 6U;
         break;
     default:
@@ -1890,11 +1922,10 @@ static uint8_t rn1_firmware_host_enter_payload(struct rn1_firmware_host_decoder 
 }
 
 /* A byte in front of the payload. */
-static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *decoder, uint8_t index, uint8_t byte) {
+static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *decoder, uint8_t index,
+                                           uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -1913,7 +1944,8 @@ static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *dec
 static uint8_t rn1_firmware_host_cross(struct rn1_firmware_host_decoder *decoder) {
     if (((decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && decoder->content == decoder->limit)) {
         /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & RN1_FIRMWARE_OPEN) != 0U && (decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
+    } else if ((decoder->flags & RN1_FIRMWARE_OPEN) != 0U &&
+               (decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
         /* The end is looked for all the time. */
     } else {
         /* The part goes on. */
@@ -1937,7 +1969,8 @@ static uint8_t rn1_firmware_host_accept(struct rn1_firmware_host_decoder *decode
         if (byte > 0x7FU) {
             return RN1_FIRMWARE_ENCODING;
         }
-        crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+        crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U &&
+                  index + 1U == 1U + decoder->payload;
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
@@ -1981,7 +2014,7 @@ static uint8_t rn1_firmware_host_close(struct rn1_firmware_host_decoder *decoder
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t rn1_firmware_host_search(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
-    if (byte == 0xFF) {
+    if (byte == 0xFFU) {
         return rn1_firmware_host_close(decoder);
     }
     return rn1_firmware_host_pass(decoder, byte);
@@ -2033,10 +2066,9 @@ static void rn1_firmware_host_reopen(struct rn1_firmware_host_decoder *decoder, 
     }
 }
 
-static void rn1_firmware_host_judge(struct rn1_firmware_host_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void rn1_firmware_host_judge(struct rn1_firmware_host_decoder *decoder, uint8_t reason,
+                                    uint8_t byte) {
     const uint8_t size = (uint8_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason != RN1_FIRMWARE_FRAME) {
         rn1_firmware_host_invalid(decoder, reason, (uint8_t)(size - decoder->behind));
     }
@@ -2067,7 +2099,8 @@ void rn1_firmware_host_decoder_push(struct rn1_firmware_host_decoder *decoder, u
     }
 }
 
-void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, const uint8_t *data, size_t size) {
+void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, const uint8_t *data,
+                                    size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         rn1_firmware_host_decoder_push(decoder, data[index]);
@@ -2079,7 +2112,8 @@ static void rn1_firmware_host_reset(struct rn1_firmware_host_decoder *decoder) {
     rn1_firmware_host_seek_on(decoder);
 }
 
-void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder, rn1_firmware_host_handler handler, void *user) {
+void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
+                                    rn1_firmware_host_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2098,11 +2132,12 @@ void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder) 
     rn1_firmware_host_reset(decoder);
 }
 
-/* --- what brain sends: the decoder --------------------------------------------------------- */
+/* --- what brain sends: the decoder ------------------------------------------------------------ */
 
 /* Events. */
 
-static void rn1_firmware_brain_invalid(struct rn1_firmware_brain_decoder *decoder, uint8_t reason, uint16_t size) {
+static void rn1_firmware_brain_invalid(struct rn1_firmware_brain_decoder *decoder, uint8_t reason,
+                                       uint16_t size) {
     struct rn1_firmware_brain_event event;
     event.kind = RN1_FIRMWARE_INVALID;
     event.reason = (enum rn1_firmware_reason)reason;
@@ -2124,7 +2159,8 @@ static void rn1_firmware_brain_end_noise(struct rn1_firmware_brain_decoder *deco
     }
 }
 
-static void rn1_firmware_brain_add_noise(struct rn1_firmware_brain_decoder *decoder, uint16_t size) {
+static void rn1_firmware_brain_add_noise(struct rn1_firmware_brain_decoder *decoder,
+                                         uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -2136,45 +2172,73 @@ static void rn1_firmware_brain_add_noise(struct rn1_firmware_brain_decoder *deco
 
 /* The message of a valid frame. */
 
-static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts *parts,
+                                           const uint8_t *payload, uint16_t size,
+                                           uint8_t *message) {
     *message = RN1_FIRMWARE_NO_MESSAGE;
-    (void)payload;
-    (void)size;
     switch (parts->start) {
-    case UINT8_C(0x80):
+    case 0x80U:
         *message = RN1_FIRMWARE_MESSAGE_GYRO;
-        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0x81):
+        if (size != 7U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0x81U:
         *message = RN1_FIRMWARE_MESSAGE_XCEL;
-        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0x82):
+        if (size != 7U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0x82U:
         *message = RN1_FIRMWARE_MESSAGE_COMPASS;
-        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0x84):
+        if (size != 7U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0x84U:
         *message = RN1_FIRMWARE_MESSAGE_LIDAR;
-        return size == 721U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0x85):
+        if (size != 721U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0x85U:
         *message = RN1_FIRMWARE_MESSAGE_SONAR;
-        return size == 7U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xA0):
+        if (size != 7U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xA0U:
         *message = RN1_FIRMWARE_MESSAGE_FACING;
-        return size == 5U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xA1):
+        if (size != 5U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xA1U:
         *message = RN1_FIRMWARE_MESSAGE_OPTFLOW_INTEGRAL;
-        return size == 5U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xD1):
+        if (size != 5U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xD1U:
         *message = RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE;
-        return size == 2U ? RN1_FIRMWARE_NO_REASON : RN1_FIRMWARE_SIZE;
-    case UINT8_C(0xD2):
+        if (size != 2U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return RN1_FIRMWARE_NO_REASON;
+    case 0xD2U:
         *message = RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS;
-        return (uint8_t)(size == 20U ? (int)rn1_firmware_debug_numbers_check(payload, size, NULL) : (int)RN1_FIRMWARE_SIZE);
+        if (size != 20U) {
+            return RN1_FIRMWARE_SIZE;
+        }
+        return (uint8_t)rn1_firmware_debug_numbers_check(payload, size, NULL);
     default:
         return RN1_FIRMWARE_NO_REASON;
     }
 }
 
 /* All parts are there: verify the checksums, read the message, and deliver it. */
-static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *decoder, const uint8_t *content) {
+static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *decoder,
+                                           const uint8_t *content) {
     struct rn1_firmware_brain_event event;
     uint8_t message;
     uint8_t reason;
@@ -2207,40 +2271,42 @@ static uint8_t rn1_firmware_brain_surplus(const struct rn1_firmware_brain_decode
 }
 
 /* From now on the payload's size is known. */
-static void rn1_firmware_brain_set_payload(struct rn1_firmware_brain_decoder *decoder, uint16_t size) {
+static void rn1_firmware_brain_set_payload(struct rn1_firmware_brain_decoder *decoder,
+                                           uint16_t size) {
     decoder->payload = size;
     decoder->limit = (uint16_t)(1U + size + 0U);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 
 /* What the identity says of the payload's size. */
-static uint8_t rn1_firmware_brain_find_size(struct rn1_firmware_brain_decoder *decoder, uint8_t key) {
+static uint8_t rn1_firmware_brain_find_size(struct rn1_firmware_brain_decoder *decoder,
+                                            uint8_t key) {
     switch (key) {
-    case UINT8_C(0x80):
+    case 0x80U:
         rn1_firmware_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         rn1_firmware_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x82):
+    case 0x82U:
         rn1_firmware_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0x84):
+    case 0x84U:
         rn1_firmware_brain_set_payload(decoder, 721U);
         break;
-    case UINT8_C(0x85):
+    case 0x85U:
         rn1_firmware_brain_set_payload(decoder, 7U);
         break;
-    case UINT8_C(0xA0):
+    case 0xA0U:
         rn1_firmware_brain_set_payload(decoder, 5U);
         break;
-    case UINT8_C(0xA1):
+    case 0xA1U:
         rn1_firmware_brain_set_payload(decoder, 5U);
         break;
-    case UINT8_C(0xD1):
+    case 0xD1U:
         rn1_firmware_brain_set_payload(decoder, 2U);
         break;
-    case UINT8_C(0xD2):
+    case 0xD2U:
         rn1_firmware_brain_set_payload(decoder, 20U);
         break;
     default:
@@ -2258,11 +2324,10 @@ static uint8_t rn1_firmware_brain_enter_payload(struct rn1_firmware_brain_decode
 }
 
 /* A byte in front of the payload. */
-static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *decoder,
+                                            uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
-    (void)decoder;
-    (void)index;
     (void)byte;
     switch (index) {
     case 0:
@@ -2283,7 +2348,9 @@ static uint8_t rn1_firmware_brain_cross(struct rn1_firmware_brain_decoder *decod
         if ((decoder->flags & RN1_FIRMWARE_SEARCHING) == 0U) {
             return rn1_firmware_brain_complete(decoder, decoder->buffer);
         }
-    } else if ((decoder->flags & RN1_FIRMWARE_OPEN) != 0U && (decoder->flags & RN1_FIRMWARE_KNOWN) == 0U && (decoder->flags & RN1_FIRMWARE_SEARCHING) == 0U) {
+    } else if ((decoder->flags & RN1_FIRMWARE_OPEN) != 0U &&
+               (decoder->flags & RN1_FIRMWARE_KNOWN) == 0U &&
+               (decoder->flags & RN1_FIRMWARE_SEARCHING) == 0U) {
         decoder->flags |= RN1_FIRMWARE_SEARCHING;
         decoder->open_from = decoder->wire;
     } else {
@@ -2308,7 +2375,8 @@ static uint8_t rn1_firmware_brain_accept(struct rn1_firmware_brain_decoder *deco
         if (byte > 0x7FU) {
             return RN1_FIRMWARE_ENCODING;
         }
-        crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
+        crosses = (decoder->flags & RN1_FIRMWARE_KNOWN) != 0U &&
+                  index + 1U == 1U + decoder->payload;
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
@@ -2347,7 +2415,8 @@ static uint8_t rn1_firmware_brain_close(struct rn1_firmware_brain_decoder *decod
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_brain_complete(decoder, decoder->buffer) : reason;
+    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_brain_complete(decoder, decoder->buffer)
+                                            : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2361,7 +2430,8 @@ static uint8_t rn1_firmware_brain_take(struct rn1_firmware_brain_decoder *decode
     decoder->wire++;
     if (byte >= 0x80U && byte <= 0xFEU && decoder->wire > 1U) {
         decoder->behind = 1;
-        if ((decoder->flags & RN1_FIRMWARE_SEARCHING) != 0U && decoder->wire >= decoder->open_from + 1U) {
+        if ((decoder->flags & RN1_FIRMWARE_SEARCHING) != 0U &&
+            decoder->wire >= decoder->open_from + 1U) {
             reason = rn1_firmware_brain_close(decoder);
         } else {
             reason = RN1_FIRMWARE_TRUNCATED;
@@ -2414,10 +2484,9 @@ static void rn1_firmware_brain_reopen(struct rn1_firmware_brain_decoder *decoder
     }
 }
 
-static void rn1_firmware_brain_judge(struct rn1_firmware_brain_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void rn1_firmware_brain_judge(struct rn1_firmware_brain_decoder *decoder, uint8_t reason,
+                                     uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason != RN1_FIRMWARE_FRAME) {
         rn1_firmware_brain_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }
@@ -2452,7 +2521,8 @@ void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder,
 
 /* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
    look at it, because it is cut off or is none. */
-static size_t rn1_firmware_brain_take_whole(struct rn1_firmware_brain_decoder *decoder, const uint8_t *data, size_t size) {
+static size_t rn1_firmware_brain_take_whole(struct rn1_firmware_brain_decoder *decoder,
+                                            const uint8_t *data, size_t size) {
     const uint8_t *const content = data;
     size_t payload;
     size_t wire;
@@ -2463,31 +2533,31 @@ static size_t rn1_firmware_brain_take_whole(struct rn1_firmware_brain_decoder *d
         return 0;
     }
     switch (content[0]) {
-    case UINT8_C(0x80):
+    case 0x80U:
         payload = 7;
         break;
-    case UINT8_C(0x81):
+    case 0x81U:
         payload = 7;
         break;
-    case UINT8_C(0x82):
+    case 0x82U:
         payload = 7;
         break;
-    case UINT8_C(0x84):
+    case 0x84U:
         payload = 721;
         break;
-    case UINT8_C(0x85):
+    case 0x85U:
         payload = 7;
         break;
-    case UINT8_C(0xA0):
+    case 0xA0U:
         payload = 5;
         break;
-    case UINT8_C(0xA1):
+    case 0xA1U:
         payload = 5;
         break;
-    case UINT8_C(0xD1):
+    case 0xD1U:
         payload = 2;
         break;
-    case UINT8_C(0xD2):
+    case 0xD2U:
         payload = 20;
         break;
     default:
@@ -2512,7 +2582,8 @@ static bool rn1_firmware_brain_is_idle(const struct rn1_firmware_brain_decoder *
 }
 #endif
 
-void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder, const uint8_t *data, size_t size) {
+void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
+                                     const uint8_t *data, size_t size) {
     size_t index = 0;
     while (index < size) {
         size_t taken = 0;
@@ -2534,7 +2605,8 @@ static void rn1_firmware_brain_reset(struct rn1_firmware_brain_decoder *decoder)
     rn1_firmware_brain_seek_on(decoder);
 }
 
-void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder, rn1_firmware_brain_handler handler, void *user) {
+void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
+                                     rn1_firmware_brain_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -2557,7 +2629,7 @@ void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder
 }
 #ifndef RN1_FIRMWARE_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void rn1_firmware_host_dispatch(void *user, const struct rn1_firmware_host_event *event) {
     switch (event->message) {
@@ -2659,41 +2731,41 @@ void rn1_firmware_brain_dispatch(void *user, const struct rn1_firmware_brain_eve
 
 #if defined(__GNUC__) || defined(__clang__)
 
-__attribute__((weak)) void rn1_firmware_on_move_manual(void *user,
-                                                       const struct rn1_firmware_move_manual *message,
-                                                       const struct rn1_firmware_host_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_move_manual(
+    void *user, const struct rn1_firmware_move_manual *message,
+    const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_move_relative_twostep(void *user,
-                                                                 const struct rn1_firmware_move_relative_twostep *message,
-                                                                 const struct rn1_firmware_host_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_move_relative_twostep(
+    void *user, const struct rn1_firmware_move_relative_twostep *message,
+    const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_decrease_phase_angle(void *user,
-                                                                const struct rn1_firmware_decrease_phase_angle *message,
-                                                                const struct rn1_firmware_host_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_decrease_phase_angle(
+    void *user, const struct rn1_firmware_decrease_phase_angle *message,
+    const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_increase_phase_angle(void *user,
-                                                                const struct rn1_firmware_increase_phase_angle *message,
-                                                                const struct rn1_firmware_host_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_increase_phase_angle(
+    void *user, const struct rn1_firmware_increase_phase_angle *message,
+    const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_maintenance(void *user,
-                                                       const struct rn1_firmware_maintenance *message,
-                                                       const struct rn1_firmware_host_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_maintenance(
+    void *user, const struct rn1_firmware_maintenance *message,
+    const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
@@ -2745,25 +2817,25 @@ __attribute__((weak)) void rn1_firmware_on_facing(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_optflow_integral(void *user,
-                                                            const struct rn1_firmware_optflow_integral *message,
-                                                            const struct rn1_firmware_brain_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_optflow_integral(
+    void *user, const struct rn1_firmware_optflow_integral *message,
+    const struct rn1_firmware_brain_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_motor_controller_message(void *user,
-                                                                    const struct rn1_firmware_motor_controller_message *message,
-                                                                    const struct rn1_firmware_brain_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_motor_controller_message(
+    void *user, const struct rn1_firmware_motor_controller_message *message,
+    const struct rn1_firmware_brain_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rn1_firmware_on_debug_numbers(void *user,
-                                                         const struct rn1_firmware_debug_numbers *message,
-                                                         const struct rn1_firmware_brain_parts *parts) {
+__attribute__((weak)) void rn1_firmware_on_debug_numbers(
+    void *user, const struct rn1_firmware_debug_numbers *message,
+    const struct rn1_firmware_brain_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

@@ -29,7 +29,7 @@ enum rn1_firmware_result {
     RN1_FIRMWARE_OK = 0,
     /** Too few or too many bytes. */
     RN1_FIRMWARE_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     RN1_FIRMWARE_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     RN1_FIRMWARE_ERROR_ENCODING,
@@ -58,7 +58,7 @@ enum rn1_firmware_message {
     RN1_FIRMWARE_NO_MESSAGE = 14
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** What to do (000_c7d74cf9c866b63b.txt, lines 44-56). */
 enum rn1_firmware_maintenance_operation {
@@ -85,16 +85,16 @@ enum rn1_firmware_compass_status {
 
 /** State of the LIDAR (000_c7d74cf9c866b63b.txt, lines 87-89). */
 /** It should be working. */
-#define RN1_FIRMWARE_LIDAR_STATUS_INITIALIZED 0x01u
+#define RN1_FIRMWARE_LIDAR_STATUS_INITIALIZED 0x01U
 /** Its speed is held within its limits. */
-#define RN1_FIRMWARE_LIDAR_STATUS_SPEED_IN_SPEC 0x02u
+#define RN1_FIRMWARE_LIDAR_STATUS_SPEED_IN_SPEC 0x02U
 
 /** The sonars that are enabled; always all three (main.c, line 927). */
-#define RN1_FIRMWARE_SONAR_STATUS_SONAR_0 0x01u
-#define RN1_FIRMWARE_SONAR_STATUS_SONAR_1 0x02u
-#define RN1_FIRMWARE_SONAR_STATUS_SONAR_2 0x04u
+#define RN1_FIRMWARE_SONAR_STATUS_SONAR_0 0x01U
+#define RN1_FIRMWARE_SONAR_STATUS_SONAR_1 0x02U
+#define RN1_FIRMWARE_SONAR_STATUS_SONAR_2 0x04U
 
-/* --- maintenance_argument_run_motor_controller_flasher ----------------------------------------- */
+/* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
 
 /** The motor controller. */
 struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
@@ -110,12 +110,12 @@ struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- move_manual ------------------------------------------------------------------------------- */
+/* --- move_manual ------------------------------------------------------------------------------ */
 
-#define RN1_FIRMWARE_MOVE_MANUAL_ID 0x80u
-#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_SIZE 2u
-#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MIN 2u
-#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MAX 2u
+#define RN1_FIRMWARE_MOVE_MANUAL_ID 0x80U
+#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_SIZE 2U
+#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MIN 2U
+#define RN1_FIRMWARE_MOVE_MANUAL_PAYLOAD_MAX 2U
 #define RN1_FIRMWARE_MOVE_MANUAL_SPEC_HASH "d2d817c6d999e0d5a362e1c56f4c3bbb18e082ab0df27168bf2bd544aef76910"
 
 /** Drive by hand, with a speed and an arc (000_c7d74cf9c866b63b.txt, lines 27-29). */
@@ -128,20 +128,20 @@ struct rn1_firmware_move_manual {
     int8_t arc;
 };
 
-enum rn1_firmware_result rn1_firmware_move_manual_encode(const struct rn1_firmware_move_manual *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size);
+enum rn1_firmware_result rn1_firmware_move_manual_encode(
+    const struct rn1_firmware_move_manual *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_move_manual *message,
                                                          const uint8_t *payload, size_t size);
 void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
                                    const uint8_t *payload);
 
-/* --- move_relative_twostep --------------------------------------------------------------------- */
+/* --- move_relative_twostep -------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ID 0x81u
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4u
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4u
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4u
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ID 0x81U
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_SIZE 4U
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MIN 4U
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_PAYLOAD_MAX 4U
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_SPEC_HASH "702fb29cae3303314a0dd997cabeb45e5a6f2ed79e83c660b8d451f56375f134"
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_NUM 1
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_ANGLE_SCALE_DEN 16
@@ -162,23 +162,22 @@ struct rn1_firmware_move_relative_twostep {
     int16_t forward;
 };
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(const struct rn1_firmware_move_relative_twostep *message,
-                                                                   uint8_t *payload,
-                                                                   size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(struct rn1_firmware_move_relative_twostep *message,
-                                                                   const uint8_t *payload,
-                                                                   size_t size);
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(
+    struct rn1_firmware_move_relative_twostep *message, const uint8_t *payload, size_t size);
 void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_twostep *message,
                                              const uint8_t *payload);
 
-/* --- decrease_phase_angle ---------------------------------------------------------------------- */
+/* --- decrease_phase_angle --------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_ID 0xD1u
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_SIZE 1u
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MIN 1u
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MAX 1u
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_ID 0xD1U
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_SIZE 1U
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MIN 1U
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_PAYLOAD_MAX 1U
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_SPEC_HASH "d49cb1bdcf652a8c5cba73b01cf598f97b4e36724557fa67cab1fc02118cce65"
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_IGNORED_DEFAULT 0u
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_IGNORED_DEFAULT 0U
 
 /**
  * Debugging, sends command 13 to motor controllers 2 and 3 (main.c, lines 437-441).
@@ -193,23 +192,22 @@ struct rn1_firmware_decrease_phase_angle {
     uint8_t ignored;
 };
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                  uint8_t *payload, size_t capacity,
-                                                                  size_t *size);
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(struct rn1_firmware_decrease_phase_angle *message,
-                                                                  const uint8_t *payload,
-                                                                  size_t size);
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
+    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size);
 void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
                                             const uint8_t *payload);
 
-/* --- increase_phase_angle ---------------------------------------------------------------------- */
+/* --- increase_phase_angle --------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_ID 0xD2u
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_SIZE 1u
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MIN 1u
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MAX 1u
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_ID 0xD2U
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_SIZE 1U
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MIN 1U
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_PAYLOAD_MAX 1U
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_SPEC_HASH "8380de3f13329e2106ad271d850d22fcf13fcb9486f83580d6f94bdee3f5a65f"
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_IGNORED_DEFAULT 0u
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_IGNORED_DEFAULT 0U
 
 /**
  * Debugging, sends command 14 to motor controllers 2 and 3 (main.c, lines 443-446).
@@ -224,20 +222,19 @@ struct rn1_firmware_increase_phase_angle {
     uint8_t ignored;
 };
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(const struct rn1_firmware_increase_phase_angle *message,
-                                                                  uint8_t *payload, size_t capacity,
-                                                                  size_t *size);
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(struct rn1_firmware_increase_phase_angle *message,
-                                                                  const uint8_t *payload,
-                                                                  size_t size);
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
+    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload, size_t size);
 void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
                                             const uint8_t *payload);
 
-/* --- maintenance ------------------------------------------------------------------------------- */
+/* --- maintenance ------------------------------------------------------------------------------ */
 
-#define RN1_FIRMWARE_MAINTENANCE_ID 0xFEu
-#define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MIN 4u
-#define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_MAINTENANCE_ID 0xFEU
+#define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MIN 4U
+#define RN1_FIRMWARE_MAINTENANCE_PAYLOAD_MAX 5U
 #define RN1_FIRMWARE_MAINTENANCE_SPEC_HASH "7e30d91462f052dac697e813fb841b108a49cbfb75d3509337e52e7d936b6c08"
 
 /**
@@ -261,20 +258,20 @@ struct rn1_firmware_maintenance {
     } argument;
 };
 
-enum rn1_firmware_result rn1_firmware_maintenance_encode(const struct rn1_firmware_maintenance *message,
-                                                         uint8_t *payload, size_t capacity,
-                                                         size_t *size);
+enum rn1_firmware_result rn1_firmware_maintenance_encode(
+    const struct rn1_firmware_maintenance *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum rn1_firmware_result rn1_firmware_maintenance_decode(struct rn1_firmware_maintenance *message,
                                                          const uint8_t *payload, size_t size);
 void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, const uint8_t *payload,
                                    size_t size);
 
-/* --- gyro -------------------------------------------------------------------------------------- */
+/* --- gyro ------------------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_GYRO_ID 0x80u
-#define RN1_FIRMWARE_GYRO_PAYLOAD_SIZE 7u
-#define RN1_FIRMWARE_GYRO_PAYLOAD_MIN 7u
-#define RN1_FIRMWARE_GYRO_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_GYRO_ID 0x80U
+#define RN1_FIRMWARE_GYRO_PAYLOAD_SIZE 7U
+#define RN1_FIRMWARE_GYRO_PAYLOAD_MIN 7U
+#define RN1_FIRMWARE_GYRO_PAYLOAD_MAX 7U
 #define RN1_FIRMWARE_GYRO_SPEC_HASH "ace98af8a1f712eb2c093cdfaf902d4a5758a0147c666404984c481bb4d650c7"
 
 /**
@@ -308,12 +305,12 @@ enum rn1_firmware_result rn1_firmware_gyro_decode(struct rn1_firmware_gyro *mess
                                                   const uint8_t *payload, size_t size);
 void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *payload);
 
-/* --- xcel -------------------------------------------------------------------------------------- */
+/* --- xcel ------------------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_XCEL_ID 0x81u
-#define RN1_FIRMWARE_XCEL_PAYLOAD_SIZE 7u
-#define RN1_FIRMWARE_XCEL_PAYLOAD_MIN 7u
-#define RN1_FIRMWARE_XCEL_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_XCEL_ID 0x81U
+#define RN1_FIRMWARE_XCEL_PAYLOAD_SIZE 7U
+#define RN1_FIRMWARE_XCEL_PAYLOAD_MIN 7U
+#define RN1_FIRMWARE_XCEL_PAYLOAD_MAX 7U
 #define RN1_FIRMWARE_XCEL_SPEC_HASH "dffd7c1e841107cc106bfa8c8a04c38888436ef34e647431d27058da2dcdab09"
 
 /**
@@ -347,12 +344,12 @@ enum rn1_firmware_result rn1_firmware_xcel_decode(struct rn1_firmware_xcel *mess
                                                   const uint8_t *payload, size_t size);
 void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *payload);
 
-/* --- compass ----------------------------------------------------------------------------------- */
+/* --- compass ---------------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_COMPASS_ID 0x82u
-#define RN1_FIRMWARE_COMPASS_PAYLOAD_SIZE 7u
-#define RN1_FIRMWARE_COMPASS_PAYLOAD_MIN 7u
-#define RN1_FIRMWARE_COMPASS_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_COMPASS_ID 0x82U
+#define RN1_FIRMWARE_COMPASS_PAYLOAD_SIZE 7U
+#define RN1_FIRMWARE_COMPASS_PAYLOAD_MIN 7U
+#define RN1_FIRMWARE_COMPASS_PAYLOAD_MAX 7U
 #define RN1_FIRMWARE_COMPASS_SPEC_HASH "0173890544469cc9417178a807b4fe46d51219d96d576af9c88aab2f183753f4"
 
 /**
@@ -387,16 +384,16 @@ enum rn1_firmware_result rn1_firmware_compass_decode(struct rn1_firmware_compass
                                                      const uint8_t *payload, size_t size);
 void rn1_firmware_compass_load(struct rn1_firmware_compass *message, const uint8_t *payload);
 
-/* --- lidar ------------------------------------------------------------------------------------- */
+/* --- lidar ------------------------------------------------------------------------------------ */
 
-#define RN1_FIRMWARE_LIDAR_ID 0x84u
-#define RN1_FIRMWARE_LIDAR_PAYLOAD_SIZE 721u
-#define RN1_FIRMWARE_LIDAR_PAYLOAD_MIN 721u
-#define RN1_FIRMWARE_LIDAR_PAYLOAD_MAX 721u
+#define RN1_FIRMWARE_LIDAR_ID 0x84U
+#define RN1_FIRMWARE_LIDAR_PAYLOAD_SIZE 721U
+#define RN1_FIRMWARE_LIDAR_PAYLOAD_MIN 721U
+#define RN1_FIRMWARE_LIDAR_PAYLOAD_MAX 721U
 #define RN1_FIRMWARE_LIDAR_SPEC_HASH "1d1886807277ee051dd70d6cfe0579fbfbe585654565381e89fff9ab94d44301"
 #define RN1_FIRMWARE_LIDAR_DISTANCES_UNIT "mm"
 /** Nothing measured, for one because too little came back. */
-#define RN1_FIRMWARE_LIDAR_DISTANCES_NO_DATAPOINT 0u
+#define RN1_FIRMWARE_LIDAR_DISTANCES_NO_DATAPOINT 0U
 
 /**
  * The latest full turn of the LIDAR (000_c7d74cf9c866b63b.txt, lines 85-90).
@@ -426,16 +423,16 @@ static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, s
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
-/* --- sonar ------------------------------------------------------------------------------------- */
+/* --- sonar ------------------------------------------------------------------------------------ */
 
-#define RN1_FIRMWARE_SONAR_ID 0x85u
-#define RN1_FIRMWARE_SONAR_PAYLOAD_SIZE 7u
-#define RN1_FIRMWARE_SONAR_PAYLOAD_MIN 7u
-#define RN1_FIRMWARE_SONAR_PAYLOAD_MAX 7u
+#define RN1_FIRMWARE_SONAR_ID 0x85U
+#define RN1_FIRMWARE_SONAR_PAYLOAD_SIZE 7U
+#define RN1_FIRMWARE_SONAR_PAYLOAD_MIN 7U
+#define RN1_FIRMWARE_SONAR_PAYLOAD_MAX 7U
 #define RN1_FIRMWARE_SONAR_SPEC_HASH "051b1abe7133e1c1c272aa62dc7b3fc49701be2f7777c277749004b93234c1c8"
 #define RN1_FIRMWARE_SONAR_DISTANCES_UNIT "mm"
 /** No echo came back. */
-#define RN1_FIRMWARE_SONAR_DISTANCES_NO_DATAPOINT 0u
+#define RN1_FIRMWARE_SONAR_DISTANCES_NO_DATAPOINT 0U
 
 /** The latest distances of the three sonars (main.c, lines 926-937). */
 struct rn1_firmware_sonar {
@@ -460,14 +457,14 @@ static inline uint16_t rn1_firmware_sonar_distances_at(const uint8_t *payload, s
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
-/* --- facing ------------------------------------------------------------------------------------ */
+/* --- facing ----------------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_FACING_ID 0xA0u
-#define RN1_FIRMWARE_FACING_PAYLOAD_SIZE 5u
-#define RN1_FIRMWARE_FACING_PAYLOAD_MIN 5u
-#define RN1_FIRMWARE_FACING_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_FACING_ID 0xA0U
+#define RN1_FIRMWARE_FACING_PAYLOAD_SIZE 5U
+#define RN1_FIRMWARE_FACING_PAYLOAD_MIN 5U
+#define RN1_FIRMWARE_FACING_PAYLOAD_MAX 5U
 #define RN1_FIRMWARE_FACING_SPEC_HASH "513861d244a5ab98863c17f048e0f6602aef8ea0e7675fd10d02f2bfa3651635"
-#define RN1_FIRMWARE_FACING_STATUS_DEFAULT 1u
+#define RN1_FIRMWARE_FACING_STATUS_DEFAULT 1U
 #define RN1_FIRMWARE_FACING_HEADING_UNIT "deg"
 #define RN1_FIRMWARE_FACING_SPEED_UNIT "mm/s"
 #define RN1_FIRMWARE_FACING_SPEED_DEFAULT 0
@@ -492,14 +489,14 @@ enum rn1_firmware_result rn1_firmware_facing_decode(struct rn1_firmware_facing *
                                                     const uint8_t *payload, size_t size);
 void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t *payload);
 
-/* --- optflow_integral -------------------------------------------------------------------------- */
+/* --- optflow_integral ------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_ID 0xA1u
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_SIZE 5u
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MIN 5u
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MAX 5u
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_ID 0xA1U
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_SIZE 5U
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MIN 5U
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_PAYLOAD_MAX 5U
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_SPEC_HASH "71cab2feab28664b24ea8504d159f28a802637fa2d25aa04dfe434cc56d5d7ab"
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_STATUS_DEFAULT 1u
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_STATUS_DEFAULT 1U
 
 /**
  * Way seen by the optical flow sensor (main.c, lines 918-924).
@@ -516,20 +513,20 @@ struct rn1_firmware_optflow_integral {
     int16_t int_y;
 };
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_encode(const struct rn1_firmware_optflow_integral *message,
-                                                              uint8_t *payload, size_t capacity,
-                                                              size_t *size);
-enum rn1_firmware_result rn1_firmware_optflow_integral_decode(struct rn1_firmware_optflow_integral *message,
-                                                              const uint8_t *payload, size_t size);
+enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_optflow_integral_decode(
+    struct rn1_firmware_optflow_integral *message, const uint8_t *payload, size_t size);
 void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *message,
                                         const uint8_t *payload);
 
-/* --- motor_controller_message ------------------------------------------------------------------ */
+/* --- motor_controller_message ----------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_ID 0xD1u
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_SIZE 2u
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MIN 2u
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MAX 2u
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_ID 0xD1U
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_SIZE 2U
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MIN 2U
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_PAYLOAD_MAX 2U
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_SPEC_HASH "46e9a37012c6e9f6855661ff0082f4321d5b386daf375a3d01063d2f66e8edb6"
 
 /** Debugging, the latest word from motor controller 3 (main.c, lines 940-944). */
@@ -538,22 +535,20 @@ struct rn1_firmware_motor_controller_message {
     uint16_t last_msg;
 };
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(const struct rn1_firmware_motor_controller_message *message,
-                                                                      uint8_t *payload,
-                                                                      size_t capacity,
-                                                                      size_t *size);
-enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(struct rn1_firmware_motor_controller_message *message,
-                                                                      const uint8_t *payload,
-                                                                      size_t size);
-void rn1_firmware_motor_controller_message_load(struct rn1_firmware_motor_controller_message *message,
-                                                const uint8_t *payload);
+enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(
+    struct rn1_firmware_motor_controller_message *message, const uint8_t *payload, size_t size);
+void rn1_firmware_motor_controller_message_load(
+    struct rn1_firmware_motor_controller_message *message, const uint8_t *payload);
 
-/* --- debug_numbers ----------------------------------------------------------------------------- */
+/* --- debug_numbers ---------------------------------------------------------------------------- */
 
-#define RN1_FIRMWARE_DEBUG_NUMBERS_ID 0xD2u
-#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_SIZE 20u
-#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MIN 20u
-#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MAX 20u
+#define RN1_FIRMWARE_DEBUG_NUMBERS_ID 0xD2U
+#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_SIZE 20U
+#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MIN 20U
+#define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MAX 20U
 #define RN1_FIRMWARE_DEBUG_NUMBERS_SPEC_HASH "1d6e41100766c52026d8740efd2f6e1fa9a3f30b5fe22c5c5b6c2db02319e604"
 
 /**
@@ -572,15 +567,15 @@ struct rn1_firmware_debug_numbers {
     int32_t dbg4;
 };
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_encode(const struct rn1_firmware_debug_numbers *message,
-                                                           uint8_t *payload, size_t capacity,
-                                                           size_t *size);
-enum rn1_firmware_result rn1_firmware_debug_numbers_decode(struct rn1_firmware_debug_numbers *message,
-                                                           const uint8_t *payload, size_t size);
+enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
+    struct rn1_firmware_debug_numbers *message, const uint8_t *payload, size_t size);
 void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
                                      const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -594,127 +589,124 @@ void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
 typedef void (*rn1_firmware_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4u
-#define RN1_FIRMWARE_MOVE_MANUAL_FRAME_ROOM 4u
-enum rn1_firmware_result rn1_firmware_move_manual_frame(const struct rn1_firmware_move_manual *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size);
-enum rn1_firmware_result rn1_firmware_move_manual_send(const struct rn1_firmware_move_manual *message,
-                                                       rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4U
+#define RN1_FIRMWARE_MOVE_MANUAL_FRAME_ROOM 4U
+enum rn1_firmware_result rn1_firmware_move_manual_frame(
+    const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity, size_t *size);
+enum rn1_firmware_result rn1_firmware_move_manual_send(
+    const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6u
-#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6u
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(const struct rn1_firmware_move_relative_twostep *message,
-                                                                  uint8_t *frame, size_t capacity,
-                                                                  size_t *size);
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(const struct rn1_firmware_move_relative_twostep *message,
-                                                                 rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
+    const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_MAX 3u
-#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_ROOM 3u
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                 uint8_t *frame, size_t capacity,
-                                                                 size_t *size);
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(const struct rn1_firmware_decrease_phase_angle *message,
-                                                                rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_MAX 3U
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_ROOM 3U
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
+    const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_MAX 3u
-#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_ROOM 3u
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(const struct rn1_firmware_increase_phase_angle *message,
-                                                                 uint8_t *frame, size_t capacity,
-                                                                 size_t *size);
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(const struct rn1_firmware_increase_phase_angle *message,
-                                                                rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_MAX 3U
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_ROOM 3U
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
+    const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_MAINTENANCE_FRAME_MAX 7u
-#define RN1_FIRMWARE_MAINTENANCE_FRAME_ROOM 7u
-enum rn1_firmware_result rn1_firmware_maintenance_frame(const struct rn1_firmware_maintenance *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size);
-enum rn1_firmware_result rn1_firmware_maintenance_send(const struct rn1_firmware_maintenance *message,
-                                                       rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_MAINTENANCE_FRAME_MAX 7U
+#define RN1_FIRMWARE_MAINTENANCE_FRAME_ROOM 7U
+enum rn1_firmware_result rn1_firmware_maintenance_frame(
+    const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity, size_t *size);
+enum rn1_firmware_result rn1_firmware_maintenance_send(
+    const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_GYRO_FRAME_MAX 8u
-#define RN1_FIRMWARE_GYRO_FRAME_ROOM 8u
+#define RN1_FIRMWARE_GYRO_FRAME_MAX 8U
+#define RN1_FIRMWARE_GYRO_FRAME_ROOM 8U
 enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message,
                                                  uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *message,
                                                 rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_XCEL_FRAME_MAX 8u
-#define RN1_FIRMWARE_XCEL_FRAME_ROOM 8u
+#define RN1_FIRMWARE_XCEL_FRAME_MAX 8U
+#define RN1_FIRMWARE_XCEL_FRAME_ROOM 8U
 enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message,
                                                  uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *message,
                                                 rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_COMPASS_FRAME_MAX 8u
-#define RN1_FIRMWARE_COMPASS_FRAME_ROOM 8u
+#define RN1_FIRMWARE_COMPASS_FRAME_MAX 8U
+#define RN1_FIRMWARE_COMPASS_FRAME_ROOM 8U
 enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_compass *message,
                                                     uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_compass *message,
                                                    rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_LIDAR_FRAME_MAX 722u
-#define RN1_FIRMWARE_LIDAR_FRAME_ROOM 722u
+#define RN1_FIRMWARE_LIDAR_FRAME_MAX 722U
+#define RN1_FIRMWARE_LIDAR_FRAME_ROOM 722U
 enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message,
                                                   uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar *message,
                                                  rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_SONAR_FRAME_MAX 8u
-#define RN1_FIRMWARE_SONAR_FRAME_ROOM 8u
+#define RN1_FIRMWARE_SONAR_FRAME_MAX 8U
+#define RN1_FIRMWARE_SONAR_FRAME_ROOM 8U
 enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message,
                                                   uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar *message,
                                                  rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_FACING_FRAME_MAX 6u
-#define RN1_FIRMWARE_FACING_FRAME_ROOM 6u
+#define RN1_FIRMWARE_FACING_FRAME_MAX 6U
+#define RN1_FIRMWARE_FACING_FRAME_ROOM 6U
 enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_facing *message,
                                                    uint8_t *frame, size_t capacity, size_t *size);
 enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_facing *message,
                                                   rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_MAX 6u
-#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_ROOM 6u
-enum rn1_firmware_result rn1_firmware_optflow_integral_frame(const struct rn1_firmware_optflow_integral *message,
-                                                             uint8_t *frame, size_t capacity,
-                                                             size_t *size);
-enum rn1_firmware_result rn1_firmware_optflow_integral_send(const struct rn1_firmware_optflow_integral *message,
-                                                            rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_MAX 6U
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_ROOM 6U
+enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_optflow_integral_send(
+    const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_MAX 3u
-#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_ROOM 3u
-enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(const struct rn1_firmware_motor_controller_message *message,
-                                                                     uint8_t *frame,
-                                                                     size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_motor_controller_message_send(const struct rn1_firmware_motor_controller_message *message,
-                                                                    rn1_firmware_put put,
-                                                                    void *user);
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_MAX 3U
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_ROOM 3U
+enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
+    const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_MAX 21u
-#define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_ROOM 21u
-enum rn1_firmware_result rn1_firmware_debug_numbers_frame(const struct rn1_firmware_debug_numbers *message,
-                                                          uint8_t *frame, size_t capacity,
-                                                          size_t *size);
-enum rn1_firmware_result rn1_firmware_debug_numbers_send(const struct rn1_firmware_debug_numbers *message,
-                                                         rn1_firmware_put put, void *user);
+#define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_MAX 21U
+#define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_ROOM 21U
+enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum rn1_firmware_result rn1_firmware_debug_numbers_send(
+    const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum rn1_firmware_event_kind {
@@ -736,7 +728,7 @@ enum rn1_firmware_reason {
     RN1_FIRMWARE_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what host sends -------------------------------------------------------------------- */
+/* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
 #define RN1_FIRMWARE_HOST_FRAME_MAX 7U
@@ -773,31 +765,43 @@ typedef void (*rn1_firmware_host_handler)(void *user, const struct rn1_firmware_
 struct rn1_firmware_host_decoder {
     rn1_firmware_host_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint8_t noise;
+    /** Bytes of the candidate on the wire. */
     uint8_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint8_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint8_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint8_t limit;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of the candidate. */
     uint8_t buffer[7];
 };
 
 /** Start at the beginning of an input. */
-void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder, rn1_firmware_host_handler handler, void *user);
+void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
+                                    rn1_firmware_host_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rn1_firmware_host_decoder_push(struct rn1_firmware_host_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, const uint8_t *data, size_t size);
+void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, const uint8_t *data,
+                                    size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder);
 
-/* --- what brain sends -------------------------------------------------------------------- */
+/* --- what brain sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of brain on the wire, in bytes. */
 #define RN1_FIRMWARE_BRAIN_FRAME_MAX 722U
@@ -825,7 +829,8 @@ struct rn1_firmware_brain_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*rn1_firmware_brain_handler)(void *user, const struct rn1_firmware_brain_event *event);
+typedef void (*rn1_firmware_brain_handler)(void *user,
+                                           const struct rn1_firmware_brain_event *event);
 
 /**
  * Cuts what brain sends into events. Its members are nobody's business. It takes
@@ -834,38 +839,51 @@ typedef void (*rn1_firmware_brain_handler)(void *user, const struct rn1_firmware
 struct rn1_firmware_brain_decoder {
     rn1_firmware_brain_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
+    /** Bytes on the wire in front of the first that may be a start. */
     uint16_t open_from;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** What is known of the candidate. */
     uint8_t flags;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of the candidate. */
     uint8_t buffer[722];
 };
 
 /** Start at the beginning of an input. */
-void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder, rn1_firmware_brain_handler handler, void *user);
+void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
+                                     rn1_firmware_brain_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder, const uint8_t *data, size_t size);
+void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
+                                     const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * RN1_FIRMWARE_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining RN1_FIRMWARE_NO_HANDLERS for the source.
  */
 
 /** move_manual came from host. */
@@ -924,9 +942,9 @@ void rn1_firmware_on_optflow_integral(void *user,
                                       const struct rn1_firmware_brain_parts *parts);
 
 /** motor_controller_message came from brain. */
-void rn1_firmware_on_motor_controller_message(void *user,
-                                              const struct rn1_firmware_motor_controller_message *message,
-                                              const struct rn1_firmware_brain_parts *parts);
+void rn1_firmware_on_motor_controller_message(
+    void *user, const struct rn1_firmware_motor_controller_message *message,
+    const struct rn1_firmware_brain_parts *parts);
 
 /** debug_numbers came from brain. */
 void rn1_firmware_on_debug_numbers(void *user, const struct rn1_firmware_debug_numbers *message,

@@ -11,26 +11,26 @@ static uint16_t uherobot_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- motors_servos_leds ------------------------------------------------------------------------ */
+/* --- motors_servos_leds ----------------------------------------------------------------------- */
 
 static void uherobot_motors_servos_leds_store(const struct uherobot_motors_servos_leds *message,
                                               uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         uherobot_store_u16be(payload + 4 + 2 * i, message->servos[i]);
     }
     payload[20] = message->leds;
 }
 
-enum uherobot_result uherobot_motors_servos_leds_encode(const struct uherobot_motors_servos_leds *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size) {
-    if (capacity < 21u) {
+enum uherobot_result uherobot_motors_servos_leds_encode(
+    const struct uherobot_motors_servos_leds *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 21U) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motors_servos_leds_store(message, payload);
-    *size = 21u;
+    *size = 21U;
     return UHEROBOT_OK;
 }
 
@@ -38,7 +38,7 @@ void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *messag
                                       const uint8_t *payload) {
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         message->servos[i] = uherobot_load_u16be(payload + 4 + 2 * i);
     }
     message->leds = payload[20];
@@ -46,32 +46,32 @@ void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *messag
 
 enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_servos_leds *message,
                                                         const uint8_t *payload, size_t size) {
-    if (size != 21u) {
+    if (size != 21U) {
         return UHEROBOT_ERROR_SIZE;
     }
     uherobot_motors_servos_leds_load(message, payload);
     return UHEROBOT_OK;
 }
 
-/* --- motors_two_servos ------------------------------------------------------------------------- */
+/* --- motors_two_servos ------------------------------------------------------------------------ */
 
 static void uherobot_motors_two_servos_store(const struct uherobot_motors_two_servos *message,
                                              uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
-    for (size_t i = 0; i < 2u; i++) {
+    for (size_t i = 0; i < 2U; i++) {
         uherobot_store_u16be(payload + 4 + 2 * i, message->servos[i]);
     }
 }
 
-enum uherobot_result uherobot_motors_two_servos_encode(const struct uherobot_motors_two_servos *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size) {
-    if (capacity < 8u) {
+enum uherobot_result uherobot_motors_two_servos_encode(
+    const struct uherobot_motors_two_servos *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
+    if (capacity < 8U) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motors_two_servos_store(message, payload);
-    *size = 8u;
+    *size = 8U;
     return UHEROBOT_OK;
 }
 
@@ -79,21 +79,21 @@ void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
                                      const uint8_t *payload) {
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
-    for (size_t i = 0; i < 2u; i++) {
+    for (size_t i = 0; i < 2U; i++) {
         message->servos[i] = uherobot_load_u16be(payload + 4 + 2 * i);
     }
 }
 
 enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_two_servos *message,
                                                        const uint8_t *payload, size_t size) {
-    if (size != 8u) {
+    if (size != 8U) {
         return UHEROBOT_ERROR_SIZE;
     }
     uherobot_motors_two_servos_load(message, payload);
     return UHEROBOT_OK;
 }
 
-/* --- motor_test -------------------------------------------------------------------------------- */
+/* --- motor_test ------------------------------------------------------------------------------- */
 
 static void uherobot_motor_test_store(const struct uherobot_motor_test *message, uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
@@ -102,11 +102,11 @@ static void uherobot_motor_test_store(const struct uherobot_motor_test *message,
 
 enum uherobot_result uherobot_motor_test_encode(const struct uherobot_motor_test *message,
                                                 uint8_t *payload, size_t capacity, size_t *size) {
-    if (capacity < 4u) {
+    if (capacity < 4U) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motor_test_store(message, payload);
-    *size = 4u;
+    *size = 4U;
     return UHEROBOT_OK;
 }
 
@@ -117,14 +117,14 @@ void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t
 
 enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *message,
                                                 const uint8_t *payload, size_t size) {
-    if (size != 4u) {
+    if (size != 4U) {
         return UHEROBOT_ERROR_SIZE;
     }
     uherobot_motor_test_load(message, payload);
     return UHEROBOT_OK;
 }
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 static void uherobot_status_store(const struct uherobot_status *message, uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->voltage);
@@ -134,11 +134,11 @@ static void uherobot_status_store(const struct uherobot_status *message, uint8_t
 
 enum uherobot_result uherobot_status_encode(const struct uherobot_status *message, uint8_t *payload,
                                             size_t capacity, size_t *size) {
-    if (capacity < 6u) {
+    if (capacity < 6U) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_status_store(message, payload);
-    *size = 6u;
+    *size = 6U;
     return UHEROBOT_OK;
 }
 
@@ -150,14 +150,14 @@ void uherobot_status_load(struct uherobot_status *message, const uint8_t *payloa
 
 enum uherobot_result uherobot_status_decode(struct uherobot_status *message, const uint8_t *payload,
                                             size_t size) {
-    if (size != 6u) {
+    if (size != 6U) {
         return UHEROBOT_ERROR_SIZE;
     }
     uherobot_status_load(message, payload);
     return UHEROBOT_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     UHEROBOT_SEEKING,
@@ -167,11 +167,11 @@ enum {
 
 enum {
     UHEROBOT_KNOWN = 1,     /* The payload's size is known. */
-    UHEROBOT_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    UHEROBOT_OPEN = 2,      /* Only what follows the payload tells its size. */
     UHEROBOT_SEARCHING = 4, /* A delimiter is looked for. */
-    UHEROBOT_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    UHEROBOT_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     UHEROBOT_EMPTY = 16,    /* The stuffed region holds nothing. */
-    UHEROBOT_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    UHEROBOT_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -180,60 +180,61 @@ enum {
     UHEROBOT_AFTER
 };
 
-#define UHEROBOT_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define UHEROBOT_FRAME 0xFFU
 
-/* --- what daemon sends: frames -------------------------------------------------------------- */
+/* --- what daemon sends: frames ---------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_room(size_t payload) {
-    const size_t content = 3u + payload + 0u;
-    return 2u * content + 1u;
+    const size_t content = 3U + payload + 0U;
+    return 2U * content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *uherobot_daemon_payload(uint8_t *frame, size_t payload) {
-    return &frame[uherobot_daemon_room(payload) - 0u - payload];
+    return &frame[uherobot_daemon_room(payload) - 0U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t uherobot_daemon_stuff(uint8_t *wire, uint8_t byte) {
     const uint8_t high = (uint8_t)(byte >> 4);
-    const uint8_t low = (uint8_t)(byte & 0x0Fu);
-    wire[0] = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
-    wire[1] = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+    const uint8_t low = (uint8_t)(byte & 0x0FU);
+    wire[0] = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
+    wire[1] = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
     return 2;
 }
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3u + payload];
-    const uint16_t length = (uint16_t)(2u + payload);
-    const uint16_t stuffed = (uint16_t)(3u + payload + 0u);
+    uint8_t *const tail = &content[3U + payload];
+    const uint16_t length = (uint16_t)(2U + payload);
+    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
     uint16_t from = 1;
     uint8_t *to = frame;
     (void)tail;
-    content[0u] = 0x62;
-    content[1u] = (uint8_t)length;
-    content[2u] = (uint8_t)type;
+    content[0U] = 0x62U;
+    content[1U] = (uint8_t)length;
+    content[2U] = (uint8_t)type;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
         const uint8_t high = (uint8_t)(byte >> 4);
-        const uint8_t low = (uint8_t)(byte & 0x0Fu);
-        *to = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
+        const uint8_t low = (uint8_t)(byte & 0x0FU);
+        *to = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
         to++;
-        *to = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+        *to = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
         to++;
     }
-    *to = 0x65;
+    *to = 0x65U;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct uherobot_writer {
     uherobot_put put;
@@ -246,7 +247,7 @@ enum { UHEROBOT_STUFFED = 128 };
 
 /* The next byte of content. */
 static void uherobot_daemon_write(struct uherobot_writer *writer, uint8_t byte) {
-    if ((writer->flags & UHEROBOT_STUFFED) != 0u) {
+    if ((writer->flags & UHEROBOT_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = uherobot_daemon_stuff(wire, byte);
         size_t index;
@@ -258,25 +259,27 @@ static void uherobot_daemon_write(struct uherobot_writer *writer, uint8_t byte) 
     writer->put(writer->user, byte);
 }
 
-static void uherobot_daemon_send_head(struct uherobot_writer *writer, size_t payload, uint8_t type) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void uherobot_daemon_send_head(struct uherobot_writer *writer, size_t payload,
+                                      uint8_t type) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    uherobot_daemon_write(writer, 0x62);
-    writer->flags = 128u;
+    uherobot_daemon_write(writer, 0x62U);
+    writer->flags = 128U;
     uherobot_daemon_write(writer, (uint8_t)length);
     uherobot_daemon_write(writer, (uint8_t)type);
 }
 
-static void uherobot_daemon_send_tail(struct uherobot_writer *writer, size_t payload, uint8_t type) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void uherobot_daemon_send_tail(struct uherobot_writer *writer, size_t payload,
+                                      uint8_t type) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    writer->put(writer->user, 0x65);
+    writer->put(writer->user, 0x65U);
 }
 
 static void uherobot_write(struct uherobot_writer *writer, uint8_t byte) {
@@ -292,7 +295,7 @@ static void uherobot_motors_servos_leds_put(const struct uherobot_motors_servos_
                                             struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->motor_1);
     uherobot_write_u16be(writer, (uint16_t)message->motor_2);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         uherobot_write_u16be(writer, message->servos[i]);
     }
     uherobot_write(writer, message->leds);
@@ -302,7 +305,7 @@ static void uherobot_motors_two_servos_put(const struct uherobot_motors_two_serv
                                            struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->motor_1);
     uherobot_write_u16be(writer, (uint16_t)message->motor_2);
-    for (size_t i = 0; i < 2u; i++) {
+    for (size_t i = 0; i < 2U; i++) {
         uherobot_write_u16be(writer, message->servos[i]);
     }
 }
@@ -320,113 +323,114 @@ static void uherobot_status_put(const struct uherobot_status *message,
     uherobot_write_u16be(writer, (uint16_t)message->temperature);
 }
 
-enum uherobot_result uherobot_motors_servos_leds_frame(const struct uherobot_motors_servos_leds *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size) {
-    const size_t payload = 21u;
+enum uherobot_result uherobot_motors_servos_leds_frame(
+    const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 21U;
     if (capacity < uherobot_daemon_room(payload)) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motors_servos_leds_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x00);
+    *size = uherobot_daemon_wrap(frame, payload, 0x00U);
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_motors_servos_leds_send(const struct uherobot_motors_servos_leds *message,
-                                                      uherobot_put put, void *user) {
+enum uherobot_result uherobot_motors_servos_leds_send(
+    const struct uherobot_motors_servos_leds *message, uherobot_put put, void *user) {
     struct uherobot_writer writer;
-    const size_t payload = 21u;
+    const size_t payload = 21U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    uherobot_daemon_send_head(&writer, payload, 0x00);
+    uherobot_daemon_send_head(&writer, payload, 0x00U);
     uherobot_motors_servos_leds_put(message, &writer);
-    uherobot_daemon_send_tail(&writer, payload, 0x00);
+    uherobot_daemon_send_tail(&writer, payload, 0x00U);
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_motors_two_servos_frame(const struct uherobot_motors_two_servos *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size) {
-    const size_t payload = 8u;
+enum uherobot_result uherobot_motors_two_servos_frame(
+    const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 8U;
     if (capacity < uherobot_daemon_room(payload)) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motors_two_servos_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x01);
+    *size = uherobot_daemon_wrap(frame, payload, 0x01U);
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_motors_two_servos_send(const struct uherobot_motors_two_servos *message,
-                                                     uherobot_put put, void *user) {
+enum uherobot_result uherobot_motors_two_servos_send(
+    const struct uherobot_motors_two_servos *message, uherobot_put put, void *user) {
     struct uherobot_writer writer;
-    const size_t payload = 8u;
+    const size_t payload = 8U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    uherobot_daemon_send_head(&writer, payload, 0x01);
+    uherobot_daemon_send_head(&writer, payload, 0x01U);
     uherobot_motors_two_servos_put(message, &writer);
-    uherobot_daemon_send_tail(&writer, payload, 0x01);
+    uherobot_daemon_send_tail(&writer, payload, 0x01U);
     return UHEROBOT_OK;
 }
 
 enum uherobot_result uherobot_motor_test_frame(const struct uherobot_motor_test *message,
                                                uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     if (capacity < uherobot_daemon_room(payload)) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_motor_test_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x03);
+    *size = uherobot_daemon_wrap(frame, payload, 0x03U);
     return UHEROBOT_OK;
 }
 
 enum uherobot_result uherobot_motor_test_send(const struct uherobot_motor_test *message,
                                               uherobot_put put, void *user) {
     struct uherobot_writer writer;
-    const size_t payload = 4u;
+    const size_t payload = 4U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    uherobot_daemon_send_head(&writer, payload, 0x03);
+    uherobot_daemon_send_head(&writer, payload, 0x03U);
     uherobot_motor_test_put(message, &writer);
-    uherobot_daemon_send_tail(&writer, payload, 0x03);
+    uherobot_daemon_send_tail(&writer, payload, 0x03U);
     return UHEROBOT_OK;
 }
 
 enum uherobot_result uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
                                            size_t capacity, size_t *size) {
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     if (capacity < uherobot_daemon_room(payload)) {
         return UHEROBOT_ERROR_SPACE;
     }
     uherobot_status_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x01);
+    *size = uherobot_daemon_wrap(frame, payload, 0x01U);
     return UHEROBOT_OK;
 }
 
 enum uherobot_result uherobot_status_send(const struct uherobot_status *message, uherobot_put put,
                                           void *user) {
     struct uherobot_writer writer;
-    const size_t payload = 6u;
+    const size_t payload = 6U;
     writer.put = put;
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    uherobot_daemon_send_head(&writer, payload, 0x01);
+    uherobot_daemon_send_head(&writer, payload, 0x01U);
     uherobot_status_put(message, &writer);
-    uherobot_daemon_send_tail(&writer, payload, 0x01);
+    uherobot_daemon_send_tail(&writer, payload, 0x01U);
     return UHEROBOT_OK;
 }
 
-/* --- what daemon sends: the decoder --------------------------------------------------------- */
+/* --- what daemon sends: the decoder ----------------------------------------------------------- */
 
 /* Events. */
 
-static void uherobot_daemon_invalid(struct uherobot_daemon_decoder *decoder, uint8_t reason, uint16_t size) {
+static void uherobot_daemon_invalid(struct uherobot_daemon_decoder *decoder, uint8_t reason,
+                                    uint16_t size) {
     struct uherobot_daemon_event event;
     event.kind = UHEROBOT_INVALID;
     event.reason = (enum uherobot_reason)reason;
@@ -460,20 +464,29 @@ static void uherobot_daemon_add_noise(struct uherobot_daemon_decoder *decoder, u
 
 /* The message of a valid frame. */
 
-static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *parts,
+                                        const uint8_t *payload, uint16_t size, uint8_t *message) {
     *message = UHEROBOT_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->type) {
-    case UINT8_C(0x00):
+    case 0x00U:
         *message = UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS;
-        return size == 21U ? UHEROBOT_NO_REASON : UHEROBOT_SIZE;
-    case UINT8_C(0x01):
+        if (size != 21U) {
+            return UHEROBOT_SIZE;
+        }
+        return UHEROBOT_NO_REASON;
+    case 0x01U:
         *message = UHEROBOT_MESSAGE_MOTORS_TWO_SERVOS;
-        return size == 8U ? UHEROBOT_NO_REASON : UHEROBOT_SIZE;
-    case UINT8_C(0x03):
+        if (size != 8U) {
+            return UHEROBOT_SIZE;
+        }
+        return UHEROBOT_NO_REASON;
+    case 0x03U:
         *message = UHEROBOT_MESSAGE_MOTOR_TEST;
-        return size == 4U ? UHEROBOT_NO_REASON : UHEROBOT_SIZE;
+        if (size != 4U) {
+            return UHEROBOT_SIZE;
+        }
+        return UHEROBOT_NO_REASON;
     default:
         return UHEROBOT_NO_REASON;
     }
@@ -517,7 +530,8 @@ static void uherobot_daemon_set_payload(struct uherobot_daemon_decoder *decoder,
     decoder->payload = size;
 }
 
-static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decoder, uint16_t length) {
+static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decoder,
+                                           uint16_t length) {
     uint16_t size = length;
     if (length < 2U || size < 2U || size - 2U > 253U) {
         return UHEROBOT_LENGTH;
@@ -527,15 +541,13 @@ static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decod
 }
 
 /* A byte in front of the payload. */
-static uint8_t uherobot_daemon_take_head(struct uherobot_daemon_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t uherobot_daemon_take_head(struct uherobot_daemon_decoder *decoder, uint16_t index,
+                                         uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x62) {
+        if (byte != 0x62U) {
             return UHEROBOT_VALUE;
         }
         break;
@@ -637,7 +649,7 @@ static uint8_t uherobot_daemon_close(struct uherobot_daemon_decoder *decoder) {
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t uherobot_daemon_search(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
-    if (byte == 0x65) {
+    if (byte == 0x65U) {
         return uherobot_daemon_close(decoder);
     }
     return uherobot_daemon_pass(decoder, byte);
@@ -647,11 +659,12 @@ static uint8_t uherobot_daemon_search(struct uherobot_daemon_decoder *decoder, u
 static uint8_t uherobot_daemon_take(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x62 && decoder->wire > 1U) {
+    if (byte == 0x62U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = UHEROBOT_TRUNCATED;
     } else {
-        reason = (decoder->wire > 1U) ? uherobot_daemon_search(decoder, byte) : uherobot_daemon_pass(decoder, byte);
+        reason = (decoder->wire > 1U) ? uherobot_daemon_search(decoder, byte)
+                                      : uherobot_daemon_pass(decoder, byte);
     }
     if (reason == UHEROBOT_NO_REASON && decoder->wire >= 512U) {
         reason = UHEROBOT_LENGTH;
@@ -678,16 +691,15 @@ static void uherobot_daemon_seek_on(struct uherobot_daemon_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_reopen(struct uherobot_daemon_decoder *decoder) {
     uherobot_daemon_open(decoder);
-    (void)uherobot_daemon_take(decoder, 0x62);
+    (void)uherobot_daemon_take(decoder, 0x62U);
 }
 
-static void uherobot_daemon_judge(struct uherobot_daemon_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void uherobot_daemon_judge(struct uherobot_daemon_decoder *decoder, uint8_t reason,
+                                  uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == UHEROBOT_FRAME) {
         uherobot_daemon_seek_on(decoder);
-    } else if (byte == 0x62 && decoder->wire > 1U) {
+    } else if (byte == 0x62U && decoder->wire > 1U) {
         if (size > 1U) {
             uherobot_daemon_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -700,7 +712,7 @@ static void uherobot_daemon_judge(struct uherobot_daemon_decoder *decoder, uint8
 
 /* A byte that no candidate has. */
 static void uherobot_daemon_seek(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
-    if (byte == 0x62) {
+    if (byte == 0x62U) {
         uherobot_daemon_reopen(decoder);
     } else {
         uherobot_daemon_add_noise(decoder, 1);
@@ -718,7 +730,8 @@ void uherobot_daemon_decoder_push(struct uherobot_daemon_decoder *decoder, uint8
     }
 }
 
-void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const uint8_t *data, size_t size) {
+void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const uint8_t *data,
+                                  size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         uherobot_daemon_decoder_push(decoder, data[index]);
@@ -730,7 +743,8 @@ static void uherobot_daemon_reset(struct uherobot_daemon_decoder *decoder) {
     uherobot_daemon_seek_on(decoder);
 }
 
-void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder, uherobot_daemon_handler handler, void *user) {
+void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
+                                  uherobot_daemon_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -747,11 +761,12 @@ void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder) {
     uherobot_daemon_reset(decoder);
 }
 
-/* --- what board sends: the decoder --------------------------------------------------------- */
+/* --- what board sends: the decoder ------------------------------------------------------------ */
 
 /* Events. */
 
-static void uherobot_board_invalid(struct uherobot_board_decoder *decoder, uint8_t reason, uint16_t size) {
+static void uherobot_board_invalid(struct uherobot_board_decoder *decoder, uint8_t reason,
+                                   uint16_t size) {
     struct uherobot_board_event event;
     event.kind = UHEROBOT_INVALID;
     event.reason = (enum uherobot_reason)reason;
@@ -785,14 +800,17 @@ static void uherobot_board_add_noise(struct uherobot_board_decoder *decoder, uin
 
 /* The message of a valid frame. */
 
-static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
+                                       const uint8_t *payload, uint16_t size, uint8_t *message) {
     *message = UHEROBOT_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->type) {
-    case UINT8_C(0x01):
+    case 0x01U:
         *message = UHEROBOT_MESSAGE_STATUS;
-        return size == 6U ? UHEROBOT_NO_REASON : UHEROBOT_SIZE;
+        if (size != 6U) {
+            return UHEROBOT_SIZE;
+        }
+        return UHEROBOT_NO_REASON;
     default:
         return UHEROBOT_NO_REASON;
     }
@@ -846,15 +864,13 @@ static uint8_t uherobot_board_read_length(struct uherobot_board_decoder *decoder
 }
 
 /* A byte in front of the payload. */
-static uint8_t uherobot_board_take_head(struct uherobot_board_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t uherobot_board_take_head(struct uherobot_board_decoder *decoder, uint16_t index,
+                                        uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x62) {
+        if (byte != 0x62U) {
             return UHEROBOT_VALUE;
         }
         break;
@@ -956,7 +972,7 @@ static uint8_t uherobot_board_close(struct uherobot_board_decoder *decoder) {
 
 /* Look for the delimiter; let pass what can't begin it. */
 static uint8_t uherobot_board_search(struct uherobot_board_decoder *decoder, uint8_t byte) {
-    if (byte == 0x65) {
+    if (byte == 0x65U) {
         return uherobot_board_close(decoder);
     }
     return uherobot_board_pass(decoder, byte);
@@ -966,11 +982,12 @@ static uint8_t uherobot_board_search(struct uherobot_board_decoder *decoder, uin
 static uint8_t uherobot_board_take(struct uherobot_board_decoder *decoder, uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x62 && decoder->wire > 1U) {
+    if (byte == 0x62U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = UHEROBOT_TRUNCATED;
     } else {
-        reason = (decoder->wire > 1U) ? uherobot_board_search(decoder, byte) : uherobot_board_pass(decoder, byte);
+        reason = (decoder->wire > 1U) ? uherobot_board_search(decoder, byte)
+                                      : uherobot_board_pass(decoder, byte);
     }
     if (reason == UHEROBOT_NO_REASON && decoder->wire >= 512U) {
         reason = UHEROBOT_LENGTH;
@@ -997,16 +1014,15 @@ static void uherobot_board_seek_on(struct uherobot_board_decoder *decoder) {
 /* Open a candidate with a start that was seen. */
 static void uherobot_board_reopen(struct uherobot_board_decoder *decoder) {
     uherobot_board_open(decoder);
-    (void)uherobot_board_take(decoder, 0x62);
+    (void)uherobot_board_take(decoder, 0x62U);
 }
 
-static void uherobot_board_judge(struct uherobot_board_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void uherobot_board_judge(struct uherobot_board_decoder *decoder, uint8_t reason,
+                                 uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == UHEROBOT_FRAME) {
         uherobot_board_seek_on(decoder);
-    } else if (byte == 0x62 && decoder->wire > 1U) {
+    } else if (byte == 0x62U && decoder->wire > 1U) {
         if (size > 1U) {
             uherobot_board_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1019,7 +1035,7 @@ static void uherobot_board_judge(struct uherobot_board_decoder *decoder, uint8_t
 
 /* A byte that no candidate has. */
 static void uherobot_board_seek(struct uherobot_board_decoder *decoder, uint8_t byte) {
-    if (byte == 0x62) {
+    if (byte == 0x62U) {
         uherobot_board_reopen(decoder);
     } else {
         uherobot_board_add_noise(decoder, 1);
@@ -1037,7 +1053,8 @@ void uherobot_board_decoder_push(struct uherobot_board_decoder *decoder, uint8_t
     }
 }
 
-void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const uint8_t *data, size_t size) {
+void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const uint8_t *data,
+                                 size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         uherobot_board_decoder_push(decoder, data[index]);
@@ -1049,7 +1066,8 @@ static void uherobot_board_reset(struct uherobot_board_decoder *decoder) {
     uherobot_board_seek_on(decoder);
 }
 
-void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder, uherobot_board_handler handler, void *user) {
+void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
+                                 uherobot_board_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -1067,7 +1085,7 @@ void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder) {
 }
 #ifndef UHEROBOT_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void uherobot_daemon_dispatch(void *user, const struct uherobot_daemon_event *event) {
     switch (event->message) {
@@ -1109,17 +1127,17 @@ void uherobot_board_dispatch(void *user, const struct uherobot_board_event *even
 
 #if defined(__GNUC__) || defined(__clang__)
 
-__attribute__((weak)) void uherobot_on_motors_servos_leds(void *user,
-                                                          const struct uherobot_motors_servos_leds *message,
-                                                          const struct uherobot_daemon_parts *parts) {
+__attribute__((weak)) void uherobot_on_motors_servos_leds(
+    void *user, const struct uherobot_motors_servos_leds *message,
+    const struct uherobot_daemon_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void uherobot_on_motors_two_servos(void *user,
-                                                         const struct uherobot_motors_two_servos *message,
-                                                         const struct uherobot_daemon_parts *parts) {
+__attribute__((weak)) void uherobot_on_motors_two_servos(
+    void *user, const struct uherobot_motors_two_servos *message,
+    const struct uherobot_daemon_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

@@ -27,7 +27,7 @@ enum uherobot_result {
     UHEROBOT_OK = 0,
     /** Too few or too many bytes. */
     UHEROBOT_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     UHEROBOT_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     UHEROBOT_ERROR_ENCODING,
@@ -46,17 +46,17 @@ enum uherobot_message {
     UHEROBOT_NO_MESSAGE = 4
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /** One bit for each LED (line 43). */
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_0 0x01u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_1 0x02u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_2 0x04u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_3 0x08u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_4 0x10u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_5 0x20u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_6 0x40u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80u
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_0 0x01U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_1 0x02U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_2 0x04U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_3 0x08U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_4 0x10U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_5 0x20U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_6 0x40U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80U
 
 /*
  * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
@@ -66,12 +66,12 @@ enum uherobot_message {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- motors_servos_leds ------------------------------------------------------------------------ */
+/* --- motors_servos_leds ----------------------------------------------------------------------- */
 
-#define UHEROBOT_MOTORS_SERVOS_LEDS_ID 0x00u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_SIZE 21u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MIN 21u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MAX 21u
+#define UHEROBOT_MOTORS_SERVOS_LEDS_ID 0x00U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_SIZE 21U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MIN 21U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_PAYLOAD_MAX 21U
 #define UHEROBOT_MOTORS_SERVOS_LEDS_SPEC_HASH "114844611bfb6eab6afe2b827cf6d6dd382bb627aa4e19aa390dd8ce8a274df0"
 
 /** Set both motors, eight servos and the LEDs (lines 40-43). */
@@ -86,9 +86,9 @@ struct uherobot_motors_servos_leds {
     uint8_t leds;
 };
 
-enum uherobot_result uherobot_motors_servos_leds_encode(const struct uherobot_motors_servos_leds *message,
-                                                        uint8_t *payload, size_t capacity,
-                                                        size_t *size);
+enum uherobot_result uherobot_motors_servos_leds_encode(
+    const struct uherobot_motors_servos_leds *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_servos_leds *message,
                                                         const uint8_t *payload, size_t size);
 void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
@@ -100,12 +100,12 @@ static inline uint16_t uherobot_motors_servos_leds_servos_at(const uint8_t *payl
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- motors_two_servos ------------------------------------------------------------------------- */
+/* --- motors_two_servos ------------------------------------------------------------------------ */
 
-#define UHEROBOT_MOTORS_TWO_SERVOS_ID 0x01u
-#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_SIZE 8u
-#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MIN 8u
-#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MAX 8u
+#define UHEROBOT_MOTORS_TWO_SERVOS_ID 0x01U
+#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_SIZE 8U
+#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MIN 8U
+#define UHEROBOT_MOTORS_TWO_SERVOS_PAYLOAD_MAX 8U
 #define UHEROBOT_MOTORS_TWO_SERVOS_SPEC_HASH "7f72b962170fbbe1ff33066de865b97691547ef0a09909ce174c3b736e8fdfe0"
 
 /** Set both motors and two servos (lines 45-48). */
@@ -118,9 +118,9 @@ struct uherobot_motors_two_servos {
     uint16_t servos[2];
 };
 
-enum uherobot_result uherobot_motors_two_servos_encode(const struct uherobot_motors_two_servos *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size);
+enum uherobot_result uherobot_motors_two_servos_encode(
+    const struct uherobot_motors_two_servos *message, uint8_t *payload, size_t capacity,
+    size_t *size);
 enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_two_servos *message,
                                                        const uint8_t *payload, size_t size);
 void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
@@ -132,12 +132,12 @@ static inline uint16_t uherobot_motors_two_servos_servos_at(const uint8_t *paylo
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- motor_test -------------------------------------------------------------------------------- */
+/* --- motor_test ------------------------------------------------------------------------------- */
 
-#define UHEROBOT_MOTOR_TEST_ID 0x03u
-#define UHEROBOT_MOTOR_TEST_PAYLOAD_SIZE 4u
-#define UHEROBOT_MOTOR_TEST_PAYLOAD_MIN 4u
-#define UHEROBOT_MOTOR_TEST_PAYLOAD_MAX 4u
+#define UHEROBOT_MOTOR_TEST_ID 0x03U
+#define UHEROBOT_MOTOR_TEST_PAYLOAD_SIZE 4U
+#define UHEROBOT_MOTOR_TEST_PAYLOAD_MIN 4U
+#define UHEROBOT_MOTOR_TEST_PAYLOAD_MAX 4U
 #define UHEROBOT_MOTOR_TEST_SPEC_HASH "35bc13a5973b5982e3cea3711f84c09a3e950e9c0375897fd15aa628de4f7995"
 
 /** Set both motors and nothing else (lines 55-58). */
@@ -154,12 +154,12 @@ enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *mess
                                                 const uint8_t *payload, size_t size);
 void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t *payload);
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
-#define UHEROBOT_STATUS_ID 0x01u
-#define UHEROBOT_STATUS_PAYLOAD_SIZE 6u
-#define UHEROBOT_STATUS_PAYLOAD_MIN 6u
-#define UHEROBOT_STATUS_PAYLOAD_MAX 6u
+#define UHEROBOT_STATUS_ID 0x01U
+#define UHEROBOT_STATUS_PAYLOAD_SIZE 6U
+#define UHEROBOT_STATUS_PAYLOAD_MIN 6U
+#define UHEROBOT_STATUS_PAYLOAD_MAX 6U
 #define UHEROBOT_STATUS_SPEC_HASH "a3d1d6f5970530b2c8dce6a21618fa9c1ccb21f299c69d3d9b05b7131ecbe994"
 #define UHEROBOT_STATUS_VOLTAGE_SCALE_NUM 1
 #define UHEROBOT_STATUS_VOLTAGE_SCALE_DEN 100
@@ -189,7 +189,7 @@ enum uherobot_result uherobot_status_decode(struct uherobot_status *message, con
                                             size_t size);
 void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -203,40 +203,40 @@ void uherobot_status_load(struct uherobot_status *message, const uint8_t *payloa
 typedef void (*uherobot_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48u
-#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 49u
-enum uherobot_result uherobot_motors_servos_leds_frame(const struct uherobot_motors_servos_leds *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size);
-enum uherobot_result uherobot_motors_servos_leds_send(const struct uherobot_motors_servos_leds *message,
-                                                      uherobot_put put, void *user);
+#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
+enum uherobot_result uherobot_motors_servos_leds_frame(
+    const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum uherobot_result uherobot_motors_servos_leds_send(
+    const struct uherobot_motors_servos_leds *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_MAX 22u
-#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 23u
-enum uherobot_result uherobot_motors_two_servos_frame(const struct uherobot_motors_two_servos *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size);
-enum uherobot_result uherobot_motors_two_servos_send(const struct uherobot_motors_two_servos *message,
-                                                     uherobot_put put, void *user);
+#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_MAX 22U
+#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 23U
+enum uherobot_result uherobot_motors_two_servos_frame(
+    const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum uherobot_result uherobot_motors_two_servos_send(
+    const struct uherobot_motors_two_servos *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_MOTOR_TEST_FRAME_MAX 14u
-#define UHEROBOT_MOTOR_TEST_FRAME_ROOM 15u
+#define UHEROBOT_MOTOR_TEST_FRAME_MAX 14U
+#define UHEROBOT_MOTOR_TEST_FRAME_ROOM 15U
 enum uherobot_result uherobot_motor_test_frame(const struct uherobot_motor_test *message,
                                                uint8_t *frame, size_t capacity, size_t *size);
 enum uherobot_result uherobot_motor_test_send(const struct uherobot_motor_test *message,
                                               uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_STATUS_FRAME_MAX 18u
-#define UHEROBOT_STATUS_FRAME_ROOM 19u
+#define UHEROBOT_STATUS_FRAME_MAX 18U
+#define UHEROBOT_STATUS_FRAME_ROOM 19U
 enum uherobot_result uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
                                            size_t capacity, size_t *size);
 enum uherobot_result uherobot_status_send(const struct uherobot_status *message, uherobot_put put,
                                           void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum uherobot_event_kind {
@@ -258,7 +258,7 @@ enum uherobot_reason {
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what daemon sends -------------------------------------------------------------------- */
+/* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
 #define UHEROBOT_DAEMON_FRAME_MAX 512U
@@ -295,31 +295,43 @@ typedef void (*uherobot_daemon_handler)(void *user, const struct uherobot_daemon
 struct uherobot_daemon_decoder {
     uherobot_daemon_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** First half of a byte, or the code of a group. */
     uint8_t code;
+    /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
 
 /** Start at the beginning of an input. */
-void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder, uherobot_daemon_handler handler, void *user);
+void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
+                                  uherobot_daemon_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void uherobot_daemon_decoder_push(struct uherobot_daemon_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const uint8_t *data, size_t size);
+void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const uint8_t *data,
+                                  size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder);
 
-/* --- what board sends -------------------------------------------------------------------- */
+/* --- what board sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of board on the wire, in bytes. */
 #define UHEROBOT_BOARD_FRAME_MAX 512U
@@ -356,37 +368,49 @@ typedef void (*uherobot_board_handler)(void *user, const struct uherobot_board_e
 struct uherobot_board_decoder {
     uherobot_board_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** First half of a byte, or the code of a group. */
     uint8_t code;
+    /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
 
 /** Start at the beginning of an input. */
-void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder, uherobot_board_handler handler, void *user);
+void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
+                                 uherobot_board_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
 void uherobot_board_decoder_push(struct uherobot_board_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const uint8_t *data, size_t size);
+void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const uint8_t *data,
+                                 size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * UHEROBOT_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining UHEROBOT_NO_HANDLERS for the source.
  */
 
 /** motors_servos_leds came from daemon. */

@@ -11,46 +11,46 @@ static uint16_t uherobot_daemon_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- motors_servos_leds ------------------------------------------------------------------------ */
+/* --- motors_servos_leds ----------------------------------------------------------------------- */
 
-static enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_validate(const struct uherobot_daemon_motors_servos_leds *message) {
+static enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_validate(
+    const struct uherobot_daemon_motors_servos_leds *message) {
     if (message->right_motor < -3200 || message->right_motor > 3200) {
         return UHEROBOT_DAEMON_ERROR_RANGE;
     }
     if (message->left_motor < -3200 || message->left_motor > 3200) {
         return UHEROBOT_DAEMON_ERROR_RANGE;
     }
-    for (size_t i = 0; i < 8u; i++) {
-        if (message->servos[i] > 250u) {
+    for (size_t i = 0; i < 8U; i++) {
+        if (message->servos[i] > 250U) {
             return UHEROBOT_DAEMON_ERROR_RANGE;
         }
     }
     return UHEROBOT_DAEMON_OK;
 }
 
-static void uherobot_daemon_motors_servos_leds_store(const struct uherobot_daemon_motors_servos_leds *message,
-                                                     uint8_t *payload) {
+static void uherobot_daemon_motors_servos_leds_store(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload) {
     uherobot_daemon_store_u16be(payload, (uint16_t)message->right_motor);
     uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->left_motor);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         uherobot_daemon_store_u16be(payload + 4 + 2 * i, message->servos[i]);
     }
     payload[20] = message->leds;
 }
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                      uint8_t *payload,
-                                                                      size_t capacity,
-                                                                      size_t *size) {
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload, size_t capacity,
+    size_t *size) {
     const enum uherobot_daemon_result result = uherobot_daemon_motors_servos_leds_validate(message);
     if (result != UHEROBOT_DAEMON_OK) {
         return result;
     }
-    if (capacity < 21u) {
+    if (capacity < 21U) {
         return UHEROBOT_DAEMON_ERROR_SPACE;
     }
     uherobot_daemon_motors_servos_leds_store(message, payload);
-    *size = 21u;
+    *size = 21U;
     return UHEROBOT_DAEMON_OK;
 }
 
@@ -58,23 +58,22 @@ void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servo
                                              const uint8_t *payload) {
     message->right_motor = (int16_t)uherobot_daemon_load_u16be(payload);
     message->left_motor = (int16_t)uherobot_daemon_load_u16be(payload + 2);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         message->servos[i] = uherobot_daemon_load_u16be(payload + 4 + 2 * i);
     }
     message->leds = payload[20];
 }
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(struct uherobot_daemon_motors_servos_leds *message,
-                                                                      const uint8_t *payload,
-                                                                      size_t size) {
-    if (size != 21u) {
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
+    struct uherobot_daemon_motors_servos_leds *message, const uint8_t *payload, size_t size) {
+    if (size != 21U) {
         return UHEROBOT_DAEMON_ERROR_SIZE;
     }
     uherobot_daemon_motors_servos_leds_load(message, payload);
     return UHEROBOT_DAEMON_OK;
 }
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
 static void uherobot_daemon_status_store(const struct uherobot_daemon_status *message,
                                          uint8_t *payload) {
@@ -86,14 +85,13 @@ static void uherobot_daemon_status_store(const struct uherobot_daemon_status *me
     uherobot_daemon_store_u16be(payload + 10, message->motor_voltage);
 }
 
-enum uherobot_daemon_result uherobot_daemon_status_encode(const struct uherobot_daemon_status *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size) {
-    if (capacity < 12u) {
+enum uherobot_daemon_result uherobot_daemon_status_encode(
+    const struct uherobot_daemon_status *message, uint8_t *payload, size_t capacity, size_t *size) {
+    if (capacity < 12U) {
         return UHEROBOT_DAEMON_ERROR_SPACE;
     }
     uherobot_daemon_status_store(message, payload);
-    *size = 12u;
+    *size = 12U;
     return UHEROBOT_DAEMON_OK;
 }
 
@@ -108,14 +106,14 @@ void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const u
 
 enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon_status *message,
                                                           const uint8_t *payload, size_t size) {
-    if (size != 12u) {
+    if (size != 12U) {
         return UHEROBOT_DAEMON_ERROR_SIZE;
     }
     uherobot_daemon_status_load(message, payload);
     return UHEROBOT_DAEMON_OK;
 }
 
-/* --- shared by the decoders ------------------------------------------------------------------------ */
+/* --- shared by the decoders ------------------------------------------------------------------- */
 
 enum {
     UHEROBOT_DAEMON_SEEKING,
@@ -125,11 +123,11 @@ enum {
 
 enum {
     UHEROBOT_DAEMON_KNOWN = 1,     /* The payload's size is known. */
-    UHEROBOT_DAEMON_OPEN = 2,      /* Only what follows the payload will tell its size. */
+    UHEROBOT_DAEMON_OPEN = 2,      /* Only what follows the payload tells its size. */
     UHEROBOT_DAEMON_SEARCHING = 4, /* A delimiter is looked for. */
-    UHEROBOT_DAEMON_MEASURING = 8, /* The fields tell the payload's size, one after another. */
+    UHEROBOT_DAEMON_MEASURING = 8, /* The fields tell the payload's size, one by one. */
     UHEROBOT_DAEMON_EMPTY = 16,    /* The stuffed region holds nothing. */
-    UHEROBOT_DAEMON_NEEDLESS = 32  /* The last group of a COBS region should not be there. */
+    UHEROBOT_DAEMON_NEEDLESS = 32  /* The last group of a COBS region is one too many. */
 };
 
 enum {
@@ -138,113 +136,114 @@ enum {
     UHEROBOT_DAEMON_AFTER
 };
 
-#define UHEROBOT_DAEMON_FRAME UINT8_C(0xFF) /* Stands where a reason would: the candidate is a frame. */
+/* Stands where a reason would: the candidate is a frame. */
+#define UHEROBOT_DAEMON_FRAME 0xFFU
 
-/* --- what daemon sends: frames -------------------------------------------------------------- */
+/* --- what daemon sends: frames ---------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_daemon_room(size_t payload) {
-    const size_t content = 3u + payload + 0u;
-    return 2u * content + 1u;
+    const size_t content = 3U + payload + 0U;
+    return 2U * content + 1U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *uherobot_daemon_daemon_payload(uint8_t *frame, size_t payload) {
-    return &frame[uherobot_daemon_daemon_room(payload) - 0u - payload];
+    return &frame[uherobot_daemon_daemon_room(payload) - 0U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t uherobot_daemon_daemon_stuff(uint8_t *wire, uint8_t byte) {
     const uint8_t high = (uint8_t)(byte >> 4);
-    const uint8_t low = (uint8_t)(byte & 0x0Fu);
-    wire[0] = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
-    wire[1] = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+    const uint8_t low = (uint8_t)(byte & 0x0FU);
+    wire[0] = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
+    wire[1] = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
     return 2;
 }
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_daemon_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3u + payload];
-    const uint16_t length = (uint16_t)(2u + payload);
-    const uint16_t stuffed = (uint16_t)(3u + payload + 0u);
+    uint8_t *const tail = &content[3U + payload];
+    const uint16_t length = (uint16_t)(2U + payload);
+    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
     uint16_t from = 1;
     uint8_t *to = frame;
     (void)tail;
-    content[0u] = 0x62;
-    content[1u] = (uint8_t)length;
-    content[2u] = (uint8_t)type;
+    content[0U] = 0x62U;
+    content[1U] = (uint8_t)length;
+    content[2U] = (uint8_t)type;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
         const uint8_t high = (uint8_t)(byte >> 4);
-        const uint8_t low = (uint8_t)(byte & 0x0Fu);
-        *to = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
+        const uint8_t low = (uint8_t)(byte & 0x0FU);
+        *to = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
         to++;
-        *to = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+        *to = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
         to++;
     }
-    *to = 0x0A;
+    *to = 0x0AU;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- what board sends: frames -------------------------------------------------------------- */
+/* --- what board sends: frames ----------------------------------------------------------------- */
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_board_room(size_t payload) {
-    const size_t content = 3u + payload + 0u;
-    return 2u * content + 2u;
+    const size_t content = 3U + payload + 0U;
+    return 2U * content + 2U;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *uherobot_daemon_board_payload(uint8_t *frame, size_t payload) {
-    return &frame[uherobot_daemon_board_room(payload) - 0u - payload];
+    return &frame[uherobot_daemon_board_room(payload) - 0U - payload];
 }
 
 /* What a byte of the region is on the wire. */
 static size_t uherobot_daemon_board_stuff(uint8_t *wire, uint8_t byte) {
     const uint8_t high = (uint8_t)(byte >> 4);
-    const uint8_t low = (uint8_t)(byte & 0x0Fu);
-    wire[0] = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
-    wire[1] = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+    const uint8_t low = (uint8_t)(byte & 0x0FU);
+    wire[0] = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
+    wire[1] = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
     return 2;
 }
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_board_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_board_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3u + payload];
+    uint8_t *const tail = &content[3U + payload];
     const uint16_t length = (uint16_t)(payload);
-    const uint16_t stuffed = (uint16_t)(3u + payload + 0u);
+    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
     uint16_t from = 1;
     uint8_t *to = frame;
     (void)tail;
-    content[0u] = 0x62;
-    content[1u] = (uint8_t)type;
-    content[2u] = (uint8_t)length;
+    content[0U] = 0x62U;
+    content[1U] = (uint8_t)type;
+    content[2U] = (uint8_t)length;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
         const uint8_t high = (uint8_t)(byte >> 4);
-        const uint8_t low = (uint8_t)(byte & 0x0Fu);
-        *to = (uint8_t)(high < 10u ? 0x30u + high : 0x37u + high);
+        const uint8_t low = (uint8_t)(byte & 0x0FU);
+        *to = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
         to++;
-        *to = (uint8_t)(low < 10u ? 0x30u + low : 0x37u + low);
+        *to = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
         to++;
     }
-    *to = 0x0D;
+    *to = 0x0DU;
     to++;
-    *to = 0x0A;
+    *to = 0x0AU;
     to++;
     return (size_t)(to - frame);
 }
 
-/* --- frames, byte by byte ------------------------------------------------------------------------ */
+/* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct uherobot_daemon_writer {
     uherobot_daemon_put put;
@@ -257,7 +256,7 @@ enum { UHEROBOT_DAEMON_STUFFED = 128 };
 
 /* The next byte of content. */
 static void uherobot_daemon_daemon_write(struct uherobot_daemon_writer *writer, uint8_t byte) {
-    if ((writer->flags & UHEROBOT_DAEMON_STUFFED) != 0u) {
+    if ((writer->flags & UHEROBOT_DAEMON_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = uherobot_daemon_daemon_stuff(wire, byte);
         size_t index;
@@ -269,30 +268,32 @@ static void uherobot_daemon_daemon_write(struct uherobot_daemon_writer *writer, 
     writer->put(writer->user, byte);
 }
 
-static void uherobot_daemon_daemon_send_head(struct uherobot_daemon_writer *writer, size_t payload, uint8_t type) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void uherobot_daemon_daemon_send_head(struct uherobot_daemon_writer *writer, size_t payload,
+                                             uint8_t type) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    uherobot_daemon_daemon_write(writer, 0x62);
-    writer->flags = 128u;
+    uherobot_daemon_daemon_write(writer, 0x62U);
+    writer->flags = 128U;
     uherobot_daemon_daemon_write(writer, (uint8_t)length);
     uherobot_daemon_daemon_write(writer, (uint8_t)type);
 }
 
-static void uherobot_daemon_daemon_send_tail(struct uherobot_daemon_writer *writer, size_t payload, uint8_t type) {
-    const uint16_t length = (uint16_t)(2u + payload);
+static void uherobot_daemon_daemon_send_tail(struct uherobot_daemon_writer *writer, size_t payload,
+                                             uint8_t type) {
+    const uint16_t length = (uint16_t)(2U + payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    writer->put(writer->user, 0x0A);
+    writer->put(writer->user, 0x0AU);
 }
 
 /* The next byte of content. */
 static void uherobot_daemon_board_write(struct uherobot_daemon_writer *writer, uint8_t byte) {
-    if ((writer->flags & UHEROBOT_DAEMON_STUFFED) != 0u) {
+    if ((writer->flags & UHEROBOT_DAEMON_STUFFED) != 0U) {
         uint8_t wire[2];
         const size_t size = uherobot_daemon_board_stuff(wire, byte);
         size_t index;
@@ -304,26 +305,28 @@ static void uherobot_daemon_board_write(struct uherobot_daemon_writer *writer, u
     writer->put(writer->user, byte);
 }
 
-static void uherobot_daemon_board_send_head(struct uherobot_daemon_writer *writer, size_t payload, uint8_t type) {
+static void uherobot_daemon_board_send_head(struct uherobot_daemon_writer *writer, size_t payload,
+                                            uint8_t type) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    uherobot_daemon_board_write(writer, 0x62);
-    writer->flags = 128u;
+    uherobot_daemon_board_write(writer, 0x62U);
+    writer->flags = 128U;
     uherobot_daemon_board_write(writer, (uint8_t)type);
     uherobot_daemon_board_write(writer, (uint8_t)length);
 }
 
-static void uherobot_daemon_board_send_tail(struct uherobot_daemon_writer *writer, size_t payload, uint8_t type) {
+static void uherobot_daemon_board_send_tail(struct uherobot_daemon_writer *writer, size_t payload,
+                                            uint8_t type) {
     const uint16_t length = (uint16_t)(payload);
     (void)writer;
     (void)payload;
     (void)length;
     (void)type;
-    writer->put(writer->user, 0x0D);
-    writer->put(writer->user, 0x0A);
+    writer->put(writer->user, 0x0DU);
+    writer->put(writer->user, 0x0AU);
 }
 
 static void uherobot_daemon_write(struct uherobot_daemon_writer *writer, uint8_t byte) {
@@ -342,11 +345,12 @@ static void uherobot_daemon_write_u16be(struct uherobot_daemon_writer *writer, u
     uherobot_daemon_write(writer, (uint8_t)value);
 }
 
-static void uherobot_daemon_motors_servos_leds_put(const struct uherobot_daemon_motors_servos_leds *message,
-                                                   struct uherobot_daemon_writer *writer) {
+static void uherobot_daemon_motors_servos_leds_put(
+    const struct uherobot_daemon_motors_servos_leds *message,
+    struct uherobot_daemon_writer *writer) {
     uherobot_daemon_write_u16be(writer, (uint16_t)message->right_motor);
     uherobot_daemon_write_u16be(writer, (uint16_t)message->left_motor);
-    for (size_t i = 0; i < 8u; i++) {
+    for (size_t i = 0; i < 8U; i++) {
         uherobot_daemon_write_u16be(writer, message->servos[i]);
     }
     uherobot_daemon_write(writer, message->leds);
@@ -362,11 +366,10 @@ static void uherobot_daemon_status_put(const struct uherobot_daemon_status *mess
     uherobot_daemon_write_u16be(writer, message->motor_voltage);
 }
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                     uint8_t *frame,
-                                                                     size_t capacity,
-                                                                     size_t *size) {
-    const size_t payload = 21u;
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity,
+    size_t *size) {
+    const size_t payload = 21U;
     const enum uherobot_daemon_result result = uherobot_daemon_motors_servos_leds_validate(message);
     if (result != UHEROBOT_DAEMON_OK) {
         return result;
@@ -374,16 +377,16 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(const struc
     if (capacity < uherobot_daemon_daemon_room(payload)) {
         return UHEROBOT_DAEMON_ERROR_SPACE;
     }
-    uherobot_daemon_motors_servos_leds_store(message, uherobot_daemon_daemon_payload(frame, payload));
-    *size = uherobot_daemon_daemon_wrap(frame, payload, 0x00);
+    uherobot_daemon_motors_servos_leds_store(message,
+                                             uherobot_daemon_daemon_payload(frame, payload));
+    *size = uherobot_daemon_daemon_wrap(frame, payload, 0x00U);
     return UHEROBOT_DAEMON_OK;
 }
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                    uherobot_daemon_put put,
-                                                                    void *user) {
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
+    const struct uherobot_daemon_motors_servos_leds *message, uherobot_daemon_put put, void *user) {
     struct uherobot_daemon_writer writer;
-    const size_t payload = 21u;
+    const size_t payload = 21U;
     const enum uherobot_daemon_result result = uherobot_daemon_motors_servos_leds_validate(message);
     if (result != UHEROBOT_DAEMON_OK) {
         return result;
@@ -392,43 +395,43 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(const struct
     writer.user = user;
     writer.sender = 0;
     writer.flags = 0;
-    uherobot_daemon_daemon_send_head(&writer, payload, 0x00);
+    uherobot_daemon_daemon_send_head(&writer, payload, 0x00U);
     uherobot_daemon_motors_servos_leds_put(message, &writer);
-    uherobot_daemon_daemon_send_tail(&writer, payload, 0x00);
+    uherobot_daemon_daemon_send_tail(&writer, payload, 0x00U);
     return UHEROBOT_DAEMON_OK;
 }
 
-enum uherobot_daemon_result uherobot_daemon_status_frame(const struct uherobot_daemon_status *message,
-                                                         uint8_t *frame, size_t capacity,
-                                                         size_t *size) {
-    const size_t payload = 12u;
+enum uherobot_daemon_result uherobot_daemon_status_frame(
+    const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity, size_t *size) {
+    const size_t payload = 12U;
     if (capacity < uherobot_daemon_board_room(payload)) {
         return UHEROBOT_DAEMON_ERROR_SPACE;
     }
     uherobot_daemon_status_store(message, uherobot_daemon_board_payload(frame, payload));
-    *size = uherobot_daemon_board_wrap(frame, payload, 0x01);
+    *size = uherobot_daemon_board_wrap(frame, payload, 0x01U);
     return UHEROBOT_DAEMON_OK;
 }
 
-enum uherobot_daemon_result uherobot_daemon_status_send(const struct uherobot_daemon_status *message,
-                                                        uherobot_daemon_put put, void *user) {
+enum uherobot_daemon_result uherobot_daemon_status_send(
+    const struct uherobot_daemon_status *message, uherobot_daemon_put put, void *user) {
     struct uherobot_daemon_writer writer;
-    const size_t payload = 12u;
+    const size_t payload = 12U;
     writer.put = put;
     writer.user = user;
     writer.sender = 1;
     writer.flags = 0;
-    uherobot_daemon_board_send_head(&writer, payload, 0x01);
+    uherobot_daemon_board_send_head(&writer, payload, 0x01U);
     uherobot_daemon_status_put(message, &writer);
-    uherobot_daemon_board_send_tail(&writer, payload, 0x01);
+    uherobot_daemon_board_send_tail(&writer, payload, 0x01U);
     return UHEROBOT_DAEMON_OK;
 }
 
-/* --- what daemon sends: the decoder --------------------------------------------------------- */
+/* --- what daemon sends: the decoder ----------------------------------------------------------- */
 
 /* Events. */
 
-static void uherobot_daemon_daemon_invalid(struct uherobot_daemon_daemon_decoder *decoder, uint8_t reason, uint16_t size) {
+static void uherobot_daemon_daemon_invalid(struct uherobot_daemon_daemon_decoder *decoder,
+                                           uint8_t reason, uint16_t size) {
     struct uherobot_daemon_daemon_event event;
     event.kind = UHEROBOT_DAEMON_INVALID;
     event.reason = (enum uherobot_daemon_reason)reason;
@@ -450,7 +453,8 @@ static void uherobot_daemon_daemon_end_noise(struct uherobot_daemon_daemon_decod
     }
 }
 
-static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decoder *decoder, uint16_t size) {
+static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decoder *decoder,
+                                             uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -462,14 +466,18 @@ static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decod
 
 /* The message of a valid frame. */
 
-static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daemon_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daemon_parts *parts,
+                                               const uint8_t *payload, uint16_t size,
+                                               uint8_t *message) {
     *message = UHEROBOT_DAEMON_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->type) {
-    case UINT8_C(0x00):
+    case 0x00U:
         *message = UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS;
-        return size == 21U ? UHEROBOT_DAEMON_NO_REASON : UHEROBOT_DAEMON_SIZE;
+        if (size != 21U) {
+            return UHEROBOT_DAEMON_SIZE;
+        }
+        return UHEROBOT_DAEMON_NO_REASON;
     default:
         return UHEROBOT_DAEMON_NO_REASON;
     }
@@ -487,12 +495,14 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
         event.parts.type = content[2];
     }
     event.payload = &content[3];
-    reason = uherobot_daemon_daemon_identify(&event.parts, event.payload, decoder->payload, &message);
+    reason = uherobot_daemon_daemon_identify(&event.parts, event.payload, decoder->payload,
+                                             &message);
     if (reason != UHEROBOT_DAEMON_NO_REASON) {
         return reason;
     }
     uherobot_daemon_daemon_end_noise(decoder);
-    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                       : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -504,16 +514,19 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
 }
 
 /* A byte more than there can be. */
-static uint8_t uherobot_daemon_daemon_surplus(const struct uherobot_daemon_daemon_decoder *decoder) {
+static uint8_t uherobot_daemon_daemon_surplus(
+    const struct uherobot_daemon_daemon_decoder *decoder) {
     return decoder->content >= 2U ? UHEROBOT_DAEMON_LENGTH : UHEROBOT_DAEMON_SIZE;
 }
 
 /* From now on the payload's size is known. */
-static void uherobot_daemon_daemon_set_payload(struct uherobot_daemon_daemon_decoder *decoder, uint16_t size) {
+static void uherobot_daemon_daemon_set_payload(struct uherobot_daemon_daemon_decoder *decoder,
+                                               uint16_t size) {
     decoder->payload = size;
 }
 
-static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_decoder *decoder, uint16_t length) {
+static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_decoder *decoder,
+                                                  uint16_t length) {
     uint16_t size = length;
     if (length < 2U || size < 2U || size - 2U > 253U) {
         return UHEROBOT_DAEMON_LENGTH;
@@ -523,15 +536,13 @@ static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_
 }
 
 /* A byte in front of the payload. */
-static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_decoder *decoder,
+                                                uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x62) {
+        if (byte != 0x62U) {
             return UHEROBOT_DAEMON_VALUE;
         }
         break;
@@ -545,7 +556,8 @@ static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_de
 }
 
 /* Whether the region can end here. */
-static uint8_t uherobot_daemon_daemon_finish_region(struct uherobot_daemon_daemon_decoder *decoder) {
+static uint8_t uherobot_daemon_daemon_finish_region(
+    struct uherobot_daemon_daemon_decoder *decoder) {
     return decoder->node == 0U ? UHEROBOT_DAEMON_NO_REASON : UHEROBOT_DAEMON_ENCODING;
 }
 
@@ -558,7 +570,8 @@ static uint8_t uherobot_daemon_daemon_cross(struct uherobot_daemon_daemon_decode
 }
 
 /* One byte of content. */
-static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decoder *decoder,
+                                             uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
@@ -580,7 +593,8 @@ static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decod
     return reason;
 }
 
-static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_decoder *decoder,
+                                              uint8_t byte) {
     uint8_t digit;
     if (byte >= 0x30U && byte <= 0x39U) {
         digit = (uint8_t)(byte - 0x30U);
@@ -602,7 +616,8 @@ static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_deco
 }
 
 /* A byte that begins no delimiter. */
-static uint8_t uherobot_daemon_daemon_pass(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_daemon_pass(struct uherobot_daemon_daemon_decoder *decoder,
+                                           uint8_t byte) {
     if (decoder->content >= 1U) {
         return uherobot_daemon_daemon_unstuff(decoder, byte);
     }
@@ -632,22 +647,25 @@ static uint8_t uherobot_daemon_daemon_close(struct uherobot_daemon_daemon_decode
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
-static uint8_t uherobot_daemon_daemon_search(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
-    if (byte == 0x0A) {
+static uint8_t uherobot_daemon_daemon_search(struct uherobot_daemon_daemon_decoder *decoder,
+                                             uint8_t byte) {
+    if (byte == 0x0AU) {
         return uherobot_daemon_daemon_close(decoder);
     }
     return uherobot_daemon_daemon_pass(decoder, byte);
 }
 
 /* The next byte of a candidate. */
-static uint8_t uherobot_daemon_daemon_take(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_daemon_take(struct uherobot_daemon_daemon_decoder *decoder,
+                                           uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x62 && decoder->wire > 1U) {
+    if (byte == 0x62U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else {
-        reason = (decoder->wire > 1U) ? uherobot_daemon_daemon_search(decoder, byte) : uherobot_daemon_daemon_pass(decoder, byte);
+        reason = (decoder->wire > 1U) ? uherobot_daemon_daemon_search(decoder, byte)
+                                      : uherobot_daemon_daemon_pass(decoder, byte);
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && decoder->wire >= 512U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -674,16 +692,15 @@ static void uherobot_daemon_daemon_seek_on(struct uherobot_daemon_daemon_decoder
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_daemon_reopen(struct uherobot_daemon_daemon_decoder *decoder) {
     uherobot_daemon_daemon_open(decoder);
-    (void)uherobot_daemon_daemon_take(decoder, 0x62);
+    (void)uherobot_daemon_daemon_take(decoder, 0x62U);
 }
 
-static void uherobot_daemon_daemon_judge(struct uherobot_daemon_daemon_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void uherobot_daemon_daemon_judge(struct uherobot_daemon_daemon_decoder *decoder,
+                                         uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == UHEROBOT_DAEMON_FRAME) {
         uherobot_daemon_daemon_seek_on(decoder);
-    } else if (byte == 0x62 && decoder->wire > 1U) {
+    } else if (byte == 0x62U && decoder->wire > 1U) {
         if (size > 1U) {
             uherobot_daemon_daemon_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -695,15 +712,17 @@ static void uherobot_daemon_daemon_judge(struct uherobot_daemon_daemon_decoder *
 }
 
 /* A byte that no candidate has. */
-static void uherobot_daemon_daemon_seek(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
-    if (byte == 0x62) {
+static void uherobot_daemon_daemon_seek(struct uherobot_daemon_daemon_decoder *decoder,
+                                        uint8_t byte) {
+    if (byte == 0x62U) {
         uherobot_daemon_daemon_reopen(decoder);
     } else {
         uherobot_daemon_daemon_add_noise(decoder, 1);
     }
 }
 
-void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte) {
+void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *decoder,
+                                         uint8_t byte) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING) {
         const uint8_t reason = uherobot_daemon_daemon_take(decoder, byte);
         if (reason != UHEROBOT_DAEMON_NO_REASON) {
@@ -714,7 +733,8 @@ void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *
     }
 }
 
-void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *decoder, const uint8_t *data, size_t size) {
+void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *decoder,
+                                         const uint8_t *data, size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         uherobot_daemon_daemon_decoder_push(decoder, data[index]);
@@ -726,7 +746,8 @@ static void uherobot_daemon_daemon_reset(struct uherobot_daemon_daemon_decoder *
     uherobot_daemon_daemon_seek_on(decoder);
 }
 
-void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder, uherobot_daemon_daemon_handler handler, void *user) {
+void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder,
+                                         uherobot_daemon_daemon_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -737,32 +758,33 @@ void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *
 
 void uherobot_daemon_daemon_decoder_flush(struct uherobot_daemon_daemon_decoder *decoder) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING && decoder->wire != 0U) {
-        uherobot_daemon_daemon_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED, (uint16_t)(decoder->wire));
+        uherobot_daemon_daemon_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED,
+                                       (uint16_t)(decoder->wire));
     }
     uherobot_daemon_daemon_end_noise(decoder);
     uherobot_daemon_daemon_reset(decoder);
 }
 
-/* --- what board sends: the decoder --------------------------------------------------------- */
+/* --- what board sends: the decoder ------------------------------------------------------------ */
 
 /* How much of the end the input ends with, once a byte follows so much of it. */
 static uint8_t uherobot_daemon_board_follow_end(uint8_t matched, uint8_t byte) {
     switch (matched) {
     case 0:
-        if (byte == 0x0D) {
+        if (byte == 0x0DU) {
             return 1;
         }
         return 0;
     case 1:
-        if (byte == 0x0D) {
+        if (byte == 0x0DU) {
             return 1;
         }
-        if (byte == 0x0A) {
+        if (byte == 0x0AU) {
             return 2;
         }
         return 0;
     default:
-        if (byte == 0x0D) {
+        if (byte == 0x0DU) {
             return 1;
         }
         return 0;
@@ -771,7 +793,8 @@ static uint8_t uherobot_daemon_board_follow_end(uint8_t matched, uint8_t byte) {
 
 /* Events. */
 
-static void uherobot_daemon_board_invalid(struct uherobot_daemon_board_decoder *decoder, uint8_t reason, uint16_t size) {
+static void uherobot_daemon_board_invalid(struct uherobot_daemon_board_decoder *decoder,
+                                          uint8_t reason, uint16_t size) {
     struct uherobot_daemon_board_event event;
     event.kind = UHEROBOT_DAEMON_INVALID;
     event.reason = (enum uherobot_daemon_reason)reason;
@@ -793,7 +816,8 @@ static void uherobot_daemon_board_end_noise(struct uherobot_daemon_board_decoder
     }
 }
 
-static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder *decoder, uint16_t size) {
+static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder *decoder,
+                                            uint16_t size) {
     while (size > 0U) {
         size--;
         decoder->noise++;
@@ -805,14 +829,18 @@ static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder
 
 /* The message of a valid frame. */
 
-static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board_parts *parts, const uint8_t *payload, uint16_t size, uint8_t *message) {
+static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board_parts *parts,
+                                              const uint8_t *payload, uint16_t size,
+                                              uint8_t *message) {
     *message = UHEROBOT_DAEMON_NO_MESSAGE;
     (void)payload;
-    (void)size;
     switch (parts->type) {
-    case UINT8_C(0x01):
+    case 0x01U:
         *message = UHEROBOT_DAEMON_MESSAGE_STATUS;
-        return size == 12U ? UHEROBOT_DAEMON_NO_REASON : UHEROBOT_DAEMON_SIZE;
+        if (size != 12U) {
+            return UHEROBOT_DAEMON_SIZE;
+        }
+        return UHEROBOT_DAEMON_NO_REASON;
     default:
         return UHEROBOT_DAEMON_NO_REASON;
     }
@@ -830,12 +858,14 @@ static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decod
         event.parts.type = content[1];
     }
     event.payload = &content[3];
-    reason = uherobot_daemon_board_identify(&event.parts, event.payload, decoder->payload, &message);
+    reason = uherobot_daemon_board_identify(&event.parts, event.payload, decoder->payload,
+                                            &message);
     if (reason != UHEROBOT_DAEMON_NO_REASON) {
         return reason;
     }
     uherobot_daemon_board_end_noise(decoder);
-    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                       : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -852,11 +882,13 @@ static uint8_t uherobot_daemon_board_surplus(const struct uherobot_daemon_board_
 }
 
 /* From now on the payload's size is known. */
-static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decoder *decoder, uint16_t size) {
+static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decoder *decoder,
+                                              uint16_t size) {
     decoder->payload = size;
 }
 
-static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder, uint16_t length) {
+static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder,
+                                                 uint16_t length) {
     uint16_t size = length;
     if (size - 0U > 255U) {
         return UHEROBOT_DAEMON_LENGTH;
@@ -866,15 +898,13 @@ static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_de
 }
 
 /* A byte in front of the payload. */
-static uint8_t uherobot_daemon_board_take_head(struct uherobot_daemon_board_decoder *decoder, uint16_t index, uint8_t byte) {
+static uint8_t uherobot_daemon_board_take_head(struct uherobot_daemon_board_decoder *decoder,
+                                               uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
-    (void)decoder;
-    (void)index;
-    (void)byte;
     switch (index) {
     case 0:
-        if (byte != 0x62) {
+        if (byte != 0x62U) {
             return UHEROBOT_DAEMON_VALUE;
         }
         break;
@@ -901,7 +931,8 @@ static uint8_t uherobot_daemon_board_cross(struct uherobot_daemon_board_decoder 
 }
 
 /* One byte of content. */
-static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder *decoder,
+                                            uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
@@ -923,7 +954,8 @@ static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder
     return reason;
 }
 
-static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decoder *decoder,
+                                             uint8_t byte) {
     uint8_t digit;
     if (byte >= 0x30U && byte <= 0x39U) {
         digit = (uint8_t)(byte - 0x30U);
@@ -945,7 +977,8 @@ static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decode
 }
 
 /* A byte that begins no delimiter. */
-static uint8_t uherobot_daemon_board_pass(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_board_pass(struct uherobot_daemon_board_decoder *decoder,
+                                          uint8_t byte) {
     if (decoder->content >= 1U) {
         return uherobot_daemon_board_unstuff(decoder, byte);
     }
@@ -975,7 +1008,8 @@ static uint8_t uherobot_daemon_board_close(struct uherobot_daemon_board_decoder 
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
-static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder *decoder,
+                                            uint8_t byte) {
     const uint8_t held = decoder->held;
     const uint8_t longer = uherobot_daemon_board_follow_end(held, byte);
     uint8_t index;
@@ -985,7 +1019,8 @@ static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t reason = uherobot_daemon_board_pass(decoder, index < held ? (uint8_t)(index == 0U ? 0x0D : 0x0A) : byte);
+        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x0DU : 0x0AU) : byte;
+        const uint8_t reason = uherobot_daemon_board_pass(decoder, next);
         if (reason != UHEROBOT_DAEMON_NO_REASON) {
             return reason;
         }
@@ -994,14 +1029,16 @@ static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder
 }
 
 /* The next byte of a candidate. */
-static uint8_t uherobot_daemon_board_take(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+static uint8_t uherobot_daemon_board_take(struct uherobot_daemon_board_decoder *decoder,
+                                          uint8_t byte) {
     uint8_t reason;
     decoder->wire++;
-    if (byte == 0x62 && decoder->wire > 1U) {
+    if (byte == 0x62U && decoder->wire > 1U) {
         decoder->behind = 1;
         reason = UHEROBOT_DAEMON_TRUNCATED;
     } else {
-        reason = (decoder->wire > 1U) ? uherobot_daemon_board_search(decoder, byte) : uherobot_daemon_board_pass(decoder, byte);
+        reason = (decoder->wire > 1U) ? uherobot_daemon_board_search(decoder, byte)
+                                      : uherobot_daemon_board_pass(decoder, byte);
     }
     if (reason == UHEROBOT_DAEMON_NO_REASON && decoder->wire >= 517U) {
         reason = UHEROBOT_DAEMON_LENGTH;
@@ -1029,16 +1066,15 @@ static void uherobot_daemon_board_seek_on(struct uherobot_daemon_board_decoder *
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_board_reopen(struct uherobot_daemon_board_decoder *decoder) {
     uherobot_daemon_board_open(decoder);
-    (void)uherobot_daemon_board_take(decoder, 0x62);
+    (void)uherobot_daemon_board_take(decoder, 0x62U);
 }
 
-static void uherobot_daemon_board_judge(struct uherobot_daemon_board_decoder *decoder, uint8_t reason, uint8_t byte) {
+static void uherobot_daemon_board_judge(struct uherobot_daemon_board_decoder *decoder,
+                                        uint8_t reason, uint8_t byte) {
     const uint16_t size = (uint16_t)(decoder->wire);
-    (void)byte;
-    (void)reason;
     if (reason == UHEROBOT_DAEMON_FRAME) {
         uherobot_daemon_board_seek_on(decoder);
-    } else if (byte == 0x62 && decoder->wire > 1U) {
+    } else if (byte == 0x62U && decoder->wire > 1U) {
         if (size > 1U) {
             uherobot_daemon_board_invalid(decoder, reason, (uint16_t)(size - 1U));
         }
@@ -1050,15 +1086,17 @@ static void uherobot_daemon_board_judge(struct uherobot_daemon_board_decoder *de
 }
 
 /* A byte that no candidate has. */
-static void uherobot_daemon_board_seek(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
-    if (byte == 0x62) {
+static void uherobot_daemon_board_seek(struct uherobot_daemon_board_decoder *decoder,
+                                       uint8_t byte) {
+    if (byte == 0x62U) {
         uherobot_daemon_board_reopen(decoder);
     } else {
         uherobot_daemon_board_add_noise(decoder, 1);
     }
 }
 
-void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *decoder, uint8_t byte) {
+void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *decoder,
+                                        uint8_t byte) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING) {
         const uint8_t reason = uherobot_daemon_board_take(decoder, byte);
         if (reason != UHEROBOT_DAEMON_NO_REASON) {
@@ -1069,7 +1107,8 @@ void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *de
     }
 }
 
-void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *decoder, const uint8_t *data, size_t size) {
+void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *decoder,
+                                        const uint8_t *data, size_t size) {
     size_t index;
     for (index = 0; index < size; index++) {
         uherobot_daemon_board_decoder_push(decoder, data[index]);
@@ -1081,7 +1120,8 @@ static void uherobot_daemon_board_reset(struct uherobot_daemon_board_decoder *de
     uherobot_daemon_board_seek_on(decoder);
 }
 
-void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder, uherobot_daemon_board_handler handler, void *user) {
+void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder,
+                                        uherobot_daemon_board_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
@@ -1092,14 +1132,15 @@ void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *de
 
 void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *decoder) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING && decoder->wire != 0U) {
-        uherobot_daemon_board_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED, (uint16_t)(decoder->wire));
+        uherobot_daemon_board_invalid(decoder, UHEROBOT_DAEMON_TRUNCATED,
+                                      (uint16_t)(decoder->wire));
     }
     uherobot_daemon_board_end_noise(decoder);
     uherobot_daemon_board_reset(decoder);
 }
 #ifndef UHEROBOT_DAEMON_NO_HANDLERS
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 void uherobot_daemon_daemon_dispatch(void *user, const struct uherobot_daemon_daemon_event *event) {
     switch (event->message) {
@@ -1129,17 +1170,17 @@ void uherobot_daemon_board_dispatch(void *user, const struct uherobot_daemon_boa
 
 #if defined(__GNUC__) || defined(__clang__)
 
-__attribute__((weak)) void uherobot_daemon_on_motors_servos_leds(void *user,
-                                                                 const struct uherobot_daemon_motors_servos_leds *message,
-                                                                 const struct uherobot_daemon_daemon_parts *parts) {
+__attribute__((weak)) void uherobot_daemon_on_motors_servos_leds(
+    void *user, const struct uherobot_daemon_motors_servos_leds *message,
+    const struct uherobot_daemon_daemon_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void uherobot_daemon_on_status(void *user,
-                                                     const struct uherobot_daemon_status *message,
-                                                     const struct uherobot_daemon_board_parts *parts) {
+__attribute__((weak)) void uherobot_daemon_on_status(
+    void *user, const struct uherobot_daemon_status *message,
+    const struct uherobot_daemon_board_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

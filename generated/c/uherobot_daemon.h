@@ -29,7 +29,7 @@ enum uherobot_daemon_result {
     UHEROBOT_DAEMON_OK = 0,
     /** Too few or too many bytes. */
     UHEROBOT_DAEMON_ERROR_SIZE,
-    /** A constant, padding, boolean or closed enum has another value, or a union has no such case. */
+    /** A constant, padding, boolean or closed enum has another value; a union has no such case. */
     UHEROBOT_DAEMON_ERROR_VALUE,
     /** A byte that carries seven bits has its most significant bit set. */
     UHEROBOT_DAEMON_ERROR_ENCODING,
@@ -46,19 +46,19 @@ enum uherobot_daemon_message {
     UHEROBOT_DAEMON_NO_MESSAGE = 2
 };
 
-/* --- named values ------------------------------------------------------------------------------ */
+/* --- named values ----------------------------------------------------------------------------- */
 
 /**
  * One bit for each LED; always 0, as nothing in the daemon sets them (robotboard2interpreter.cpp).
  */
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_0 0x01u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_1 0x02u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_2 0x04u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_3 0x08u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_4 0x10u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_5 0x20u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_6 0x40u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80u
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_0 0x01U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_1 0x02U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_2 0x04U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_3 0x08U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_4 0x10U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_5 0x20U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_6 0x40U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_LED_7 0x80U
 
 /*
  * Each message has three functions for its payload. `encode` puts it into a buffer of `capacity`
@@ -68,12 +68,12 @@ enum uherobot_daemon_message {
  * message brings, which the decoder has checked, and for nothing else.
  */
 
-/* --- motors_servos_leds ------------------------------------------------------------------------ */
+/* --- motors_servos_leds ----------------------------------------------------------------------- */
 
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_ID 0x00u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_SIZE 21u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_MIN 21u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_MAX 21u
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_ID 0x00U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_SIZE 21U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_MIN 21U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_PAYLOAD_MAX 21U
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_SPEC_HASH "7ff4fa59f978b9a3059290eeb5f72ceb40cc086b31a097668c02858a8df86f23"
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_SCALE_NUM 1
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_SCALE_DEN 32
@@ -104,13 +104,11 @@ struct uherobot_daemon_motors_servos_leds {
     uint8_t leds;
 };
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                      uint8_t *payload,
-                                                                      size_t capacity,
-                                                                      size_t *size);
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(struct uherobot_daemon_motors_servos_leds *message,
-                                                                      const uint8_t *payload,
-                                                                      size_t size);
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
+    struct uherobot_daemon_motors_servos_leds *message, const uint8_t *payload, size_t size);
 void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servos_leds *message,
                                              const uint8_t *payload);
 
@@ -121,12 +119,12 @@ static inline uint16_t uherobot_daemon_motors_servos_leds_servos_at(const uint8_
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
-/* --- status ------------------------------------------------------------------------------------ */
+/* --- status ----------------------------------------------------------------------------------- */
 
-#define UHEROBOT_DAEMON_STATUS_ID 0x01u
-#define UHEROBOT_DAEMON_STATUS_PAYLOAD_SIZE 12u
-#define UHEROBOT_DAEMON_STATUS_PAYLOAD_MIN 12u
-#define UHEROBOT_DAEMON_STATUS_PAYLOAD_MAX 12u
+#define UHEROBOT_DAEMON_STATUS_ID 0x01U
+#define UHEROBOT_DAEMON_STATUS_PAYLOAD_SIZE 12U
+#define UHEROBOT_DAEMON_STATUS_PAYLOAD_MIN 12U
+#define UHEROBOT_DAEMON_STATUS_PAYLOAD_MAX 12U
 #define UHEROBOT_DAEMON_STATUS_SPEC_HASH "ef9cd57adf86e074b522672e09b3d942454fc628808be839a1a3af1e88f2912c"
 #define UHEROBOT_DAEMON_STATUS_RESERVED_DEFAULT 0
 #define UHEROBOT_DAEMON_STATUS_PCB_TEMPERATURE_SCALE_NUM 1
@@ -160,14 +158,13 @@ struct uherobot_daemon_status {
     uint16_t motor_voltage;
 };
 
-enum uherobot_daemon_result uherobot_daemon_status_encode(const struct uherobot_daemon_status *message,
-                                                          uint8_t *payload, size_t capacity,
-                                                          size_t *size);
+enum uherobot_daemon_result uherobot_daemon_status_encode(
+    const struct uherobot_daemon_status *message, uint8_t *payload, size_t capacity, size_t *size);
 enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon_status *message,
                                                           const uint8_t *payload, size_t size);
 void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const uint8_t *payload);
 
-/* --- frames ------------------------------------------------------------------------------------ */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 /*
  * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
@@ -181,25 +178,23 @@ void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const u
 typedef void (*uherobot_daemon_put)(void *user, uint8_t byte);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48u
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49u
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                     uint8_t *frame,
-                                                                     size_t capacity, size_t *size);
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(const struct uherobot_daemon_motors_servos_leds *message,
-                                                                    uherobot_daemon_put put,
-                                                                    void *user);
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity,
+    size_t *size);
+enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
+    const struct uherobot_daemon_motors_servos_leds *message, uherobot_daemon_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
-#define UHEROBOT_DAEMON_STATUS_FRAME_MAX 31u
-#define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 32u
-enum uherobot_daemon_result uherobot_daemon_status_frame(const struct uherobot_daemon_status *message,
-                                                         uint8_t *frame, size_t capacity,
-                                                         size_t *size);
-enum uherobot_daemon_result uherobot_daemon_status_send(const struct uherobot_daemon_status *message,
-                                                        uherobot_daemon_put put, void *user);
+#define UHEROBOT_DAEMON_STATUS_FRAME_MAX 31U
+#define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 32U
+enum uherobot_daemon_result uherobot_daemon_status_frame(
+    const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity, size_t *size);
+enum uherobot_daemon_result uherobot_daemon_status_send(
+    const struct uherobot_daemon_status *message, uherobot_daemon_put put, void *user);
 
-/* --- what decoders yield -------------------------------------------------------------------------- */
+/* --- what decoders yield ---------------------------------------------------------------------- */
 
 /** What some bytes of the input are. */
 enum uherobot_daemon_event_kind {
@@ -221,7 +216,7 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
 };
 
-/* --- what daemon sends -------------------------------------------------------------------- */
+/* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
 #define UHEROBOT_DAEMON_DAEMON_FRAME_MAX 512U
@@ -249,7 +244,8 @@ struct uherobot_daemon_daemon_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*uherobot_daemon_daemon_handler)(void *user, const struct uherobot_daemon_daemon_event *event);
+typedef void (*uherobot_daemon_daemon_handler)(void *user,
+                                               const struct uherobot_daemon_daemon_event *event);
 
 /**
  * Cuts what daemon sends into events. Its members are nobody's business. It takes
@@ -258,31 +254,44 @@ typedef void (*uherobot_daemon_daemon_handler)(void *user, const struct uherobot
 struct uherobot_daemon_daemon_decoder {
     uherobot_daemon_daemon_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** First half of a byte, or the code of a group. */
     uint8_t code;
+    /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
 
 /** Start at the beginning of an input. */
-void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder, uherobot_daemon_daemon_handler handler, void *user);
+void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder,
+                                         uherobot_daemon_daemon_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte);
+void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *decoder,
+                                         uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *decoder, const uint8_t *data, size_t size);
+void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *decoder,
+                                         const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_daemon_decoder_flush(struct uherobot_daemon_daemon_decoder *decoder);
 
-/* --- what board sends -------------------------------------------------------------------- */
+/* --- what board sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of board on the wire, in bytes. */
 #define UHEROBOT_DAEMON_BOARD_FRAME_MAX 517U
@@ -310,7 +319,8 @@ struct uherobot_daemon_board_event {
 };
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
-typedef void (*uherobot_daemon_board_handler)(void *user, const struct uherobot_daemon_board_event *event);
+typedef void (*uherobot_daemon_board_handler)(void *user,
+                                              const struct uherobot_daemon_board_event *event);
 
 /**
  * Cuts what board sends into events. Its members are nobody's business. It takes
@@ -319,38 +329,52 @@ typedef void (*uherobot_daemon_board_handler)(void *user, const struct uherobot_
 struct uherobot_daemon_board_decoder {
     uherobot_daemon_board_handler handler;
     void *user;
+    /** Offset of the first byte that is in no event yet. */
     uint32_t offset;
+    /** Bytes of noise that are in no event yet. */
     uint16_t noise;
+    /** Bytes of the candidate on the wire. */
     uint16_t wire;
+    /** Bytes of the candidate without stuffing. */
     uint16_t content;
+    /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
+    /** Seeking, taking or failed. */
     uint8_t state;
+    /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
+    /** Bytes of a delimiter that are held back. */
     uint8_t held;
+    /** Place inside a sequence of the stuffing; 0 outside. */
     uint8_t node;
+    /** First half of a byte, or the code of a group. */
     uint8_t code;
+    /** Bytes of the candidate. */
     uint8_t buffer[258];
 };
 
 /** Start at the beginning of an input. */
-void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder, uherobot_daemon_board_handler handler, void *user);
+void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder,
+                                        uherobot_daemon_board_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *decoder, uint8_t byte);
+void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *decoder,
+                                        uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *decoder, const uint8_t *data, size_t size);
+void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *decoder,
+                                        const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *decoder);
 
-/* --- handlers ---------------------------------------------------------------------------------- */
+/* --- handlers --------------------------------------------------------------------------------- */
 
 /*
- * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own function
- * with it. Define those that you need; the others do nothing. They are weak where the compiler knows
- * weak functions. For another one, define all of them, or leave out the dispatching by defining
- * UHEROBOT_DAEMON_NO_HANDLERS for the source.
+ * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
+ * function with it. Define those that you need; the others do nothing. They are weak where the
+ * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
+ * by defining UHEROBOT_DAEMON_NO_HANDLERS for the source.
  */
 
 /** motors_servos_leds came from daemon. */

@@ -21,6 +21,7 @@ from protogen.targets.c.lines import prototype
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
+from protogen.targets.c.wrapping import wrapped
 from protogen.targets.output import File
 from protogen.targets.printing import environment
 
@@ -81,8 +82,8 @@ def _print(module: Module, framing: FramingView | None, options: COptions) -> tu
     given = {"module": module, "options": options, "framing": framing}
     environment = c_environment()
     return (
-        environment.get_template("header.h.j2").render(given),
-        environment.get_template("source.c.j2").render(given),
+        wrapped(environment.get_template("header.h.j2").render(given)),
+        wrapped(environment.get_template("source.c.j2").render(given)),
     )
 
 

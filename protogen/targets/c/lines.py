@@ -126,11 +126,13 @@ def prototype(head: str, arguments: tuple[str, ...], end: str = ";") -> str:
     """A function's head; where it is too long, its arguments go on below each other."""
     items = [f"{argument}," for argument in arguments[:-1]]
     items.append(f"{arguments[-1] if arguments else 'void'}){end}")
-    margin = " " * (len(head) + 1)
-    lines = [f"{head}({items[0]}"]
-    for item in items[1:]:
-        if len(lines[-1]) + 1 + len(item) <= WIDTH:
+    margin = len(head) + 1
+    is_long = margin + max(map(len, items)) > WIDTH
+    lines = [f"{head}("] if is_long else [f"{head}({items.pop(0)}"]
+    margin = INDENT if is_long else margin
+    for item in items:
+        if len(lines) > is_long and len(lines[-1]) + 1 + len(item) <= WIDTH:
             lines[-1] += f" {item}"
         else:
-            lines.append(margin + item)
+            lines.append(" " * margin + item)
     return "\n".join(lines)

@@ -110,7 +110,7 @@ def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) ->
     return BitsView(
         comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
         Macro(names.claim_macro(*words, "mask"), hexadecimal(item.mask)),
-        Macro(names.claim_macro(*words, "shift"), f"{item.low}u"),
+        Macro(names.claim_macro(*words, "shift"), f"{item.low}U"),
         kind,
         names.claim(*words, "get"),
         names.claim(*words, "set"),

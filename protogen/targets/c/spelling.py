@@ -95,8 +95,8 @@ def hexadecimal(value: int, digits: int = 2) -> str:
 
 def _suffix(value: int) -> str:
     if value <= 0xFFFF:
-        return "u"
-    return "ul" if value <= 0xFFFFFFFF else "ull"
+        return "U"
+    return "UL" if value <= 0xFFFFFFFF else "ULL"
 
 
 def constant(value: int, type_: Integer) -> str:

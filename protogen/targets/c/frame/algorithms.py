@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import storage_bits
-from protogen.targets.c.spelling import unsigned_type
+from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def _sum(spec: ChecksumSpec, function: str) -> Algorithm:
 
 
 def _simple(spec: ChecksumSpec, function: str, step: str, final: str) -> Algorithm:
-    init = f"0x{spec.init:02X}"
+    init = hexadecimal(spec.init)
     return Algorithm(
         function, spec.name, spec.kind, "uint8_t", "uint8_t", 8, init, (step,), final, False, False
     )
@@ -80,23 +80,23 @@ def _crc(spec: ChecksumSpec, function: str) -> Algorithm:
         enter = f"sum = ({type_})(sum ^ byte);"
         advance = (
             f"sum = ({type_})((sum & 1U) != 0U ? "
-            f"({type_})(sum >> 1) ^ {_hex(poly, bits, digits)} : ({type_})(sum >> 1));"
+            f"({type_})(sum >> 1) ^ {hexadecimal(poly, digits)} : ({type_})(sum >> 1));"
         )
         register = "sum"
     else:
         poly, init = spec.poly << spare, spec.init << spare
         entering = "byte" if bits == 8 else f"({type_})(({type_})byte << {bits - 8})"
         enter = f"sum = ({type_})(sum ^ {entering});"
-        top = _hex(1 << (bits - 1), bits, digits)
+        top = hexadecimal(1 << (bits - 1), digits)
         advance = (
             f"sum = ({type_})((sum & {top}) != 0U ? "
-            f"({type_})(({type_})(sum << 1) ^ {_hex(poly, bits, digits)}) : ({type_})(sum << 1));"
+            f"({type_})(({type_})(sum << 1) ^ {hexadecimal(poly, digits)}) : ({type_})(sum << 1));"
         )
         register = f"({type_})(sum >> {spare})" if spare else "sum"
     reverses = spec.refin != spec.refout
     result = f"{function}_reversed({register})" if reverses else register
     if spec.xorout:
-        result = f"({type_})({result} ^ {_hex(spec.xorout, bits, digits)})"
+        result = f"({type_})({result} ^ {hexadecimal(spec.xorout, digits)})"
     return Algorithm(
         function,
         spec.name,
@@ -104,16 +104,12 @@ def _crc(spec: ChecksumSpec, function: str) -> Algorithm:
         type_,
         type_,
         spec.width,
-        _hex(init, bits, digits),
+        hexadecimal(init, digits),
         (enter, advance),
         result,
         True,
         reverses,
     )
-
-
-def _hex(value: int, bits: int, digits: int) -> str:
-    return f"UINT{bits}_C(0x{value:0{digits}X})"
 
 
 def _reversed(value: int, width: int) -> int:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from protogen.model.frame_plan import Place, Side
 from protogen.model.types import Integer
-from protogen.targets.c.spelling import unsigned_type
+from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +33,11 @@ class Index:
         return f"{self.head_size}U + {payload} + ({payload} == 0U ? {left}U : {place.offset}U)"
 
 
-def less_absent(place: Place, payload: str, suffix: str = "U") -> str:
+def less_absent(place: Place, payload: str) -> str:
     """What is taken off an offset of the tail where the payload is empty, with its sign."""
     if place.side is Side.HEAD or not place.absent:
         return ""
-    return f" - ({payload} == 0{suffix} ? {place.absent}{suffix} : 0{suffix})"
+    return f" - ({payload} == 0U ? {place.absent}U : 0U)"
 
 
 # --- bytes ----------------------------------------------------------------------------------------
@@ -45,7 +45,7 @@ def less_absent(place: Place, payload: str, suffix: str = "U") -> str:
 
 def byte(value: int) -> str:
     """A byte in hexadecimal digits."""
-    return f"0x{value:02X}"
+    return hexadecimal(value)
 
 
 def octets(data: bytes) -> str:
@@ -67,19 +67,15 @@ def differs(data: Iterable[int | str], array: str, at: int | str = 0) -> str:
     return " || ".join(f"{item} != {value}" for item, value in _pairs(data, array, at))
 
 
-def equals(data: Iterable[int | str], array: str, at: int | str = 0, suffix: str = "U") -> str:
+def equals(data: Iterable[int | str], array: str, at: int | str = 0) -> str:
     """The condition that these bytes stand there."""
-    return " && ".join(f"{item} == {value}" for item, value in _pairs(data, array, at, suffix))
+    return " && ".join(f"{item} == {value}" for item, value in _pairs(data, array, at))
 
 
-def _pairs(
-    data: Iterable[int | str], array: str, at: int | str, suffix: str = "U"
-) -> Iterable[tuple[str, str]]:
+def _pairs(data: Iterable[int | str], array: str, at: int | str) -> Iterable[tuple[str, str]]:
     for offset, value in enumerate(data):
-        if isinstance(at, int):
-            index = str(at + offset)
-        else:
-            index = f"{at} + {offset}{suffix}" if offset else at
+        behind = f"{at} + {offset}U" if offset else at
+        index = at + offset if isinstance(at, int) else behind
         yield f"{array}[{index}]", byte(value) if isinstance(value, int) else value
 
 
@@ -89,7 +85,7 @@ def _pairs(
 def wire_bytes(type_: Integer, value: str) -> tuple[str, ...]:
     """The bytes of an unsigned `value`, in wire order."""
     places = range(0, type_.byte_bits * type_.size, type_.byte_bits)
-    mask = " & 0x7F" if type_.byte_bits == 7 else ""
+    mask = " & 0x7FU" if type_.byte_bits == 7 else ""
     items = [_byte_of(value, shift, mask) for shift in places]
     return tuple(items if type_.byte_order == "little" else reversed(items))
 

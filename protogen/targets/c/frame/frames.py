@@ -23,7 +23,7 @@ from protogen.model.frame import (
 from protogen.model.frame_plan import FramePlan, PlacedPart, Side
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.decoder import DecoderView
-from protogen.targets.c.frame.expressions import Index, equals, less_absent, wire_bytes
+from protogen.targets.c.frame.expressions import Index, byte, equals, less_absent, wire_bytes
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import unsigned_type
 
@@ -119,13 +119,13 @@ class FrameView:
         """Bytes behind the payload."""
         d = self.decoder
         if not d.optional_size:
-            return f"{d.tail_size}u"
-        return f"(payload == 0u ? {d.tail_size - d.optional_size}u : {d.tail_size}u)"
+            return f"{d.tail_size}U"
+        return f"(payload == 0U ? {d.tail_size - d.optional_size}U : {d.tail_size}U)"
 
     @property
     def content_size(self) -> str:
         """Bytes of content."""
-        return f"{self.decoder.head_size}u + payload + {self.tail_size}"
+        return f"{self.decoder.head_size}U + payload + {self.tail_size}"
 
     @property
     def length(self) -> str:
@@ -134,8 +134,8 @@ class FrameView:
         if view is None:
             return ""
         if not view.optional:
-            return f"{view.base}u + payload" if view.base else "payload"
-        return f"(payload == 0u ? {view.base}u : {view.base + view.optional}u + payload)"
+            return f"{view.base}U + payload" if view.base else "payload"
+        return f"(payload == 0U ? {view.base}U : {view.base + view.optional}U + payload)"
 
     @property
     def length_type(self) -> str:
@@ -180,7 +180,7 @@ class FrameView:
         """A byte as it stands behind the escape."""
         assert self._stuffing is not None
         xor = self._stuffing.xor
-        return f"(uint8_t)(byte ^ 0x{xor:02X}u)" if xor else "byte"
+        return f"(uint8_t)(byte ^ {byte(xor)})" if xor else "byte"
 
     def stuffs_bytes(self, streaming: tuple[str, ...]) -> bool:
         """True if bytes are stuffed one by one, because they are summed or sent so."""
@@ -220,7 +220,7 @@ class FrameView:
     def sum_is_due(self) -> str:
         """The condition that all went by that the checksum covers."""
         assert self.summed is not None
-        return f"from + {self.summed.size}u == stuffed"
+        return f"from + {self.summed.size}U == stuffed"
 
     @property
     def summed_byte(self) -> str:
@@ -251,10 +251,10 @@ class FrameView:
 
     def _step(self, item: PlacedPart) -> Step:
         part = item.part
-        less = less_absent(item.place, "payload", "u")
+        less = less_absent(item.place, "payload")
         match part:
             case LiteralPart():
-                values = tuple(f"0x{byte:02X}" for byte in part.bytes)
+                values = tuple(map(byte, part.bytes))
             case LengthPart():
                 values = wire_bytes(part.type, "length")
             case NumberPart():
@@ -264,7 +264,7 @@ class FrameView:
             case _:
                 values = ()
         stores = tuple(
-            ByteStore(f"{item.offset + index}u{less}", value) for index, value in enumerate(values)
+            ByteStore(f"{item.offset + index}U{less}", value) for index, value in enumerate(values)
         )
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
         return Step(item.in_head, stores, checksum)
@@ -314,7 +314,7 @@ class FrameView:
     @property
     def end_at_index(self) -> str:
         """The condition that an end stands at `index`."""
-        return equals(self.plan.end_bytes, "frame", "index", "u")
+        return equals(self.plan.end_bytes, "frame", "index")
 
 
 def _covered(item: PlacedPart) -> set[str]:
@@ -340,8 +340,8 @@ def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
     name = argument_name(part.name)
     conditions = []
     if part.least > 0:
-        conditions.append(f"{name} < {part.least}u")
+        conditions.append(f"{name} < {part.least}U")
     if part.greatest < (1 << bits) - 1:
-        conditions.append(f"{name} > {part.greatest}u")
+        conditions.append(f"{name} > {part.greatest}U")
     type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
     return Argument(name, part.name, type_, part.about.doc, refused)

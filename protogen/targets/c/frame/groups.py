@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from protogen.model.frame_plan import FramePlan, IdentityGroup
 from protogen.model.messages import Message
-from protogen.model.types import storage_bits
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.spelling import unsigned_type
+from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +35,20 @@ class ReceivedMessage:
         found = [f"{size} >= {self.least}U"] if self.least else []
         found.append(f"{size} <= {self.greatest}U")
         if self.step > 1:
-            above = f"({size} - {self.least}U)" if self.least else f"({size})"
+            above = f"({size} - {self.least}U)" if self.least else size
             found.append(f"{above} % {self.step}U == 0U")
         return " && ".join(found)
+
+    def misfits(self, size: str) -> str:
+        """The opposite condition."""
+        if self.fixed:
+            return f"{size} != {self.least}U"
+        found = [f"{size} < {self.least}U"] if self.least else []
+        found.append(f"{size} > {self.greatest}U")
+        if self.step > 1:
+            above = f"({size} - {self.least}U)" if self.least else size
+            found.append(f"{above} % {self.step}U != 0U")
+        return " || ".join(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +94,7 @@ def key_from(plan: FramePlan, values: Mapping[str, str]) -> str:
 
 
 def _constant(plan: FramePlan, group: IdentityGroup) -> str:
-    bits = max(plan.identity_bits, 8)
-    return f"UINT{storage_bits(bits)}_C(0x{group.key:0{max(2, -(-plan.identity_bits // 4))}X})"
+    return hexadecimal(group.key, max(2, -(-plan.identity_bits // 4)))
 
 
 def _message(plan: FramePlan, message: Message, view: MessageView) -> ReceivedMessage:

@@ -12,6 +12,37 @@ _POINTERS = 2
 """The handler and what it is given."""
 _SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
+_ABOUT = {
+    "offset": "Offset of the first byte that is in no event yet.",
+    "noise": "Bytes of noise that are in no event yet.",
+    "wire": "Bytes of the candidate on the wire.",
+    "content": "Bytes of the candidate without stuffing.",
+    "payload": "Size of the payload, or the most that there is room for.",
+    "limit": "Bytes of content that the frame has, or can have.",
+    "count": "Bytes in the buffer.",
+    "next": "Place in the buffer of the byte to read next.",
+    "failed": "Bytes of the candidate that failed.",
+    "extra": "Bytes behind a failed candidate that may belong to a start.",
+    "due": "Bytes of content at which the payload is measured again.",
+    "open_from": "Bytes on the wire in front of the first that may be a start.",
+    "passed": "Bytes on the wire that are part of the candidate's content.",
+    "state": "Seeking, taking or failed.",
+    "reason": "Why the candidate failed.",
+    "flags": "What is known of the candidate.",
+    "group": "Number of the identity whose payload is measured.",
+    "behind": "Last bytes of the candidate that begin the next one.",
+    "match": "Bytes of a delimiter that the input ends with.",
+    "shared": "Bytes of the candidate that ended the frame before.",
+    "held": "Bytes of a delimiter that are held back.",
+    "end_left": "Bytes of the end that are due.",
+    "region": "In front of the stuffed region, inside, or behind.",
+    "node": "Place inside a sequence of the stuffing; 0 outside.",
+    "code": "First half of a byte, or the code of a group.",
+    "sequence": "Bytes that may be a sequence of the stuffing.",
+    "buffer": "Bytes of the candidate.",
+    "unstuffed": "Content of the candidate.",
+    "ends": "Where each byte of content ends on the wire.",
+}
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
 
 
@@ -28,6 +59,11 @@ class Member:
     def declaration(self) -> str:
         """The member in C."""
         return f"{self.type} {self.name}" + ("" if self.count is None else f"[{self.count}]")
+
+    @property
+    def about(self) -> str:
+        """What it holds, for its reader."""
+        return _ABOUT[self.name]
 
     @property
     def size(self) -> int:

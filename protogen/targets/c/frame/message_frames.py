@@ -9,6 +9,7 @@ from protogen.model.protocol import Sender
 from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.spelling import hexadecimal
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +90,9 @@ class MessageFrame:
     @property
     def no_frame_has(self) -> str:
         """The condition of a payload that no frame can carry; empty if there is none."""
-        found = [f"payload < {self.least_payload}u"] if self.least_payload else []
+        found = [f"payload < {self.least_payload}U"] if self.least_payload else []
         if self.message.sizes.greatest > self.greatest_payload:
-            found.append(f"payload > {self.greatest_payload}u")
+            found.append(f"payload > {self.greatest_payload}U")
         return " || ".join(found)
 
     # --- the frame --------------------------------------------------------------------------------
@@ -105,7 +106,7 @@ class MessageFrame:
     def identity(self) -> tuple[str, ...]:
         """The values of the identity parts."""
         return tuple(
-            f"0x{value:0{2 * -(-part.type.bits // 8)}X}"
+            hexadecimal(value, 2 * -(-part.type.bits // 8))
             for part, value in zip(self.decoder.plan.identity, self.message.identity, strict=True)
         )
 

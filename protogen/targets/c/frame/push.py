@@ -114,11 +114,10 @@ class PushDecoder(PushStates):
         before = group.messages[: group.messages.index(item)]
         return " && ".join([self.fits(item), *(f"!({self.fits(other)})" for other in before)])
 
-    def read(self, item: ReceivedMessage) -> str:
-        """What comes of a payload for the message that has to be checked."""
-        refused = f"(int){self.decoder.protocol_upper}_SIZE"
-        checked = f"(int){item.checks}(payload, size, NULL)"
-        return f"(uint8_t)({self.fits(item)} ? {checked} : {refused})"
+    @property
+    def checks_payloads(self) -> bool:
+        """True if the bytes of some payload are looked at."""
+        return any(item.checks for group in self.decoder.groups for item in group.messages)
 
     # --- bytes on the wire ------------------------------------------------------------------------
 
@@ -247,15 +246,6 @@ class PushDecoder(PushStates):
             return f"cut ? {refused} : {fine}"
         return f"(cut || {self._flag('NEEDLESS')} != 0U) ? {refused} : {fine}"
 
-    @property
-    def no_more(self) -> str:
-        """The reason where a byte of a sequence is taken that leads to no content yet."""
-        d = self.decoder
-        fine = f"{d.protocol_upper}_NO_REASON"
-        if not self.searches:
-            return fine
-        return f"{self.full} ? {d.prefix}_surplus(decoder) : (uint8_t){fine}"
-
     def holds(self, sequence: bytes) -> str:
         """The condition that what is held begins with the sequence."""
         return f"decoder->node >= {len(sequence)}U && {equals(sequence, 'held')}"
@@ -328,6 +318,12 @@ class PushDecoder(PushStates):
         if d.start is StartRule.SET or not self.keeps_match:
             return d.is_start("byte")
         return f"decoder->match == {d.start_size}U"
+
+    @property
+    def judges_byte(self) -> bool:
+        """True if the last byte of a candidate may be a start of one byte."""
+        is_literal = bool(self.decoder.literal) and not self.keeps_match
+        return is_literal or self.decoder.start is StartRule.SET
 
     @property
     def behind_start(self) -> str:

@@ -176,8 +176,8 @@ class ReceivedFrame:
         if self.literal:
             return f"{at} == {byte(self.literal[0])}"
         first, last = self.plan.start_set[0], self.plan.start_set[-1]
-        found = [f"{at} >= {byte(first)}U"] if first > 0 else []
-        found += [f"{at} <= {byte(last)}U"] if last < 255 else []
+        found = [f"{at} >= {byte(first)}"] if first > 0 else []
+        found += [f"{at} <= {byte(last)}"] if last < 255 else []
         return " && ".join(found)
 
     # --- what is kept -----------------------------------------------------------------------------

@@ -77,7 +77,7 @@ class Accessors:
 
 def _read(type_: Integer, body: Lines) -> None:
     if type_.role == "bool":
-        body.add("return at[0] != 0u;")
+        body.add("return at[0] != 0U;")
     elif is_plain(type_):
         body.add(f"return {f'({integer_type(type_)})' if type_.signed else ''}at[0];")
     elif not type_.signed:

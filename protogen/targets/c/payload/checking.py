@@ -122,7 +122,7 @@ class Checker(SecuredWalk):
         if step.has_wrong_values:
             self._flush(type_.size)
         if Check.BOOLEAN in step.checks:
-            self._refuse(f"{self._byte()} > 1u", "VALUE")
+            self._refuse(f"{self._byte()} > 1U", "VALUE")
             return
         if Check.PADDING in step.checks:
             unused = type_.byte_bits * type_.size - type_.bits
@@ -202,8 +202,8 @@ class Checker(SecuredWalk):
         mask = ((1 << type_.byte_bits) - 1) & ~(1 << (type_.bits - 1) % type_.byte_bits)
         for index in range(type_.size):
             byte = self._byte(index - type_.size)
-            other = f"({byte} & {hexadecimal(mask)}) != 0u"
-            self._refuse(other if index == place else f"{byte} != 0u", "VALUE")
+            other = f"({byte} & {hexadecimal(mask)}) != 0U"
+            self._refuse(other if index == place else f"{byte} != 0U", "VALUE")
 
     # --- bytes ------------------------------------------------------------------------------------
 
@@ -320,7 +320,7 @@ class Checker(SecuredWalk):
     def _require_nothing(self, distance: int | str) -> None:
         """Go on behind bytes that were looked at."""
         self._secured = self._offset
-        self._move(f"{self._offset}u + {distance}" if self._offset else distance)
+        self._move(f"{self._offset}U + {distance}" if self._offset else distance)
 
     def _filling(self, step: RepeatStep, place: str) -> None:
         """Check as many elements as the payload has left."""

@@ -114,9 +114,9 @@ class Helpers:
         body = Lines()
         body.add("size_t i = 0;")
         body.directive(f"#if {self._names.prefix.upper()}_SSE2")
-        with body.block("for (; count - i >= 8u; i += 8u)"):
+        with body.block("for (; count - i >= 8U; i += 8U)"):
             body.add(
-                "const void *const from = &at[2u * i];",
+                "const void *const from = &at[2U * i];",
                 "const __m128i pairs = _mm_loadu_si128((const __m128i *)from);",
                 "const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));",
                 "const __m128i next = _mm_srli_epi16(pairs, 1);",
@@ -125,7 +125,7 @@ class Helpers:
             )
         body.directive("#endif")
         with body.block("for (; i < count; i++)"):
-            body.add(f"numbers[i] = {load}(&at[2u * i]);")
+            body.add(f"numbers[i] = {load}(&at[2U * i]);")
         arguments = (f"{integer_type(type_)} *numbers", _AT, "size_t count")
         self._define(f"void {name}", arguments, body)
         return name
@@ -205,7 +205,7 @@ class Helpers:
         body = Lines()
         body.add(f"const uint64_t bits = {bits}(value);")
         top = hexadecimal(1 << 63)
-        body.add(f"return (bits & {top}) != 0u ? ~bits : bits | {top};")
+        body.add(f"return (bits & {top}) != 0U ? ~bits : bits | {top};")
         self._define(f"uint64_t {name}", (f"{self._names.prefix}_float64 value",), body)
         return name
 
@@ -277,10 +277,10 @@ class Helpers:
         if name is None:
             return self._known["is_seven_bit"]
         body = Lines()
-        body.add("const uint8_t *bytes = (const uint8_t *)at;", "uint8_t all = 0u;")
+        body.add("const uint8_t *bytes = (const uint8_t *)at;", "uint8_t all = 0U;")
         with body.block("for (size_t i = 0; i < size; i++)"):
             body.add("all |= bytes[i];")
-        body.add("return all <= 0x7Fu;")
+        body.add("return all <= 0x7FU;")
         self._define(f"bool {name}", ("const void *at", "size_t size"), body)
         return name
 
@@ -292,7 +292,7 @@ class Helpers:
         if name is None:
             return self._known[key]
         body = Lines()
-        body.add(f"{kind} all = 0u;")
+        body.add(f"{kind} all = 0U;")
         with body.block("for (size_t i = 0; i < count; i++)"):
             body.add("all |= numbers[i];")
         body.add("return all;")
@@ -443,7 +443,7 @@ def _joined_in_a_loop(type_: Integer, at: str) -> tuple[str, ...]:
     target, size = unsigned_type(type_.bits), type_.size
     index = "i" if type_.byte_order == "big" else f"{size - 1} - i"
     return (
-        f"{target} value = 0u;",
+        f"{target} value = 0U;",
         f"for (size_t i = 0; i < {size}; i++) {{",
         f"    value = ({target})(value << {type_.byte_bits}) | {at}[{index}];",
         "}",

@@ -26,7 +26,7 @@ def loaded(helpers: Helpers, type_: Integer | Float, byte: str, address: str) ->
     if isinstance(type_, Float):
         return f"{helpers.load(type_)}({address})"
     if type_.role == "bool":
-        return f"{byte} != 0u"
+        return f"{byte} != 0U"
     if is_plain(type_):
         return f"({integer_type(type_)}){byte}" if type_.signed else byte
     if type_.signed and is_whole(type_):
@@ -70,11 +70,11 @@ class Load(PlacedWalk):
     def _rest(self, place: str, count: str, greatest: int) -> None:
         """Take all bytes that are left."""
         if greatest == 0:
-            self.lines.add(f"{count} = 0u;")
+            self.lines.add(f"{count} = 0U;")
             return
         name, offset = self._place.passed
         left = "size" if name == "payload" else "(size_t)(payload + size - at)"
-        left = f"{left} - {offset}u" if offset else left
+        left = f"{left} - {offset}U" if offset else left
         self.lines.add(f"{count} = ({counting_type(greatest)})({left});")
         self._copy(place, count)
 
@@ -104,7 +104,7 @@ class Load(PlacedWalk):
             self._rest(place, member, count.greatest)
             return
         self._place.settle()
-        self.lines.add(f"{member} = 0u;")
+        self.lines.add(f"{member} = 0U;")
         with self.lines.block("while (at < payload + size)"):
             index = member if step.element.holds_values else "0"
             self.step(step.element, f"{place}[{index}]")

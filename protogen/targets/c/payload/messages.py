@@ -206,7 +206,7 @@ def _sizes(item: Message, names: Names) -> tuple[Macro, ...]:
     macros = [("payload_min", sizes.least), ("payload_max", sizes.greatest)]
     if sizes.fixed is not None:
         macros.insert(0, ("payload_size", sizes.fixed))
-    return tuple(Macro(names.claim_macro(item.name, word), f"{size}u") for word, size in macros)
+    return tuple(Macro(names.claim_macro(item.name, word), f"{size}U") for word, size in macros)
 
 
 class _Codec:
@@ -254,7 +254,7 @@ class _Codec:
         measure.message(self._item.plan)
         known = measure.known
         body = Lines()
-        body.add(f"size_t size = {known}u;", *(line[4:] for line in lines.lines), "return size;")
+        body.add(f"size_t size = {known}U;", *(line[4:] for line in lines.lines), "return size;")
         return self._static("measure", "size_t", [self._message], body)
 
     def _validate(self) -> str:
@@ -269,8 +269,8 @@ class _Codec:
         if not (least or greatest):
             return
         lines.add(f"const size_t size = {self._names['measure']}(message);")
-        tests = [f"size < {least}u"] if least else []
-        tests += [f"size > {greatest}u"] if greatest else []
+        tests = [f"size < {least}U"] if least else []
+        tests += [f"size > {greatest}U"] if greatest else []
         with lines.block(f"if ({' || '.join(tests)})"):
             lines.add(f"return {self._upper}_ERROR_RANGE;")
 
@@ -293,7 +293,7 @@ class _Codec:
             lines.add(f"{result} = {self._names['validate']}(message);")
             with lines.block(f"if (result != {self._upper}_OK)"):
                 lines.add("return result;")
-        size = f"{self._fixed}u"
+        size = f"{self._fixed}U"
         if self._fixed is None:
             size = "needed"
             lines.add(f"const size_t needed = {self._names['measure']}(message);")
@@ -317,9 +317,9 @@ class _Codec:
         lines = Lines()
         if self.needs:
             with lines.block("if (need != NULL)"):
-                lines.add("*need = 0u;")
+                lines.add("*need = 0U;")
         if self._item.sizes.fixed is not None:
-            with lines.block(f"if (size != {self._item.sizes.fixed}u)"):
+            with lines.block(f"if (size != {self._item.sizes.fixed}U)"):
                 lines.add(f"return {self._upper}_ERROR_SIZE;")
         check = Checker(
             self._printer.helpers,
@@ -338,7 +338,7 @@ class _Codec:
         lines = Lines()
         Load(self._printer.helpers, lines).message(self._item.plan)
         if not self._item.plan.holds_values:
-            lines.add("message->unused = 0u;")
+            lines.add("message->unused = 0U;")
         head, arguments = self._load_head
         lines.drop_unused_places()
         return function(head, arguments, _with_unused(lines, _PARAMETERS, arguments))
@@ -354,7 +354,7 @@ class _Codec:
         if self.checks:
             self._checked(lines)
         else:
-            with lines.block(f"if (size != {self._fixed}u)"):
+            with lines.block(f"if (size != {self._fixed}U)"):
                 lines.add(f"return {self._upper}_ERROR_SIZE;")
         size = ", size" if self._fixed is None else ""
         lines.add(f"{self._names['load']}(message, payload{size});", f"return {self._upper}_OK;")

@@ -116,7 +116,7 @@ class SecuredWalk(Walk):
         if start is None or start == end:
             return
         if end - start == 1:
-            self._refuse(f"payload[{self._sum(start)}] > 0x7Fu", "ENCODING")
+            self._refuse(f"payload[{self._sum(start)}] > 0x7FU", "ENCODING")
             return
         check = self.helpers.seven_bit()
         self._refuse(f"!{check}({self._address(start)}, {end - start})", "ENCODING")

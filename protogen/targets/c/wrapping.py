@@ -1,0 +1,85 @@
+"""Long lines of C, broken as clang-format lays out what is broken."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from protogen.targets.c.lines import WIDTH, prototype
+
+_OPENING, _CLOSING = "([{", ")]}"
+_HEAD = re.compile(r"(?P<function>\w[\w *]*)\((?P<arguments>[^()]+)\)(?P<end>;| \{)$")
+"""The head of a function without functions among its arguments."""
+_VALUE = re.compile(r"\s*(?:return |[^=(]* = )?")
+"""What stands in front of a value outside of brackets."""
+
+
+_OPERATOR = re.compile(r"(?:&&| \||\|\|)$")
+"""Operators behind which a line is broken."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Break:
+    """A place where a line can be broken."""
+
+    end: int
+    """Column behind what stays on the line."""
+    margins: tuple[int, ...]
+    """Columns behind the brackets that are open there."""
+    column: int
+    """Where the rest is aligned."""
+
+
+def wrapped(text: str) -> str:
+    """The text with every line of code on at most so many columns, where that can be."""
+    return "\n".join(part for line in text.split("\n") for part in _lines(line))
+
+
+def _lines(line: str) -> Iterator[str]:
+    head = _HEAD.match(line) if len(line) > WIDTH else None
+    if head is None:
+        yield from _parts(line, ())
+    else:
+        yield prototype(head["function"], tuple(head["arguments"].split(", ")), head["end"])
+
+
+def _parts(line: str, margins: tuple[int, ...]) -> Iterator[str]:
+    found = None
+    if len(line) > WIDTH and not line.lstrip().startswith(("*", "/*", "#")):
+        breaks = [item for item in _breaks(line, margins) if item.end <= WIDTH]
+        found = min(breaks, key=lambda item: (len(item.margins), -item.end), default=None)
+    if found is None:
+        yield line
+        return
+    yield line[: found.end]
+    yield from _parts(" " * found.column + line[found.end :].lstrip(), found.margins)
+
+
+def _breaks(line: str, margins: tuple[int, ...]) -> list[_Break]:
+    """The places behind commas and operators, and in front of what a condition else comes to."""
+    indent = len(line) - len(line.lstrip())
+    value = None if margins else _VALUE.match(line)
+    outside = value.end() if value and value.end() > indent else indent + (0 if margins else 4)
+    opened = list(margins)
+    asked: dict[int, int] = {}
+    """Where a condition was asked, by how many brackets are open."""
+    found: list[_Break] = []
+    for column, sign in enumerate(line):
+        if sign in _OPENING:
+            opened.append(column + 1)
+        elif sign in _CLOSING and opened:
+            asked.pop(len(opened), None)
+            opened.pop()
+        elif sign == "?":
+            asked[len(opened)] = column
+            # A condition on several lines would want its question on one of its own.
+            found = [item for item in found if len(item.margins) < len(opened)]
+        elif sign == ":" and len(opened) in asked:
+            found.append(_Break(column - 1, tuple(opened), asked[len(opened)]))
+        elif column > indent and line[column + 1 : column + 2] == " ":
+            is_operator = _OPERATOR.search(line, max(column - 2, 0), column + 1) is not None
+            if (sign in ",;" and opened) or (is_operator and len(opened) not in asked):
+                margin = opened[-1] if opened else outside
+                found.append(_Break(column + 1, tuple(opened), margin))
+    return found
