@@ -16,12 +16,12 @@ from protogen.model.frame import (
     LiteralPart,
     NumberPart,
     Part,
+    PartType,
     Substitution,
     Transparency,
     ValuePart,
 )
 from protogen.model.protocol import Sender
-from protogen.model.types import Integer
 from protogen.passes.framing.capacity import payload_range
 
 
@@ -160,7 +160,7 @@ def _default(part: Part) -> int | None:
     return part.default if isinstance(part, CounterPart | ValuePart) else None
 
 
-def _layout(type: Integer) -> tuple[object, ...]:
+def _layout(type: PartType) -> tuple[object, ...]:
     """Layout of its bytes; how the number is shown does not count."""
     return type.bits, type.signed, type.byte_bits, type.byte_order
 

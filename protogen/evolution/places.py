@@ -9,9 +9,10 @@ from typing import NamedTuple
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison
 from protogen.model.messages import Message
+from protogen.model.nesting import fields_inside
 from protogen.model.origin import About
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, Integer
 from protogen.problems.span import Span
 
 
@@ -94,21 +95,10 @@ def _abouts(message: Message, path: str | None, change: Change, side: int) -> It
         if found is None:
             return
         yield found.about
-        fields = list(_inner(found.type))
+        fields = list(fields_inside(found.type))
     name = change.names[side]
     if found is not None:
         yield from _named(found, change.run, name)
-
-
-def _inner(kind: Type) -> Iterator[Field]:
-    match kind:
-        case Struct():
-            yield from kind.fields
-        case Array():
-            yield from _inner(kind.element)
-        case Switch():
-            for case in kind.cases:
-                yield from _inner(case.type)
 
 
 def _named(field: Field, run: str | None, name: str | None) -> Iterator[About]:

@@ -9,6 +9,9 @@ from protogen.model.origin import NOTHING, About
 from protogen.model.types import Integer
 from protogen.runtime.number import Number
 
+PartType = Integer
+"""Type of a part that is a number: an integer of whole bytes, in wire order."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
@@ -46,7 +49,7 @@ class LiteralPart(Part):
 class NumberPart(Part):
     """A part that is one integer."""
 
-    type: Integer
+    type: PartType
     least: int
     greatest: int
     """Bounds of the raw value, both included."""
@@ -98,7 +101,7 @@ class PayloadPart(Part):
 class ChecksumPart(Part):
     """A checksum over other parts."""
 
-    type: Integer
+    type: PartType
     algorithm: ChecksumSpec
     covers: tuple[str, ...]
     over_wire: bool = False

@@ -14,6 +14,14 @@ def codec(type_: Integer | Float) -> Number:
     return Number(type_.bits, signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
 
 
+def number_bytes(type_: Integer, value: int) -> bytes:
+    """The unstuffed bytes of a number, in wire order."""
+    mask = (1 << type_.byte_bits) - 1
+    value &= (1 << type_.bits) - 1
+    little = bytes((value >> (type_.byte_bits * place)) & mask for place in range(type_.size))
+    return little[::-1] if type_.byte_order == "big" else little
+
+
 def constant_bytes(field: Field) -> bytes:
     """The wire bytes of a constant field."""
     assert field.const is not None

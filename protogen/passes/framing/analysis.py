@@ -20,9 +20,9 @@ from protogen.model.framing import (
     StartSet,
 )
 from protogen.model.messages import Message
+from protogen.model.nesting import holds_whole_bytes
 from protogen.model.protocol import Link
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Array, Integer, Struct, Switch, Type
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words
@@ -270,21 +270,8 @@ def payload_alphabet(byte_bits: int, messages: list[Message]) -> ByteSet:
     """The bytes that a payload can hold."""
     if byte_bits == 8:
         return EVERY_BYTE
-    whole = any(_holds_whole_bytes(field.type) for m in messages for field in m.fields)
+    whole = any(holds_whole_bytes(field.type) for m in messages for field in m.fields)
     return EVERY_BYTE if whole else SEVEN_BITS
-
-
-def _holds_whole_bytes(type_: Type) -> bool:
-    match type_:
-        case Integer():
-            return type_.role == "byte"
-        case Struct():
-            return any(_holds_whole_bytes(field.type) for field in type_.fields)
-        case Array():
-            return _holds_whole_bytes(type_.element)
-        case Switch():
-            return any(_holds_whole_bytes(case.type) for case in type_.cases)
-    return False
 
 
 __all__ = ["analyse_framing", "payload_alphabet"]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.checksums import ChecksumSpec, algorithm_names, find_algorithm
-from protogen.model.frame import ChecksumPart, Cobs, Frame
-from protogen.model.types import Integer
+from protogen.model.frame import ChecksumPart, Cobs, Frame, PartType
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.part_runs import Runs
 from protogen.passes.proofs.wire_code import covered_parts
@@ -23,7 +22,7 @@ class ChecksumReader:
         self._loc = loc
         self._runs = runs
 
-    def read(self, name: str, item: PartSyntax, type_: Integer) -> ChecksumPart | None:
+    def read(self, name: str, item: PartSyntax, type_: PartType) -> ChecksumPart | None:
         """One checksum, or None where it is not clear."""
         algorithm = self._algorithm(name, item)
         covers = self._covers(name, item)

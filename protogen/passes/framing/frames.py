@@ -15,10 +15,10 @@ from protogen.model.frame import (
     LiteralPart,
     NumberPart,
     Part,
+    PartType,
     PayloadPart,
     ValuePart,
 )
-from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import counted_size, stated_range
@@ -131,7 +131,7 @@ class FrameBuilder:
         part = NumberPart(name=name, type=type_, least=least, greatest=greatest, about=text)
         return self._number(role, item, part)
 
-    def _checksum(self, name: str, item: PartSyntax, type_: Integer) -> Part:
+    def _checksum(self, name: str, item: PartSyntax, type_: PartType) -> Part:
         """The checksum; any other of its size serves where the rest of the frame is asked about."""
         before = self._context.tally.errors
         part = self._checksums.read(name, item, type_)
@@ -191,7 +191,7 @@ class FrameBuilder:
             about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
         )
 
-    def _type(self, name: str, item: PartSyntax) -> Integer | None:
+    def _type(self, name: str, item: PartSyntax) -> PartType | None:
         if item.type is None:
             text = f"`{name}` needs a `type`"
             self._context.error_at_key("PG131", (*self._loc, name), text)
@@ -213,7 +213,7 @@ class FrameBuilder:
             self._context.error("PG109", loc, text, hint)
         return found
 
-    def _range(self, name: str, item: PartSyntax, type_: Integer) -> tuple[int, int]:
+    def _range(self, name: str, item: PartSyntax, type_: PartType) -> tuple[int, int]:
         if item.range is None:
             return type_.least, type_.greatest
         least, greatest = item.range

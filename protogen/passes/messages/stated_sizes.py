@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from protogen.model.nesting import inner_types
 from protogen.model.types import (
     Array,
     Counted,
@@ -16,7 +17,6 @@ from protogen.model.types import (
     Fixed,
     Octets,
     Struct,
-    Switch,
     Text,
     Type,
 )
@@ -62,6 +62,4 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
             return count(type_.extent) * _size(type_.element, count, choose)
         case Struct():
             return sum(_size(field.type, count, choose) for field in type_.fields)
-        case Switch():
-            return choose(_size(case.type, count, choose) for case in type_.cases)
-    raise TypeError(f"{type(type_).__name__} has one size")
+    return choose(_size(case, count, choose) for case in inner_types(type_))

@@ -8,7 +8,8 @@ from functools import cache
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
-from protogen.model.types import Field, Integer
+from protogen.model.numbers import constant_bytes, number_bytes
+from protogen.model.types import Field
 from protogen.passes.proofs.wire_code import ByteSet, code_of, covered_parts, part_bytes
 from protogen.runtime import checksum as sums
 
@@ -56,8 +57,8 @@ def payload_of(fields: Sequence[Field], size: int, values: ByteSet) -> tuple[Str
 
 def _field(field: Field, rest: int, values: ByteSet) -> tuple[Stretch, ...]:
     """The bytes of one field; `rest` is the size of the one whose size varies."""
-    if isinstance(field.type, Integer) and isinstance(field.const, int):
-        return known_bytes(number_bytes(field.type, field.const))
+    if field.constant_number is not None:
+        return known_bytes(constant_bytes(field))
     return (Stretch(values, rest if field.size is None else field.size),)
 
 
@@ -102,14 +103,6 @@ def _plain(stretches: Iterable[Stretch]) -> bytes:
 def known_bytes(data: bytes) -> tuple[Stretch, ...]:
     """Bytes that are always the same."""
     return tuple(Stretch(frozenset({byte})) for byte in data)
-
-
-def number_bytes(type_: Integer, value: int) -> bytes:
-    """The unstuffed bytes of a number, in wire order."""
-    mask = (1 << type_.byte_bits) - 1
-    value &= (1 << type_.bits) - 1
-    little = bytes((value >> (type_.byte_bits * place)) & mask for place in range(type_.size))
-    return little[::-1] if type_.byte_order == "big" else little
 
 
 def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes]) -> bytes:

@@ -7,7 +7,8 @@ from functools import partial
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame
-from protogen.passes.proofs.contents import Contents, checksum_bytes, number_bytes
+from protogen.model.numbers import number_bytes
+from protogen.passes.proofs.contents import Contents, checksum_bytes
 from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
 from protogen.passes.proofs.wire_code import ByteSet
 

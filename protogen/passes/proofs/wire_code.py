@@ -20,7 +20,6 @@ from protogen.model.frame import (
     Part,
     Substitution,
 )
-from protogen.model.types import Integer
 from protogen.passes.proofs.codewords import Segment
 
 ByteSet = frozenset[int]
@@ -66,14 +65,17 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
         case LiteralPart():
             return tuple(frozenset({byte}) for byte in part.bytes)
         case NumberPart():
-            return _number_bytes(part.type, part.least, part.greatest)
+            return _number_bytes(part, part.least, part.greatest)
         case ChecksumPart():
-            return _number_bytes(part.type, part.type.least, part.type.greatest)
+            return _number_bytes(part, part.type.least, part.type.greatest)
     return (payload,)
 
 
-def _number_bytes(type_: Integer, least: int, greatest: int) -> tuple[ByteSet, ...]:
+def _number_bytes(
+    part: NumberPart | ChecksumPart, least: int, greatest: int
+) -> tuple[ByteSet, ...]:
     """The range bounds the number's most significant byte, and all of it if it is one byte."""
+    type_ = part.type
     every = SEVEN_BITS if type_.byte_bits == 7 else EVERY_BYTE
     shift = type_.byte_bits * (type_.size - 1)
     top = frozenset(range(least >> shift, (greatest >> shift) + 1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 
+from protogen.model.nesting import is_composite
 from protogen.model.types import (
     Array,
     Constant,
@@ -12,8 +13,6 @@ from protogen.model.types import (
     Float,
     Integer,
     Octets,
-    Struct,
-    Switch,
     Text,
     Type,
 )
@@ -51,7 +50,7 @@ def read_constant(context: Context, key: str, type_: Type, field: Effective) -> 
     written = getattr(field.syntax, key)
     if written is None:
         return None
-    if isinstance(type_, Struct | Switch):
+    if is_composite(type_):
         context.error("PG110", field.at(key), f"`{key}` is not for structs and switches")
         return None
     try:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from protogen.model.types import Counted, Extent, Field, Fill, Fixed, Integer
+from protogen.model.nesting import can_count
+from protogen.model.types import Counted, Extent, Field, Fill, Fixed
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.setting import Setting
 from protogen.problems import hint_for
@@ -43,7 +44,7 @@ class Extents:
                 text = f"no earlier field is called `{name}`"
                 self._context.error("PG116", loc, text, hint_for(name, setting.outer))
             return Fixed(count=0)
-        if not isinstance(field.type, Integer) or field.type.signed or field.type.role == "bool":
+        if not can_count(field.type):
             text = f"`{name}` can't count: it is not an unsigned integer"
             self._context.error("PG117", loc, text)
             return Fixed(count=0)

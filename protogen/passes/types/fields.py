@@ -8,18 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from protogen.model.nesting import takes_rest
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Extent,
     Field,
-    Fill,
     Fixed,
-    Float,
-    Integer,
     Octets,
     Struct,
-    Switch,
     Text,
     Type,
 )
@@ -33,6 +30,7 @@ from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.switches import SwitchBuilder
 from protogen.passes.types.type_names import (
+    UNKNOWN_TYPE,
     float_type,
     has_width,
     integer,
@@ -41,9 +39,6 @@ from protogen.passes.types.type_names import (
 )
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
-
-UNKNOWN_TYPE = Integer(bits=8)
-"""Stands in for a type that could not be resolved, so that the other fields are still checked."""
 
 
 class FieldBuilder:
@@ -78,7 +73,7 @@ class FieldBuilder:
             inner = setting.inside(name, behind, scope, [name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
             behind += built[name].type.sizes
-            filler = filler or (name if fills(built[name].type) else "")
+            filler = filler or (name if takes_rest(built[name].type) else "")
         return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
@@ -144,7 +139,7 @@ class FieldBuilder:
     def _array(self, item: Effective) -> Array:
         written, loc = item.syntax.count, item.at("count")
         element = self._element(item, replace(item.setting, last=False))
-        if fills(element):
+        if takes_rest(element):
             text = "elements of an array can't fill the payload"
             self._context.error("PG111", loc, text)
         if element.sizes.least == 0 and isinstance(written, FillSyntax):
@@ -189,16 +184,3 @@ class FieldBuilder:
             "nothing says in which order the bytes of this number are sent",
             "set `byte_order: little` or `big` on the protocol, the message or the field",
         )
-
-
-def fills(type_: Type) -> bool:
-    """True if a value of the type takes all that the payload has left."""
-    match type_:
-        case Text() | Octets() | Array():
-            return isinstance(type_.extent, Fill)
-        case Struct():
-            return bool(type_.fields) and fills(type_.fields[-1].type)
-        case Switch():
-            return type_.rest is not None or any(fills(case.type) for case in type_.cases)
-        case Float() | Integer():
-            return False

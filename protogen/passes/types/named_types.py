@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from protogen.model.meanings import Enum, Flags
-from protogen.model.types import Array, Field, Float, Integer, Struct, Switch, Type
+from protogen.model.nesting import inner_types, is_composite, with_structs
+from protogen.model.types import Field, Float, Integer, Struct, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import VALUE_NAMES, Effective
 from protogen.passes.types.joining import joined_struct
@@ -102,18 +103,9 @@ class NamedTypes:
         """The fields with all structs as they came to be. To be asked when all are registered."""
         if not any(_holds_struct(field.type) for field in fields):
             return fields
-        return placed(replace(field, type=self._type(field.type)) for field in fields)
-
-    def _type(self, type_: Type) -> Type:
-        match type_:
-            case Struct():
-                return self._struct(type_)
-            case Array():
-                return replace(type_, element=self._type(type_.element))
-            case Switch():
-                cases = (replace(case, type=self._type(case.type)) for case in type_.cases)
-                return replace(type_, cases=tuple(cases))
-        return type_
+        return placed(
+            replace(field, type=with_structs(field.type, self._struct)) for field in fields
+        )
 
     def _struct(self, struct: Struct) -> Struct:
         if struct.name not in self._settled:
@@ -132,9 +124,7 @@ def _joined(known: Named, other: Named) -> Named | None:
 
 
 def _holds_struct(type_: Type) -> bool:
-    if isinstance(type_, Array):
-        return _holds_struct(type_.element)
-    return isinstance(type_, Struct | Switch)
+    return is_composite(type_) or any(map(_holds_struct, inner_types(type_)))
 
 
 __all__ = ["NamedTypes"]

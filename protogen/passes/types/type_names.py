@@ -25,6 +25,9 @@ COMMON_NAMES = (
 """Everything that a type may be called before a schema declares its own."""
 
 
+UNKNOWN_TYPE = Integer(bits=8)
+"""Stand-in for a type that could not be resolved, so that the other fields are still checked."""
+
 _OTHER_WORDS = {
     "string": "ascii", "str": "ascii", "text": "ascii", "float": "float32", "single": "float32",
     "f32": "float32", "double": "float64", "f64": "float64", "boolean": "bool", "blob": "bytes",

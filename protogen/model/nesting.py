@@ -1,0 +1,69 @@
+"""Types inside of types: one walk for everybody who asks about all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type
+
+
+def inner_types(type_: Type) -> tuple[Type, ...]:
+    """Types directly inside: of fields, of elements, of cases."""
+    match type_:
+        case Struct():
+            return tuple(field.type for field in type_.fields)
+        case Array():
+            return (type_.element,)
+        case Switch():
+            return tuple(case.type for case in type_.cases)
+    return ()
+
+
+def fields_inside(type_: Type) -> Iterator[Field]:
+    """Yield the fields of a struct, of the elements of an array, of the cases of a switch."""
+    if isinstance(type_, Struct):
+        yield from type_.fields
+        return
+    for inner in inner_types(type_):
+        yield from fields_inside(inner)
+
+
+def is_composite(type_: Type) -> bool:
+    """True if the type is fields, or a choice between types."""
+    return isinstance(type_, Struct | Switch)
+
+
+def holds_whole_bytes(type_: Type) -> bool:
+    """True if a value can hold bytes of eight bits, whatever a payload byte carries."""
+    if isinstance(type_, Integer):
+        return type_.role == "byte"
+    return any(map(holds_whole_bytes, inner_types(type_)))
+
+
+def takes_rest(type_: Type) -> bool:
+    """True if a value takes all that the payload has left."""
+    match type_:
+        case Struct():
+            return bool(type_.fields) and takes_rest(type_.fields[-1].type)
+        case Switch():
+            return type_.rest is not None or any(map(takes_rest, inner_types(type_)))
+    return isinstance(type_.extent, Fill)
+
+
+def can_count(type_: Type) -> bool:
+    """True if a value can say how many elements or bytes another field has."""
+    return isinstance(type_, Integer) and not type_.signed and type_.role != "bool"
+
+
+def with_structs(type_: Type, settle: Callable[[Struct], Struct]) -> Type:
+    """The type with the structs inside of it as `settle` makes them."""
+    match type_:
+        case Struct():
+            return settle(type_)
+        case Array():
+            return replace(type_, element=with_structs(type_.element, settle))
+        case Switch():
+            cases = (replace(case, type=with_structs(case.type, settle)) for case in type_.cases)
+            return replace(type_, cases=tuple(cases))
+    return type_
