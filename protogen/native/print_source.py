@@ -18,7 +18,7 @@ from protogen.native.print_steps import (
     Float,
     Hex,
     HexOf,
-    Integer,
+    Int,
     Literal,
     Name,
     Others,
@@ -122,9 +122,9 @@ def _bounded_lines(step: Bounded) -> Iterator[str]:
     match step:
         case Literal(text=text):
             yield f"PUT({_string(text)});"
-        case Integer(place=place, from_start=True):
+        case Int(place=place, from_start=True):
             yield f"out = put_natural(out, {_value(place)} + job->start);"
-        case Integer(place=place):
+        case Int(place=place):
             yield f"out = {_put_integer(place)}(out, {_value(place)});"
         case Bool(place=place):
             yield from _either(_value(place), ['PUT("true");'], ['PUT("false");'])
@@ -251,7 +251,7 @@ def _physical(step: Physical) -> Iterator[str]:
     place = step.place
     is_float = place.code.startswith("f")
     if step.scale == 1 and step.offset == 0:
-        plain = Float(place, step.others) if is_float else Integer(place)
+        plain = Float(place, step.others) if is_float else Int(place)
         found = list(_bounded_lines(plain))
     else:
         value = _physical_float(step) if is_float else _physical_integer(step)

@@ -61,7 +61,7 @@ class Literal:
 
 
 @dataclass(frozen=True, slots=True)
-class Integer:
+class Int:
     """An integer; `from_start`: with the offset of the capture's first byte added."""
 
     place: Place
@@ -192,7 +192,7 @@ class Quoted:
     body: Steps
 
 
-Bounded = Literal | Integer | Bool | Float | Physical | Name | Time
+Bounded = Literal | Int | Bool | Float | Physical | Name | Time
 """Steps that print at most so many characters."""
 Unbounded = Characters | Hex | HexOf | Repeat | Choose | When | Quoted
 Step = Bounded | Unbounded
@@ -203,7 +203,7 @@ def number(place: Place, others: Others) -> Step:
     """The step that prints a number of any type."""
     if place.code == "?":
         return Bool(place)
-    return Float(place, others) if place.code.startswith("f") else Integer(place)
+    return Float(place, others) if place.code.startswith("f") else Int(place)
 
 
 def max_size(step: Bounded) -> int:
@@ -211,7 +211,7 @@ def max_size(step: Bounded) -> int:
     match step:
         case Literal(text=text):
             return len(text.encode())
-        case Integer() | Time():
+        case Int() | Time():
             return MAX_INTEGER
         case Bool():
             return len("false")

@@ -37,7 +37,7 @@ from protogen.native.print_steps import (
     Condition,
     Hex,
     HexOf,
-    Integer,
+    Int,
     Literal,
     Name,
     Others,
@@ -85,7 +85,7 @@ def _frame_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
             return When(Condition.TIMED, [Time()])
         case _:
             (role,) = column.path
-            return Integer(places[role], from_start=role == "offset")
+            return Int(places[role], from_start=role == "offset")
 
 
 def _event_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:

@@ -13,7 +13,7 @@ from protogen.native.print_steps import (
     IN_LINES,
     Condition,
     HexOf,
-    Integer,
+    Int,
     Literal,
     Name,
     Place,
@@ -79,9 +79,9 @@ def places_of(columns: Sequence[Column]) -> dict[str, Place]:
 
 def _start(places: Mapping[str, Place], words: Mapping[str, str]) -> Iterator[Step]:
     yield Literal('{"offset": ')
-    yield Integer(places["offset"], from_start=True)
+    yield Int(places["offset"], from_start=True)
     yield Literal(', "size": ')
-    yield Integer(places["size"])
+    yield Int(places["size"])
     for name, value in words.items():
         yield Literal(f', "{name}": {json.dumps(value, ensure_ascii=False)}')
 
