@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from functools import cache
 from hashlib import sha256
 from itertools import chain, zip_longest
@@ -21,6 +20,7 @@ from c_library import FLAGS
 from compiled import protocol_of
 from tooling import require_compiler
 
+from protogen.copying import replace
 from protogen.fuzzing.c_calls import Call, Calls, CEvent, Step
 from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers

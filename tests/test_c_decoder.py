@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from random import Random
@@ -26,6 +25,7 @@ from test_recovery import drawn_pieces
 from test_vectors import FILES, agrees, brief, message_of
 from vectors import ExpectedEvent, Stream, Vector, VectorFile
 
+from protogen.copying import replace
 from protogen.fuzzing.c_calls import OK, CEvent, Step
 from protogen.live import module_of
 from protogen.model.protocol import Sender

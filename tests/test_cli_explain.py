@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import handwritten_matty
@@ -10,6 +9,7 @@ import pytest
 from cli_support import ROOT, run
 
 from protogen.cli.wire.explain import _not_looked_at
+from protogen.copying import replace
 from protogen.model.annotate import Row
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")

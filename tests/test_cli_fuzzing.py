@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 from itertools import islice
 from random import Random
@@ -16,6 +15,7 @@ import pytest
 from cli_support import ROOT, SINK, compiled
 
 from protogen.compiler import compile_file
+from protogen.copying import replace
 from protogen.fuzzing.engine import Refused, Seen
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values, boundary_rounds, samples

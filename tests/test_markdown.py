@@ -7,8 +7,6 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import fields as dataclass_fields
-from dataclasses import is_dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -36,6 +34,7 @@ from models import (
 )
 
 from protogen.compiler import compile_file
+from protogen.copying import defaults_of, replace
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.meanings import Enum, NamedValue
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
@@ -352,12 +351,9 @@ def with_text(value: Any, text: str) -> Any:
         return tuple(with_text(item, text) for item in value)
     if isinstance(value, dict):
         return {key: with_text(item, text) for key, item in value.items()}
-    if is_dataclass(value) and not isinstance(value, type) and value is not SPAN:
-        changes = {
-            item.name: with_text(getattr(value, item.name), text)
-            for item in dataclass_fields(value)
-            if item.init
-        }
+    names = defaults_of(type(value))
+    if names and value is not SPAN:
+        changes = {name: with_text(getattr(value, name), text) for name in names}
         return type(value)(**changes)
     return value
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -28,6 +27,7 @@ from models import (
     switch_message,
 )
 
+from protogen.copying import replace
 from protogen.model.frame import Cobs, Frame, LiteralPart, Transparency
 from protogen.model.meanings import BitField, NamedValue
 from protogen.model.messages import Contradiction

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -26,6 +25,7 @@ from models import (
     tiny_protocol,
 )
 
+from protogen.copying import replace
 from protogen.model.checksums import find_algorithm
 from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
 from protogen.model.protocol import Protocol

@@ -7,7 +7,6 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
@@ -22,6 +21,7 @@ from schema_fuzzing.text import to_styled_yaml, to_yaml
 from schema_fuzzing.values import all_parts, parts_of, values_of
 
 from protogen.compiler import Compilation, compile_file
+from protogen.copying import replace
 from protogen.live import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import numpy
 from protogen.capture.tables import Tables, payload_column
+from protogen.copying import replace
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import numpy
 from protogen.capture.tables import Tables, concatenated, payload_column
+from protogen.copying import replace
 
 if TYPE_CHECKING:
     import numpy as np

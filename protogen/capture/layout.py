@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from protogen.capture.schema import (
     CaptureSchema,
@@ -16,6 +15,7 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
+from protogen.copying import replace
 from protogen.model.frame import CounterPart, IdentityPart, NumberPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender

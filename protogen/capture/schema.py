@@ -6,11 +6,12 @@ parts, then the struct of the message. Its members lie as a C compiler lays them
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from math import prod
 from typing import Literal
 
+from protogen.copying import replace
 from protogen.model.frame import NumberPart
 from protogen.model.meanings import Enum, Flags, NamedValue
 from protogen.model.messages import Message

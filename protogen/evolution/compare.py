@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_fields import FieldComparison
 from protogen.evolution.compare_frames import compare_frames

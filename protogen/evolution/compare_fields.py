@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
+from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of

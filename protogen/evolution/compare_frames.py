@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.model.frame import (
     ChecksumPart,

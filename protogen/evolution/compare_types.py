@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from protogen.copying import replace
 from protogen.evolution.change import Change, Mark, named
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.types import (

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 
+from protogen.copying import replace
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison, compare
 from protogen.evolution.rules import BY_NAME, ORDER, RULES, Category, Rule

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, fields, is_dataclass, replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from msgspec import NODEFAULT
+
+from protogen.copying import defaults_of, is_record, replace
 from protogen.model import (
     checksums,
     frame,
@@ -116,19 +118,19 @@ def _plain(value: Any) -> Any:
             return {"map": {key: _plain(item) for key, item in value.items()}}
     found: dict[str, Any] = {"class": type(value).__name__}
     kind: Any = type(value)
-    for field in _kept(kind):
-        item = getattr(value, field.name)
-        if field.default is MISSING or item != field.default:
-            found[field.name] = _plain(item)
+    for name, default in _kept(kind):
+        item = getattr(value, name)
+        if default is NODEFAULT or item != default:
+            found[name] = _plain(item)
     if isinstance(value, Sender):  # The protocol holds its messages.
         found["messages"] = [message.name for message in value.messages]
     return found
 
 
 @cache
-def _kept(kind: Any) -> tuple[Any, ...]:
-    found = (item for item in fields(kind) if item.init and item.name not in _LEFT_OUT)
-    return tuple(found)
+def _kept(kind: Any) -> tuple[tuple[str, Any], ...]:
+    """The names of what a lock keeps of an object, and their defaults."""
+    return tuple(item for item in defaults_of(kind).items() if item[0] not in _LEFT_OUT)
 
 
 def _restored(value: Any) -> Any:
@@ -144,7 +146,7 @@ def _restored(value: Any) -> Any:
         return {key: _restored(item) for key, item in value["map"].items()}
     kind = _kinds()[value["class"]]
     given = {name: _restored(item) for name, item in value.items() if name != "class"}
-    names = {item.name for item in fields(kind) if item.init}
+    names = defaults_of(kind)
     found = kind(**{name: item for name, item in _LEFT_OUT.items() if name in names}, **given)
     return _with_messages(found) if isinstance(found, Protocol) else found
 
@@ -170,5 +172,5 @@ def _kinds() -> dict[str, Any]:
 def _classes() -> Iterator[tuple[str, Any]]:
     for module in _MODULES:
         for name, item in vars(module).items():
-            if isinstance(item, type) and is_dataclass(item):
+            if isinstance(item, type) and is_record(item):
                 yield name, item

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
+from protogen.copying import replace
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison
 from protogen.model.messages import Message

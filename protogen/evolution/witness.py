@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice
 from random import Random
 from typing import Any
 
+from protogen.copying import replace
 from protogen.evolution.change import Change, Mark
 from protogen.evolution.compare import Comparison
 from protogen.evolution.observe import Reading, Side

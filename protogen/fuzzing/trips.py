@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from random import Random
 from typing import Any
 
+from protogen.copying import replace
 from protogen.fuzzing.engine import Engine, Refused, Seen
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.model.messages import Message

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 from protogen.compiler import compile_file
+from protogen.copying import field_names
 from protogen.problems import Problems, Span
 from protogen.schema.text.document import parse_document
 from protogen.schema.text.nodes import to_data
@@ -33,7 +33,7 @@ def _agree(one: Any, other: Any) -> bool:
         return True
     if isinstance(one, tuple):
         return len(one) == len(other) and all(map(_agree, one, other))
-    if is_dataclass(one):
-        names = (field.name for field in fields(one))
+    names = field_names(type(one))
+    if names:
         return all(_agree(getattr(one, name), getattr(other, name)) for name in names)
     return bool(one == other or (one != one and other != other))

@@ -7,9 +7,9 @@ holds no comment; otherwise it becomes a block. Columns that an author has lined
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import groupby
 
+from protogen.copying import replace
 from protogen.layout.nodes import Alias, Collection, Item, Node, Scalar, Text, has_comments
 from protogen.layout.scalars import (
     FOLDED,

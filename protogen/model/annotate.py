@@ -7,8 +7,10 @@ decoder says.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
+import msgspec
+
+from protogen.copying import replace
 from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.frame import (
     ChecksumPart,
@@ -55,8 +57,7 @@ def annotate(
     return _Frame(known, parts, plain, message).rows()
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
+class _Found(msgspec.Struct, frozen=True):
     """A part that was read, for the checksums that cover it."""
 
     content: bytes

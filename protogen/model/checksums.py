@@ -4,17 +4,17 @@ A `ChecksumSpec` says what to compute, not how: each target prints it in its own
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Literal
+
+import msgspec
 
 from protogen.model.crc_catalogue import ALGORITHMS, ALIASES, Row
 
 ChecksumKind = Literal["xor", "sum", "fletcher", "crc"]
 
 
-@dataclass(frozen=True, slots=True)
-class ChecksumSpec:
+class ChecksumSpec(msgspec.Struct, frozen=True):
     """One checksum algorithm with all its parameters.
 
     `width` is the checksum's size in bits. `init` is the value before the first byte (`xor`, `sum`

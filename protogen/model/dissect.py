@@ -5,8 +5,10 @@ from __future__ import annotations
 import struct
 from collections import ChainMap
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
+import msgspec
+
+from protogen.copying import replace
 from protogen.model.frame import Part
 from protogen.model.numbers import codec
 from protogen.model.payload_plan import (
@@ -39,8 +41,7 @@ Scope = ChainMap[str, int]
 ScalarStep = IntegerStep | FloatStep | BytesStep
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class Row(msgspec.Struct, frozen=True, kw_only=True):
     """Some bytes of a frame and what they stand for."""
 
     offset: int
@@ -71,8 +72,7 @@ class Row:
         return replace(self, value=value, meaning=meaning, fault=self.fault or fault)
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(msgspec.Struct, frozen=True):
     """Bytes that were taken for something; `missing` says how many more should be there."""
 
     offset: int

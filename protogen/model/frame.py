@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
@@ -13,8 +13,7 @@ PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
+class Part(msgspec.Struct, frozen=True, kw_only=True):
     """One item of a frame."""
 
     name: str
@@ -31,8 +30,7 @@ class Part:
         return False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiteralPart(Part):
+class LiteralPart(Part, frozen=True, kw_only=True):
     """Fixed bytes."""
 
     bytes: bytes
@@ -45,8 +43,7 @@ class LiteralPart(Part):
         return len(self.bytes)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NumberPart(Part):
+class NumberPart(Part, frozen=True, kw_only=True):
     """A part that is one integer."""
 
     type: PartType
@@ -66,39 +63,33 @@ class NumberPart(Part):
         return Number(kind.bits, kind.signed, kind.byte_order, seven_bit).encode(value)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IdentityPart(NumberPart):
+class IdentityPart(NumberPart, frozen=True, kw_only=True):
     """Tells, alone or with others, which message the frame carries."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LengthPart(NumberPart):
+class LengthPart(NumberPart, frozen=True, kw_only=True):
     """The number of unstuffed bytes of some parts; it may count itself."""
 
     counts: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CounterPart(NumberPart):
+class CounterPart(NumberPart, frozen=True, kw_only=True):
     """Counts frames and wraps."""
 
     default: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ValuePart(NumberPart):
+class ValuePart(NumberPart, frozen=True, kw_only=True):
     """A number that the caller gives and the receiver hands on."""
 
     default: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PayloadPart(Part):
+class PayloadPart(Part, frozen=True, kw_only=True):
     """The message's fields."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChecksumPart(Part):
+class ChecksumPart(Part, frozen=True, kw_only=True):
     """A checksum over other parts."""
 
     type: PartType
@@ -119,15 +110,13 @@ class ChecksumPart(Part):
         return self.when_payload
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Substitution:
+class Substitution(msgspec.Struct, frozen=True, kw_only=True):
     """Each listed byte is replaced by a sequence."""
 
     table: tuple[tuple[int, bytes], ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Escape:
+class Escape(msgspec.Struct, frozen=True, kw_only=True):
     """A byte of `of` is written as the escape byte and itself XOR `xor` (0xFF inverts it)."""
 
     byte: int
@@ -135,21 +124,18 @@ class Escape:
     xor: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Base16:
+class Base16(msgspec.Struct, frozen=True, kw_only=True):
     """Two upper-case hex digits a byte."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cobs:
+class Cobs(msgspec.Struct, frozen=True, kw_only=True):
     """Consistent overhead byte stuffing: the region holds no zero byte."""
 
 
 Encoding = Substitution | Escape | Base16 | Cobs
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Transparency:
+class Transparency(msgspec.Struct, frozen=True, kw_only=True):
     """Encoding that keeps delimiters out of the parts `first` to `last`."""
 
     first: str
@@ -160,8 +146,7 @@ class Transparency:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
+class Frame(msgspec.Struct, frozen=True, kw_only=True):
     """Parts in wire order, exactly one of which is the payload."""
 
     parts: tuple[Part, ...]

@@ -6,8 +6,9 @@ The *head* is the parts in front of the payload, the *tail* those behind it, wit
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from protogen.model.frame import (
     Base16,
@@ -71,8 +72,7 @@ class Side(Enum):
     TAIL = auto()
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(msgspec.Struct, frozen=True):
     """A place in the content."""
 
     side: Side
@@ -88,8 +88,7 @@ class Place:
         return head_size + payload + self.offset - (0 if payload else self.absent)
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedPart:
+class PlacedPart(msgspec.Struct, frozen=True):
     """A part of a fixed size, and where it lies in the content."""
 
     part: Part
@@ -133,8 +132,7 @@ class PlacedPart:
         return self.part.is_optional
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(msgspec.Struct, frozen=True):
     """A run of content, from `first` to in front of `end`."""
 
     first: Place
@@ -143,8 +141,7 @@ class Run:
     """True if it is stuffed on the wire, and summed as it is there."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChecksumPlan:
+class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
     """A checksum part, where it lies, and what it runs over."""
 
     part: ChecksumPart
@@ -160,8 +157,7 @@ class ChecksumPlan:
         return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LengthPlan:
+class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
     """The length part: its value for a payload, and the payload's size for a value."""
 
     part: LengthPart
@@ -182,8 +178,7 @@ class LengthPlan:
         return size if size > 0 else None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StuffedRegion:
+class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
     """The part of the content that is stuffed on the wire."""
 
     encoding: Encoding
@@ -219,8 +214,7 @@ class StuffedRegion:
         return self.encoding if isinstance(self.encoding, Escape) else None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IdentityGroup:
+class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     """Messages that a receiver may find behind one identity: one, or more told apart by size."""
 
     identity: tuple[int, ...]
@@ -240,8 +234,7 @@ class IdentityGroup:
         return max(message.sizes.greatest for message in self.messages)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FramePlan:
+class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
     """A sender's frame, worked out once. Sizes are in bytes."""
 
     frame: Frame

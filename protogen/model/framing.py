@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.model.sizes import SizeSet
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StartLiteral:
+class StartLiteral(msgspec.Struct, frozen=True, kw_only=True):
     """A frame starts with these bytes. Protected: they occur nowhere else in a valid frame."""
 
     bytes: bytes
     protected: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StartSet:
+class StartSet(msgspec.Struct, frozen=True, kw_only=True):
     """A frame starts with one of these bytes. Protected: no other byte of a frame is one."""
 
     least: int
@@ -25,29 +24,25 @@ class StartSet:
     protected: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AfterEnd:
+class AfterEnd(msgspec.Struct, frozen=True, kw_only=True):
     """A frame starts behind an end, or where the stream starts."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Anywhere:
+class Anywhere(msgspec.Struct, frozen=True, kw_only=True):
     """Nothing marks the start: sizes and the checksum tell whether a frame starts at a byte."""
 
 
 Start = StartLiteral | StartSet | AfterEnd | Anywhere
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class End:
+class End(msgspec.Struct, frozen=True, kw_only=True):
     """The literal that closes a frame. Protected: it occurs nowhere else in a valid frame."""
 
     bytes: bytes
     protected: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MessageFraming:
+class MessageFraming(msgspec.Struct, frozen=True, kw_only=True):
     """Frame sizes on the wire and rate of one message."""
 
     message: str
@@ -57,8 +52,7 @@ class MessageFraming:
     """Frames of the greatest size per second at the link's rate; None where that is not known."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Framing:
+class Framing(msgspec.Struct, frozen=True, kw_only=True):
     """The framing properties of one sender, for decoders, and in words for people."""
 
     start: Start

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.origin import NOTHING, About
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NamedValue:
+class NamedValue(msgspec.Struct, frozen=True, kw_only=True):
     """A name for a raw value."""
 
     name: str
@@ -16,8 +15,7 @@ class NamedValue:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Enum:
+class Enum(msgspec.Struct, frozen=True, kw_only=True):
     """Names of raw values. Unknown values are kept unless the enum is closed."""
 
     name: str
@@ -27,8 +25,7 @@ class Enum:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NamedBit:
+class NamedBit(msgspec.Struct, frozen=True, kw_only=True):
     """A name for one bit, counted from the least significant bit 0."""
 
     name: str
@@ -36,8 +33,7 @@ class NamedBit:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Flags:
+class Flags(msgspec.Struct, frozen=True, kw_only=True):
     """Names of single bits of one integer. Unknown bits are kept."""
 
     name: str
@@ -45,8 +41,7 @@ class Flags:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BitField:
+class BitField(msgspec.Struct, frozen=True, kw_only=True):
     """A named run of bits, `low` to `high`, both included."""
 
     name: str

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
+
+import msgspec
 
 from protogen.model.origin import NOTHING, About
 from protogen.model.payload_builder import plan_of
@@ -14,8 +15,7 @@ from protogen.model.types import Field
 from protogen.problems.span import Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contradiction:
+class Contradiction(msgspec.Struct, frozen=True, kw_only=True):
     """Difference of an example from the schema."""
 
     fails: str
@@ -23,8 +23,7 @@ class Contradiction:
     reads: dict[str, Any] | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Example:
+class Example(msgspec.Struct, frozen=True, kw_only=True):
     """Bytes and what they mean. `covers` names the parts that they hold; None: a whole frame."""
 
     name: str
@@ -38,8 +37,7 @@ class Example:
     span: Span
 
 
-@dataclass(frozen=True, kw_only=True)
-class Message:
+class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """One message."""
 
     name: str
@@ -65,8 +63,7 @@ class Message:
         return plan_of(self.fields)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Overload:
+class Overload(msgspec.Struct, frozen=True, kw_only=True):
     """Messages of one sender that share an identity."""
 
     name: str
@@ -84,8 +81,7 @@ class Overload:
         return frozenset() if self.yields is None else frozenset(self.messages) - {self.yields}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class Step(msgspec.Struct, frozen=True, kw_only=True):
     """One message of an exchange."""
 
     message: str
@@ -93,8 +89,7 @@ class Step:
     about: About = NOTHING
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Exchange:
+class Exchange(msgspec.Struct, frozen=True, kw_only=True):
     """A named sequence of messages."""
 
     name: str

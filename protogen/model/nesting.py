@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type
 
 

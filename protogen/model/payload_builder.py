@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,

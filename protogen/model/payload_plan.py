@@ -11,10 +11,11 @@ Nobody compares steps, and every command makes their classes, so these have no c
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from enum import Enum, auto
 from functools import cached_property
 from math import ceil, floor
+
+import msgspec
 
 from protogen.model.numbers import constant_bytes
 from protogen.model.sizes import SizeSet
@@ -51,8 +52,7 @@ class Check(Enum):
 _NO_CHECKS: frozenset[Check] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
+class Reference(msgspec.Struct, frozen=True):
     """An earlier number that counts or selects."""
 
     name: str
@@ -62,8 +62,7 @@ class Reference:
     """None for a number around the plan."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Count:
+class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """Number of elements or bytes."""
 
     field: str = ""
@@ -87,8 +86,7 @@ class Count:
         return not self.field and not self.fills
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Step:
+class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """Step of a payload plan."""
 
     name: str
@@ -123,22 +121,19 @@ class Step:
         return bool(self.checks - {Check.SEVEN_BIT})
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class NumberStep(Step):
+class NumberStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """An integer or a float."""
 
     type: Integer | Float
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class FloatStep(NumberStep):
+class FloatStep(NumberStep, frozen=True, kw_only=True, eq=False, dict=True):
     """A float."""
 
     type: Float
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class IntegerStep(NumberStep):
+class IntegerStep(NumberStep, frozen=True, kw_only=True, eq=False, dict=True):
     """An integer."""
 
     type: Integer
@@ -151,8 +146,7 @@ class IntegerStep(NumberStep):
         return allowed(self.field, self.type)
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BytesStep(Step):
+class BytesStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """A text, or bytes that nobody interprets."""
 
     type: Text | Octets
@@ -164,8 +158,7 @@ class BytesStep(Step):
         return self.count.fills
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ConstantStep(Step):
+class ConstantStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """Bytes that are always the same."""
 
     value: IntegerStep | FloatStep | BytesStep | RepeatStep
@@ -177,16 +170,14 @@ class ConstantStep(Step):
         return constant_bytes(self.field)
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class RecordStep(Step):
+class RecordStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """A struct: its own steps one after another."""
 
     type: Struct
     steps: tuple[AnyStep, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class RepeatStep(Step):
+class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """Elements one after another."""
 
     element: AnyStep
@@ -198,16 +189,14 @@ class RepeatStep(Step):
         return self.count.fills
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class RestStep(Step):
+class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """The bytes that are left of the payload, where no case has the value of the selector."""
 
     greatest: int
     seven_bit: bool
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class CaseStep:
+class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """The step for one value of a selector."""
 
     value: int
@@ -220,8 +209,7 @@ class CaseStep:
         return isinstance(self.step, RecordStep) and not self.step.steps
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ChooseStep(Step):
+class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """One of several steps, chosen by an earlier number."""
 
     selector_name: str
@@ -240,8 +228,7 @@ class ChooseStep(Step):
 AnyStep = IntegerStep | FloatStep | BytesStep | ConstantStep | RecordStep | RepeatStep | ChooseStep
 
 
-@dataclass(frozen=True, kw_only=True)
-class PayloadPlan:
+class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """The steps of a payload."""
 
     steps: tuple[AnyStep, ...]

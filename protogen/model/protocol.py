@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.model.frame import Frame
 from protogen.model.frame_plan import FramePlan
@@ -15,8 +16,7 @@ from protogen.model.reserved import NOTHING_RESERVED, Reserved
 from protogen.model.types import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
+class Link(msgspec.Struct, frozen=True, kw_only=True):
     """The line. `baud` is in bits per second, `idle_timeout` in seconds."""
 
     baud: int | None = None
@@ -32,8 +32,7 @@ class Link:
         return 1 + self.data_bits + (self.parity != "none") + self.stop_bits
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Endpoint:
+class Endpoint(msgspec.Struct, frozen=True, kw_only=True):
     """A named side of the link."""
 
     name: str
@@ -41,8 +40,7 @@ class Endpoint:
     doc: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Decision:
+class Decision(msgspec.Struct, frozen=True, kw_only=True):
     """A choice where the document does not say, or says two things."""
 
     name: str
@@ -53,8 +51,7 @@ class Decision:
     source: Source | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sender:
+class Sender(msgspec.Struct, frozen=True, kw_only=True):
     """An endpoint that sends: its frame, the framing and the plan of it, and its messages."""
 
     name: str
@@ -79,8 +76,7 @@ class Sender:
         return message
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Protocol:
+class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     """A serial protocol, resolved."""
 
     name: str

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReservedIdentity:
+class ReservedIdentity(msgspec.Struct, frozen=True, kw_only=True):
     """The identity of a message that is no longer sent."""
 
     sender: str
@@ -14,24 +13,21 @@ class ReservedIdentity:
     doc: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReservedNames:
+class ReservedNames(msgspec.Struct, frozen=True, kw_only=True):
     """Field names that a message may not use again."""
 
     message: str
     names: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReservedValues:
+class ReservedValues(msgspec.Struct, frozen=True, kw_only=True):
     """Raw values that the enum at `path`, MESSAGE.FIELD or a type, may not use again."""
 
     path: str
     values: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Reserved:
+class Reserved(msgspec.Struct, frozen=True, kw_only=True):
     """All that is reserved in a protocol."""
 
     identities: tuple[ReservedIdentity, ...] = ()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd
 
+import msgspec
 
-@dataclass(frozen=True, slots=True)
-class SizeSet:
+
+class SizeSet(msgspec.Struct, frozen=True):
     """Sizes in bytes: `least`, `least + step`, ... up to `greatest`.
 
     Unions widen to the finest progression that holds both sides, so a set may hold more than can

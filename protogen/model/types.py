@@ -11,6 +11,8 @@ from dataclasses import field as dataclass_field
 from fractions import Fraction
 from typing import ClassVar, Literal
 
+import msgspec
+
 from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.names import free_name
 from protogen.model.origin import NOTHING, About
@@ -34,8 +36,7 @@ def counting_bits(greatest: int) -> int:
     return storage_bits(max(1, greatest.bit_length()))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Integer:
+class Integer(msgspec.Struct, frozen=True, kw_only=True):
     """An integer of `bits` bits in `size` wire bytes of `byte_bits` bits each.
 
     Bits above `bits` are zero, also for signed integers, which are two's complement in `bits` bits.
@@ -100,8 +101,7 @@ class Integer:
         return self.least <= value <= self.greatest
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Float:
+class Float(msgspec.Struct, frozen=True, kw_only=True):
     """IEEE 754 binary32 or binary64."""
 
     bits: Literal[32, 64]
@@ -137,8 +137,7 @@ class Float:
         return SizeSet.exactly(self.size)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fixed:
+class Fixed(msgspec.Struct, frozen=True, kw_only=True):
     """A number of elements (or bytes) that never changes."""
 
     count: int
@@ -221,8 +220,7 @@ class Fill:
 Extent = Fixed | Counted | Fill
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Text:
+class Text(msgspec.Struct, frozen=True, kw_only=True):
     """ASCII text of so many bytes. A fixed size is padded with NUL bytes at the end."""
 
     extent: Extent
@@ -245,8 +243,7 @@ class Text:
         return self.extent.counts
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Octets:
+class Octets(msgspec.Struct, frozen=True, kw_only=True):
     """Bytes that nobody interprets; in a 7-bit payload each is at most 0x7F."""
 
     extent: Extent
@@ -297,8 +294,7 @@ class Struct:
         object.__setattr__(self, "needs", _needed_by(self.fields))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Array:
+class Array(msgspec.Struct, frozen=True, kw_only=True):
     """Elements of one type, one after another."""
 
     element: Type
@@ -325,8 +321,7 @@ class Array:
         return self.element.sizes.times(self.extent.counts)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+class Case(msgspec.Struct, frozen=True, kw_only=True):
     """Type for one raw value of a switch's selector. A case of no bytes is an empty struct."""
 
     value: int
@@ -335,8 +330,7 @@ class Case:
     type: Type
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Switch:
+class Switch(msgspec.Struct, frozen=True, kw_only=True):
     """One of several types, chosen by an earlier field.
 
     A value without a case yields the rest of the payload as bytes (at most `rest` of them) where
@@ -390,8 +384,7 @@ Scalar = Integer | Float | Text | Octets
 Type = Scalar | Struct | Array | Switch
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Field:
+class Field(msgspec.Struct, frozen=True, kw_only=True):
     """One field of a message or struct.
 
     For integers `least` and `greatest` are the raw bounds that an encoder allows: the range, else

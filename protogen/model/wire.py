@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import (
     Base16,
@@ -21,16 +22,14 @@ FULL_GROUP = 254
 """Bytes that one code byte of COBS can stand for."""
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
+class Unit(msgspec.Struct, frozen=True):
     """One byte of a part, and the bytes on the wire that carry it."""
 
     byte: int
     wire: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Wire:
+class Wire(msgspec.Struct, frozen=True):
     """A frame's bytes, unstuffed as far as that is possible."""
 
     units: tuple[Unit, ...]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import PurePath
 
+from protogen.copying import replace
 from protogen.model.messages import Message
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.context import Context, about, source_of

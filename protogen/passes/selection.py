@@ -7,8 +7,8 @@ the whole protocol, because the other end may send all of it.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.framing import Framing
 from protogen.model.messages import Message, Overload
 from protogen.model.protocol import Protocol, Sender

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import fields
 from fractions import Fraction
 from functools import cache
 from typing import Any
 
+from protogen.copying import field_names
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
@@ -59,7 +59,7 @@ def _whole(value: Any, *, deep: bool = False) -> dict[str, Any]:
 @cache
 def _kept(kind: Any) -> tuple[str, ...]:
     left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
-    return tuple(sorted({field.name for field in fields(kind)} - left_out))
+    return tuple(sorted({*field_names(kind)} - left_out))
 
 
 def _plain(value: Any, *, deep: bool) -> Any:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number

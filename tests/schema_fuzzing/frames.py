@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.codes import BYTE, Code, codes, plain
 from schema_fuzzing.delimiters import Delimited, Stretch

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.fields import structs
 from schema_fuzzing.frames import FramePlan

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import PARTS, fresh
 from schema_fuzzing.numbers import ORDERS

@@ -7,8 +7,10 @@ was made, not because the compiler was asked.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
+
+from protogen.copying import replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing.fields import structs
 from schema_fuzzing.names import TYPES, several
 from schema_fuzzing.numbers import ORDERS, integer

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from protogen.cli.exits import CLEAN
 from protogen.cli.options import HexText, SchemaFile, SenderOfBytes
 from protogen.cli.wire.capture import hex_bytes
+from protogen.copying import replace
 
 if TYPE_CHECKING:
     from rich.console import Console

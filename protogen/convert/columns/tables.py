@@ -20,11 +20,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 from typing import Any
 
+from protogen.copying import replace
 from protogen.model.messages import Message
 from protogen.model.names import unit_suffix
 from protogen.model.protocol import Protocol, Sender

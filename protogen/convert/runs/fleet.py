@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -34,6 +34,7 @@ from protogen.convert.runs.conversion import (
 from protogen.convert.runs.journal import begin, finish, is_unfinished, part_name
 from protogen.convert.runs.run_record import Done, State
 from protogen.convert.writers.pending_files import remove
+from protogen.copying import replace
 from protogen.version import VERSION
 
 LOCAL_CLUSTER: dict[str, Any] = {

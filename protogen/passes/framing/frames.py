@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 
+from protogen.copying import field_names
 from protogen.model.checksums import SIMPLE_ALGORITHMS
 from protogen.model.frame import (
     ChecksumPart,
@@ -143,7 +143,7 @@ class FrameBuilder:
 
     def _number(self, role: str, item: PartSyntax, part: NumberPart) -> Part:
         """The part as what its role makes of it."""
-        given = {field.name: getattr(part, field.name) for field in fields(part)}
+        given = {name: getattr(part, name) for name in field_names(type(part))}
         if role == "id":
             return IdentityPart(**given)
         if role == "counts":

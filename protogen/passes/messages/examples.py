@@ -5,8 +5,7 @@ Whether an example decodes to its values is asked later, by the Python target's 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from protogen.copying import replace
 from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.passes.context import Context, Loc, about

@@ -7,10 +7,12 @@ and then it is proved that there is none.
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
+
+from protogen.copying import replace
 
 Code = Mapping[int, bytes]
 

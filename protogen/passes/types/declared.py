@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from protogen.copying import replace
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.setting import Setting
 from protogen.schema.syntax.fields import FieldSyntax

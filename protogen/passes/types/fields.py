@@ -6,8 +6,8 @@ Turns the fields of a message or struct into resolved types, outer before inner,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.nesting import takes_rest
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (

@@ -7,8 +7,8 @@ the room that is left. A type is one type wherever it is used, so it takes the g
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.types import (
     Array,
     Case,

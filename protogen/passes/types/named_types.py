@@ -6,8 +6,7 @@ it different room, the type takes the greater bounds, whatever a single use coul
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from protogen.copying import replace
 from protogen.model.meanings import Enum, Flags
 from protogen.model.nesting import inner_types, is_composite, with_structs
 from protogen.model.types import Field, Float, Integer, Struct, Type

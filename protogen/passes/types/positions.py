@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
 

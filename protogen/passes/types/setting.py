@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
+from protogen.copying import replace
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import GREATEST_FRAME

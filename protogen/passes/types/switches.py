@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Protocol
 
+from protogen.copying import replace
 from protogen.model.types import Case, Field, Integer, Struct, Switch
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.constants import named_raw_value

@@ -6,8 +6,9 @@ another document there, so before schemas are merged each source is given its do
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from protogen.copying import replace
 from protogen.schema.syntax.protocol import keyed_by_names
 from protogen.schema.text.edit import items_of
 from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode

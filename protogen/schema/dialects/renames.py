@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import replace
 
+from protogen.copying import replace
 from protogen.problems import Problems
 from protogen.schema.dialects.directives import Rename, read_directives
 from protogen.schema.dialects.merge import report_unknown

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
+from protogen.copying import replace
 from protogen.model.types import (
     Array,
     Case,

@@ -7,9 +7,10 @@ second buffer is needed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
+from protogen.copying import replace
 from protogen.model.frame import (
     ChecksumPart,
     CounterPart,

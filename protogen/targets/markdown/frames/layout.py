@@ -7,9 +7,10 @@ insert bytes, positions are those of the unstuffed frame.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import accumulate
 
+from protogen.copying import replace
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -31,8 +32,7 @@ INDICES = "ijkl"
 _NOTHING = SizeSet.exactly(0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CodePart(Part):
+class CodePart(Part, frozen=True, kw_only=True):
     """A part that an encoding puts in front of its region. It is in no schema."""
 
     size: int

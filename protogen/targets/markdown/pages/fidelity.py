@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
+from protogen.copying import field_names
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
@@ -85,14 +86,14 @@ def page_link(protocol: Protocol) -> str:
 def _table(protocols: Sequence[Protocol]) -> Table | None:
     if not protocols:
         return None
-    header = ("Protocol", "Document", *(_TITLES[item.name] for item in fields(Counts)))
+    header = ("Protocol", "Document", *(_TITLES[name] for name in field_names(Counts)))
     return table(header, (_row(protocol) for protocol in protocols))
 
 
 def _row(protocol: Protocol) -> tuple[str, ...]:
     counts = count(protocol)
     document = protocol.source.document if protocol.source else None
-    numbers = {item.name: str(getattr(counts, item.name)) for item in fields(Counts)}
+    numbers = {name: str(getattr(counts, name)) for name in field_names(Counts)}
     if any(_missing(protocol)):
         # A bare 0 would read as if examples had been left out.
         numbers["verified"] += " ([why](#without-examples))"
