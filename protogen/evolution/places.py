@@ -9,10 +9,10 @@ from protogen.copying import replace
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison
 from protogen.model.messages import Message
-from protogen.model.nesting import fields_inside
+from protogen.model.nesting import fields_inside, is_integer
 from protogen.model.origin import About
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Field, Integer
+from protogen.model.types import Array, Field
 from protogen.problems.span import Span
 
 
@@ -105,7 +105,7 @@ def _named(field: Field, run: str | None, name: str | None) -> Iterator[About]:
     """A run of bits of the field, and a value or a flag."""
     yield from (item.about for item in field.special if item.name == name)
     kind = field.type.element if isinstance(field.type, Array) else field.type
-    if not isinstance(kind, Integer):
+    if not is_integer(kind):
         return
     enum = kind.enum
     for bits in kind.bit_fields:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TypeGuard
 
 from protogen.copying import replace
 from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type
@@ -29,6 +30,11 @@ def fields_inside(type_: Type) -> Iterator[Field]:
         yield from fields_inside(inner)
 
 
+def is_integer(type_: Type) -> TypeGuard[Integer]:
+    """True if the values are integers, whatever they mean."""
+    return isinstance(type_, Integer)
+
+
 def is_composite(type_: Type) -> bool:
     """True if the type is fields, or a choice between types."""
     return isinstance(type_, Struct | Switch)
@@ -36,7 +42,7 @@ def is_composite(type_: Type) -> bool:
 
 def holds_whole_bytes(type_: Type) -> bool:
     """True if a value can hold bytes of eight bits, whatever a payload byte carries."""
-    if isinstance(type_, Integer):
+    if is_integer(type_):
         return type_.role == "byte"
     return any(map(holds_whole_bytes, inner_types(type_)))
 
@@ -53,7 +59,7 @@ def takes_rest(type_: Type) -> bool:
 
 def can_count(type_: Type) -> bool:
     """True if a value can say how many elements or bytes another field has."""
-    return isinstance(type_, Integer) and not type_.signed and type_.role != "bool"
+    return is_integer(type_) and not type_.signed and type_.role != "bool"
 
 
 def with_structs(type_: Type, settle: Callable[[Struct], Struct]) -> Type:

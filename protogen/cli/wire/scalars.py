@@ -34,12 +34,12 @@ def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
     physical = _physical(field, written)
     if physical is None:
         raise UsageError(
-            f"{path}: `{written}` is none of: {allowed(field, type)}", _mend(field, type, written)
+            f"{path}: `{written}` is none of: {allowed(field, type)}", _fix(field, type, written)
         )
     return _raw(field, type, physical, written, path)
 
 
-def _mend(field: Field, type: Integer, written: str) -> str | None:
+def _fix(field: Field, type: Integer, written: str) -> str | None:
     """Return how to write what was probably meant."""
     names = _names(field, type)
     if type.flags is not None and "," in written:

@@ -1,4 +1,4 @@
-"""How is a sender's frame laid out, found, and taken?
+"""Frame plan of a sender: how its frame is laid out, found, and taken.
 
 Works out the frame plan from the frame's parts and its framing.
 """
@@ -142,7 +142,7 @@ class _Planner:
         return next((item for item in (*self._head, *self._tail) if item.name == name), None)
 
     def _bounds(self, name: str) -> tuple[Place, Place]:
-        """Where a part of the content begins and ends."""
+        """Begin and end of a part of the content."""
         item = self._placed(name)
         if item is None:
             return Place(Side.HEAD, self._head_size), Place(Side.TAIL, 0)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from protogen.model.types import Array, Field, Integer, Octets, Struct, Switch, Type
+from protogen.model.nesting import is_integer
+from protogen.model.types import Array, Field, Octets, Struct, Switch, Type
 from protogen.passes.types.constants import named_raw_value
 from protogen.schema.syntax.octets import to_octets
 
@@ -52,7 +53,7 @@ def _byte_string(value: Any) -> Any:
 def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) -> Type | None:
     """Type of a switch for the value that its selector has in the example."""
     selector = types.get(switch.selector)
-    if not isinstance(selector, Integer) or switch.selector not in around:
+    if selector is None or not is_integer(selector) or switch.selector not in around:
         return None
     named = named_raw_value(selector, around[switch.selector])
     found = (case.type for case in switch.cases if named is not None and case.value == named[0])

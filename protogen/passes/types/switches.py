@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from protogen.copying import replace
-from protogen.model.types import Case, Field, Integer, Struct, Switch
+from protogen.model.nesting import is_integer
+from protogen.model.types import Case, Field, Struct, Switch
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.constants import named_raw_value
 from protogen.passes.types.declared import Effective
@@ -62,7 +63,7 @@ class SwitchBuilder:
     def _selector(self, item: Effective) -> Field | None:
         name, outer = item.syntax.switch or "", item.setting.outer
         selector = outer.get(name)
-        if selector is not None and isinstance(selector.type, Integer):
+        if selector is not None and is_integer(selector.type):
             return selector
         if selector is not None:
             self._context.error("PG116", item.at("switch"), f"`{name}` is not an integer")
@@ -102,7 +103,7 @@ class SwitchBuilder:
     def _case(
         self, key: object, item: FieldSyntax, loc: Loc, selector: Field, setting: Setting
     ) -> Case | None:
-        assert isinstance(selector.type, Integer)
+        assert is_integer(selector.type)
         named = named_raw_value(selector.type, key)
         if named is None:
             enum = selector.type.enum
