@@ -64,7 +64,7 @@ _FEW = 8
 
 
 def are_sound(contents: list[bytes], first: int) -> bool:
-    """Whether in each of these the bytes from `first` on have the exclusive or 0."""
+    """True if the bytes from `first` on have the exclusive or 0 in each of these."""
     by_size: dict[int, list[bytes]] = {}
     for content in contents:
         by_size.setdefault(len(content), []).append(content)

@@ -46,9 +46,9 @@ class Content:
         self.payload_size: int | None = None
         """The payload's size, as soon as it is known."""
         self.is_open = False
-        """Whether the payload has begun, and only what follows will tell its size."""
+        """True if the payload has begun, and only what follows will tell its size."""
         self.is_full = False
-        """Whether all parts are there."""
+        """True if all parts are there."""
         self._group: IdentityGroup[Any] | None = None
         self._is_measuring = False
         self._limit = _UNLIMITED  # The content has no more bytes than this.

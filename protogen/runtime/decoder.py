@@ -128,7 +128,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return self._deliver()
 
     def _is_little(self, data: bytes) -> bool:
-        """Whether to look at all that has come takes longer than a candidate takes for `data`.
+        """True if looking at all that has come takes longer than a candidate takes for `data`.
 
         Else the time for a frame would grow with the square of its size.
         """
@@ -224,7 +224,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return not self._is_waiting
 
     def _still_waits(self, start: int) -> bool:
-        """Whether a frame plainly begins there, on which there is no verdict as yet."""
+        """True if a frame plainly begins there, on which there is no verdict as yet."""
         return self._waits is not None and self._waits(self._data, start)
 
     def _open_candidate(self) -> None:

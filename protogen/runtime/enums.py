@@ -35,7 +35,7 @@ class OpenEnum(IntEnum):
 
     @property
     def is_known(self) -> bool:
-        """Whether the schema names this value."""
+        """True if the schema names this value."""
         return self._name_ in type(self).__members__
 
 

@@ -228,9 +228,9 @@ class FrameSpec(Frozen):
     transparency: Transparency | None
     stuffed: tuple[str, ...]
     seven_bit: bool
-    """Whether every payload byte has its most significant bit clear."""
+    """True if every payload byte has its most significant bit clear."""
     ambiguous_cut: bool
-    """Whether an encoder has to check that a decoder ends the frame where it ends."""
+    """True if an encoder has to check that a decoder ends the frame where it ends."""
 
     def __init__(  # noqa: PLR0913 - an argument for each field
         self,

@@ -21,7 +21,7 @@ from protogen.runtime.values import Frozen
 
 
 def is_optional(part: Part) -> bool:
-    """Whether the part is absent where the payload is empty."""
+    """True if the part is absent where the payload is empty."""
     return isinstance(part, ChecksumPart) and part.when_payload
 
 
@@ -60,7 +60,7 @@ class Layout:
         self.length = next((part for part in self.head if isinstance(part, LengthPart)), None)
         self.identity = tuple(part for part in self.parts if isinstance(part, IdentityPart))
         self.early_identity = bool(self.identity) and self.identity[-1] in self.head
-        """Whether there is an identity, and all of it in front of the payload."""
+        """True if there is an identity, and all of it in front of the payload."""
         self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
         self.shown = tuple(
             part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
@@ -71,7 +71,7 @@ class Layout:
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
         self.end = b"" if spec.end is None else spec.end.value
         self.shares_delimiter = bool(self.start) and self.start == self.end
-        """Whether the end of a frame may be the start of the next as well, as with SLIP's flag."""
+        """True if the end of a frame may be the start of the next as well, as with SLIP's flag."""
         self.start_bytes = self._start_bytes()
         """Bytes that complete a start. None where start and end are the same literal."""
         self.empty_frame = self._empty_frame()

@@ -26,7 +26,7 @@ def read_frame(
 
 
 def may_start(layout: Layout, data: bytes) -> bool:
-    """Whether the first bytes of a frame can be these."""
+    """True if the first bytes of a frame can be these."""
     start = layout.spec.start
     if isinstance(start, StartLiteral):
         return data.startswith(start.value)

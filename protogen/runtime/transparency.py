@@ -59,7 +59,7 @@ class Transparency(Protocol):
 
     @property
     def lenient(self) -> bool:
-        """Whether the decoder accepts more than the encoder makes."""
+        """True if the decoder accepts more than the encoder makes."""
 
     def encode(self, data: bytes) -> bytes:
         """Return the region on the wire that stands for `data`."""

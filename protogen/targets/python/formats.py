@@ -130,7 +130,7 @@ def _case(case: Case) -> str:
 
 
 def is_empty(type_: Type) -> bool:
-    """Whether the type is a struct without fields, which Python shows as None."""
+    """True if the type is a struct without fields, which Python shows as None."""
     return isinstance(type_, Struct) and not type_.fields
 
 
