@@ -449,11 +449,62 @@ enum {
 #if MATTY_FAST_FEED
 #include <string.h>
 
+#if defined(__GNUC__)
+#define MATTY_EXPECT(condition, mostly) __builtin_expect((condition) ? 1 : 0, mostly)
+#else
+#define MATTY_EXPECT(condition, mostly) (condition)
+#endif
 #define MATTY_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
 
 /* Not zero where one of eight bytes is this one. */
 #define MATTY_HAS(word, byte) \
     ((((word) ^ MATTY_EACH(byte)) - MATTY_EACH(1U)) & ~((word) ^ MATTY_EACH(byte)) & MATTY_EACH(0x80U))
+#if MATTY_SSE2
+
+/* The place of the lowest bit that is set. */
+static inline size_t matty_first(unsigned int marks) {
+#if defined(__GNUC__)
+    return (size_t)__builtin_ctz(marks);
+#else
+    size_t place = 0;
+    for (; (marks & 1U) == 0U; marks >>= 1) {
+        place++;
+    }
+    return place;
+#endif
+}
+#endif
+#endif
+
+#if MATTY_FAST_FEED && MATTY_SSE2
+/* From place n on: 16 - n bytes that are left out, and n that are not. */
+static const uint8_t matty_mask[32] = {
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
+};
+
+/* The sum of bytes; there are at least eight. */
+static inline __m128i matty_sum_of(const uint8_t *data, size_t size) {
+    __m128i sums = _mm_setzero_si128();
+    __m128i last;
+    size_t index = 0;
+    for (; size - index >= 16U; index += 16U) {
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[index]);
+        sums = _mm_add_epi64(sums, _mm_sad_epu8(last, _mm_setzero_si128()));
+    }
+    if (size >= 16U) {
+        const uint8_t *const mask = &matty_mask[size - index];
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[size - 16U]);
+        last = _mm_and_si128(last, _mm_loadu_si128((const __m128i *)(const void *)mask));
+    } else {
+        const __m128i first = _mm_loadl_epi64((const __m128i *)(const void *)data);
+        last = _mm_loadl_epi64((const __m128i *)(const void *)&data[size - 8U]);
+        last = _mm_srl_epi64(last, _mm_cvtsi32_si128(128 - 8 * (int)size));
+        last = _mm_unpacklo_epi64(first, last);
+    }
+    sums = _mm_add_epi64(sums, _mm_sad_epu8(last, _mm_setzero_si128()));
+    return _mm_add_epi64(sums, _mm_srli_si128(sums, 8));
+}
 #endif
 
 /* sum-8/negated */
@@ -465,6 +516,13 @@ static inline uint8_t matty_sum_8_negated_step(uint8_t sum, uint8_t byte) {
 static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
 #if MATTY_FAST_FEED
+#if MATTY_SSE2
+    if (size >= 8U) {
+        const __m128i sums = matty_sum_of(data, size);
+        sum = (uint8_t)(sum + (unsigned int)_mm_cvtsi128_si32(sums));
+        index = size;
+    }
+#else
     while (size - index >= 8U) { /* No lane of 16 bits overflows in 128 words. */
         const size_t end = index + ((size - index > 1024U ? 1024U : size - index) & ~(size_t)7U);
         uint64_t lanes = 0;
@@ -476,6 +534,7 @@ static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t 
         }
         sum = (uint8_t)(sum + (lanes * UINT64_C(0x0001000100010001) >> 48));
     }
+#endif
 #endif
     for (; index < size; index++) {
         sum = matty_sum_8_negated_step(sum, data[index]);
@@ -1280,47 +1339,66 @@ void matty_pc_decoder_push(struct matty_pc_decoder *decoder, uint8_t byte) {
 
 #if MATTY_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool matty_pc_has_special(uint64_t word) {
+    uint64_t found = MATTY_HAS(word, 0x55U);
+    found |= MATTY_HAS(word, 0x56U);
+    return found != 0U;
+}
+#if MATTY_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int matty_pc_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool matty_pc_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= matty_pc_specials(&data[index]);
+    }
+    return (found | (matty_pc_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_t *data,
                                   size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if MATTY_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if MATTY_SSE2
+        while (goes_on && 126U - at >= 16U && size - from >= 16U) {
+            size_t run = matty_first(matty_pc_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) != 0U) {
-                break;
+            goes_on = !matty_pc_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) == 0U) {
+            if (!matty_pc_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1357,12 +1435,49 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool matty_pc_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[1];
+    const uint8_t left = (uint8_t)(length - 2U);
+    *payload = left;
+    return !(left > 121U);
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t matty_pc_hand_over(struct matty_pc_decoder *decoder, const uint8_t *content,
+                                 size_t payload, size_t wire) {
+    struct matty_pc_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[4U + payload];
+        (void)tail;
+        event.parts.counter = content[2];
+        event.parts.command = content[3];
+    }
+    event.payload = &content[4];
+    reason = matty_pc_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != MATTY_NO_REASON) {
+        return 0;
+    }
+    matty_pc_end_noise(decoder);
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.reason = MATTY_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum matty_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_t *data,
                                   size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 5U) {
         return 0;
@@ -1370,30 +1485,37 @@ static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_
     if (data[0] != 0x55U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    wire = matty_pc_unstuff_to(decoder, data, size, 1, 1, 2);
-    if (wire == 0U) {
-        return 0;
-    }
+#if MATTY_SSE2
+    if (MATTY_EXPECT(matty_pc_measure_head(data, &payload) && size >= 21U + payload
+        && matty_pc_is_plain(&data[1], 4U + payload), 1)) {
+        content = data;
+        wire = 5U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[1];
-        const uint8_t left = (uint8_t)(length - 2U);
-        if (left > 121U) {
+        decoder->buffer[0] = data[0];
+        wire = matty_pc_unstuff_to(decoder, data, size, 1, 1, 2);
+        if (wire == 0U || !matty_pc_measure_head(content, &payload)) {
             return 0;
         }
-        payload = left;
-    }
-    wire = matty_pc_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
-    if (wire == 0U) {
-        return 0;
+        wire = matty_pc_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
     if (wire > 250U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return matty_pc_complete(decoder) == MATTY_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        due = matty_sum_8_negated_final(sum);
+        if (content[4U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return matty_pc_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */
@@ -1739,47 +1861,66 @@ void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte) {
 
 #if MATTY_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool matty_esp_has_special(uint64_t word) {
+    uint64_t found = MATTY_HAS(word, 0x55U);
+    found |= MATTY_HAS(word, 0x56U);
+    return found != 0U;
+}
+#if MATTY_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int matty_esp_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool matty_esp_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= matty_esp_specials(&data[index]);
+    }
+    return (found | (matty_esp_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint8_t *data,
                                    size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if MATTY_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if MATTY_SSE2
+        while (goes_on && 126U - at >= 16U && size - from >= 16U) {
+            size_t run = matty_first(matty_esp_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) != 0U) {
-                break;
+            goes_on = !matty_esp_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_HAS(word, 0x55U) | MATTY_HAS(word, 0x56U)) == 0U) {
+            if (!matty_esp_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1816,12 +1957,49 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool matty_esp_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[1];
+    const uint8_t left = (uint8_t)(length - 2U);
+    *payload = left;
+    return !(left > 121U);
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t matty_esp_hand_over(struct matty_esp_decoder *decoder, const uint8_t *content,
+                                  size_t payload, size_t wire) {
+    struct matty_esp_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[4U + payload];
+        (void)tail;
+        event.parts.counter = content[2];
+        event.parts.command = content[3];
+    }
+    event.payload = &content[4];
+    reason = matty_esp_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != MATTY_NO_REASON) {
+        return 0;
+    }
+    matty_esp_end_noise(decoder);
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.reason = MATTY_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum matty_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint8_t *data,
                                    size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 5U) {
         return 0;
@@ -1829,30 +2007,37 @@ static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint
     if (data[0] != 0x55U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    wire = matty_esp_unstuff_to(decoder, data, size, 1, 1, 2);
-    if (wire == 0U) {
-        return 0;
-    }
+#if MATTY_SSE2
+    if (MATTY_EXPECT(matty_esp_measure_head(data, &payload) && size >= 21U + payload
+        && matty_esp_is_plain(&data[1], 4U + payload), 1)) {
+        content = data;
+        wire = 5U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[1];
-        const uint8_t left = (uint8_t)(length - 2U);
-        if (left > 121U) {
+        decoder->buffer[0] = data[0];
+        wire = matty_esp_unstuff_to(decoder, data, size, 1, 1, 2);
+        if (wire == 0U || !matty_esp_measure_head(content, &payload)) {
             return 0;
         }
-        payload = left;
-    }
-    wire = matty_esp_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
-    if (wire == 0U) {
-        return 0;
+        wire = matty_esp_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
     if (wire > 250U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return matty_esp_complete(decoder) == MATTY_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        due = matty_sum_8_negated_final(sum);
+        if (content[4U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return matty_esp_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */

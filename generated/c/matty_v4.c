@@ -572,11 +572,62 @@ enum {
 #if MATTY_V4_FAST_FEED
 #include <string.h>
 
+#if defined(__GNUC__)
+#define MATTY_V4_EXPECT(condition, mostly) __builtin_expect((condition) ? 1 : 0, mostly)
+#else
+#define MATTY_V4_EXPECT(condition, mostly) (condition)
+#endif
 #define MATTY_V4_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
 
 /* Not zero where one of eight bytes is this one. */
 #define MATTY_V4_HAS(word, byte) \
     ((((word) ^ MATTY_V4_EACH(byte)) - MATTY_V4_EACH(1U)) & ~((word) ^ MATTY_V4_EACH(byte)) & MATTY_V4_EACH(0x80U))
+#if MATTY_V4_SSE2
+
+/* The place of the lowest bit that is set. */
+static inline size_t matty_v4_first(unsigned int marks) {
+#if defined(__GNUC__)
+    return (size_t)__builtin_ctz(marks);
+#else
+    size_t place = 0;
+    for (; (marks & 1U) == 0U; marks >>= 1) {
+        place++;
+    }
+    return place;
+#endif
+}
+#endif
+#endif
+
+#if MATTY_V4_FAST_FEED && MATTY_V4_SSE2
+/* From place n on: 16 - n bytes that are left out, and n that are not. */
+static const uint8_t matty_v4_mask[32] = {
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
+};
+
+/* The sum of bytes; there are at least eight. */
+static inline __m128i matty_v4_sum_of(const uint8_t *data, size_t size) {
+    __m128i sums = _mm_setzero_si128();
+    __m128i last;
+    size_t index = 0;
+    for (; size - index >= 16U; index += 16U) {
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[index]);
+        sums = _mm_add_epi64(sums, _mm_sad_epu8(last, _mm_setzero_si128()));
+    }
+    if (size >= 16U) {
+        const uint8_t *const mask = &matty_v4_mask[size - index];
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[size - 16U]);
+        last = _mm_and_si128(last, _mm_loadu_si128((const __m128i *)(const void *)mask));
+    } else {
+        const __m128i first = _mm_loadl_epi64((const __m128i *)(const void *)data);
+        last = _mm_loadl_epi64((const __m128i *)(const void *)&data[size - 8U]);
+        last = _mm_srl_epi64(last, _mm_cvtsi32_si128(128 - 8 * (int)size));
+        last = _mm_unpacklo_epi64(first, last);
+    }
+    sums = _mm_add_epi64(sums, _mm_sad_epu8(last, _mm_setzero_si128()));
+    return _mm_add_epi64(sums, _mm_srli_si128(sums, 8));
+}
 #endif
 
 /* sum-8/negated */
@@ -588,6 +639,13 @@ static inline uint8_t matty_v4_sum_8_negated_step(uint8_t sum, uint8_t byte) {
 static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
 #if MATTY_V4_FAST_FEED
+#if MATTY_V4_SSE2
+    if (size >= 8U) {
+        const __m128i sums = matty_v4_sum_of(data, size);
+        sum = (uint8_t)(sum + (unsigned int)_mm_cvtsi128_si32(sums));
+        index = size;
+    }
+#else
     while (size - index >= 8U) { /* No lane of 16 bits overflows in 128 words. */
         const size_t end = index + ((size - index > 1024U ? 1024U : size - index) & ~(size_t)7U);
         uint64_t lanes = 0;
@@ -599,6 +657,7 @@ static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size
         }
         sum = (uint8_t)(sum + (lanes * UINT64_C(0x0001000100010001) >> 48));
     }
+#endif
 #endif
     for (; index < size; index++) {
         sum = matty_v4_sum_8_negated_step(sum, data[index]);
@@ -1532,47 +1591,66 @@ void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte)
 
 #if MATTY_V4_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool matty_v4_pc_has_special(uint64_t word) {
+    uint64_t found = MATTY_V4_HAS(word, 0x55U);
+    found |= MATTY_V4_HAS(word, 0x56U);
+    return found != 0U;
+}
+#if MATTY_V4_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int matty_v4_pc_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool matty_v4_pc_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= matty_v4_pc_specials(&data[index]);
+    }
+    return (found | (matty_v4_pc_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
                                      size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if MATTY_V4_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if MATTY_V4_SSE2
+        while (goes_on && 127U - at >= 16U && size - from >= 16U) {
+            size_t run = matty_v4_first(matty_v4_pc_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) != 0U) {
-                break;
+            goes_on = !matty_v4_pc_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) == 0U) {
+            if (!matty_v4_pc_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -1609,12 +1687,49 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool matty_v4_pc_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[1];
+    const uint8_t left = (uint8_t)(length - 2U);
+    *payload = left;
+    return !(left > 122U);
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t matty_v4_pc_hand_over(struct matty_v4_pc_decoder *decoder, const uint8_t *content,
+                                    size_t payload, size_t wire) {
+    struct matty_v4_pc_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[4U + payload];
+        (void)tail;
+        event.parts.counter = content[2];
+        event.parts.command = content[3];
+    }
+    event.payload = &content[4];
+    reason = matty_v4_pc_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != MATTY_V4_NO_REASON) {
+        return 0;
+    }
+    matty_v4_pc_end_noise(decoder);
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.reason = MATTY_V4_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum matty_v4_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
                                      size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 5U) {
         return 0;
@@ -1622,30 +1737,37 @@ static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const 
     if (data[0] != 0x55U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    wire = matty_v4_pc_unstuff_to(decoder, data, size, 1, 1, 2);
-    if (wire == 0U) {
-        return 0;
-    }
+#if MATTY_V4_SSE2
+    if (MATTY_V4_EXPECT(matty_v4_pc_measure_head(data, &payload) && size >= 21U + payload
+        && matty_v4_pc_is_plain(&data[1], 4U + payload), 1)) {
+        content = data;
+        wire = 5U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[1];
-        const uint8_t left = (uint8_t)(length - 2U);
-        if (left > 122U) {
+        decoder->buffer[0] = data[0];
+        wire = matty_v4_pc_unstuff_to(decoder, data, size, 1, 1, 2);
+        if (wire == 0U || !matty_v4_pc_measure_head(content, &payload)) {
             return 0;
         }
-        payload = left;
-    }
-    wire = matty_v4_pc_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
-    if (wire == 0U) {
-        return 0;
+        wire = matty_v4_pc_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
     if (wire > 252U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return matty_v4_pc_complete(decoder) == MATTY_V4_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        due = matty_v4_sum_8_negated_final(sum);
+        if (content[4U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return matty_v4_pc_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */
@@ -2000,47 +2122,66 @@ void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byt
 
 #if MATTY_V4_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool matty_v4_esp_has_special(uint64_t word) {
+    uint64_t found = MATTY_V4_HAS(word, 0x55U);
+    found |= MATTY_V4_HAS(word, 0x56U);
+    return found != 0U;
+}
+#if MATTY_V4_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int matty_v4_esp_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool matty_v4_esp_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= matty_v4_esp_specials(&data[index]);
+    }
+    return (found | (matty_v4_esp_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
                                       size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if MATTY_V4_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x55U)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x56U)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if MATTY_V4_SSE2
+        while (goes_on && 127U - at >= 16U && size - from >= 16U) {
+            size_t run = matty_v4_first(matty_v4_esp_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) != 0U) {
-                break;
+            goes_on = !matty_v4_esp_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((MATTY_V4_HAS(word, 0x55U) | MATTY_V4_HAS(word, 0x56U)) == 0U) {
+            if (!matty_v4_esp_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2077,12 +2218,49 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool matty_v4_esp_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[1];
+    const uint8_t left = (uint8_t)(length - 2U);
+    *payload = left;
+    return !(left > 122U);
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t matty_v4_esp_hand_over(struct matty_v4_esp_decoder *decoder, const uint8_t *content,
+                                     size_t payload, size_t wire) {
+    struct matty_v4_esp_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[4U + payload];
+        (void)tail;
+        event.parts.counter = content[2];
+        event.parts.command = content[3];
+    }
+    event.payload = &content[4];
+    reason = matty_v4_esp_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != MATTY_V4_NO_REASON) {
+        return 0;
+    }
+    matty_v4_esp_end_noise(decoder);
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.reason = MATTY_V4_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum matty_v4_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
                                       size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 5U) {
         return 0;
@@ -2090,30 +2268,37 @@ static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, cons
     if (data[0] != 0x55U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    wire = matty_v4_esp_unstuff_to(decoder, data, size, 1, 1, 2);
-    if (wire == 0U) {
-        return 0;
-    }
+#if MATTY_V4_SSE2
+    if (MATTY_V4_EXPECT(matty_v4_esp_measure_head(data, &payload) && size >= 21U + payload
+        && matty_v4_esp_is_plain(&data[1], 4U + payload), 1)) {
+        content = data;
+        wire = 5U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[1];
-        const uint8_t left = (uint8_t)(length - 2U);
-        if (left > 122U) {
+        decoder->buffer[0] = data[0];
+        wire = matty_v4_esp_unstuff_to(decoder, data, size, 1, 1, 2);
+        if (wire == 0U || !matty_v4_esp_measure_head(content, &payload)) {
             return 0;
         }
-        payload = left;
-    }
-    wire = matty_v4_esp_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
-    if (wire == 0U) {
-        return 0;
+        wire = matty_v4_esp_unstuff_to(decoder, data, size, wire, 2, 5U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
     if (wire > 252U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return matty_v4_esp_complete(decoder) == MATTY_V4_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        due = matty_v4_sum_8_negated_final(sum);
+        if (content[4U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return matty_v4_esp_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */

@@ -1118,11 +1118,62 @@ enum {
 #if RFLEX_DRIVERS_FAST_FEED
 #include <string.h>
 
+#if defined(__GNUC__)
+#define RFLEX_DRIVERS_EXPECT(condition, mostly) __builtin_expect((condition) ? 1 : 0, mostly)
+#else
+#define RFLEX_DRIVERS_EXPECT(condition, mostly) (condition)
+#endif
 #define RFLEX_DRIVERS_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
 
 /* Not zero where one of eight bytes is this one. */
 #define RFLEX_DRIVERS_HAS(word, byte) \
     ((((word) ^ RFLEX_DRIVERS_EACH(byte)) - RFLEX_DRIVERS_EACH(1U)) & ~((word) ^ RFLEX_DRIVERS_EACH(byte)) & RFLEX_DRIVERS_EACH(0x80U))
+#if RFLEX_DRIVERS_SSE2
+
+/* The place of the lowest bit that is set. */
+static inline size_t rflex_drivers_first(unsigned int marks) {
+#if defined(__GNUC__)
+    return (size_t)__builtin_ctz(marks);
+#else
+    size_t place = 0;
+    for (; (marks & 1U) == 0U; marks >>= 1) {
+        place++;
+    }
+    return place;
+#endif
+}
+#endif
+#endif
+
+#if RFLEX_DRIVERS_FAST_FEED && RFLEX_DRIVERS_SSE2
+/* From place n on: 16 - n bytes that are left out, and n that are not. */
+static const uint8_t rflex_drivers_mask[32] = {
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
+};
+
+/* All bytes, each xor the next; there are at least eight. */
+static inline __m128i rflex_drivers_xor_of(const uint8_t *data, size_t size) {
+    __m128i sums = _mm_setzero_si128();
+    __m128i last;
+    size_t index = 0;
+    for (; size - index >= 16U; index += 16U) {
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[index]);
+        sums = _mm_xor_si128(sums, last);
+    }
+    if (size >= 16U) {
+        const uint8_t *const mask = &rflex_drivers_mask[size - index];
+        last = _mm_loadu_si128((const __m128i *)(const void *)&data[size - 16U]);
+        last = _mm_and_si128(last, _mm_loadu_si128((const __m128i *)(const void *)mask));
+    } else {
+        const __m128i first = _mm_loadl_epi64((const __m128i *)(const void *)data);
+        last = _mm_loadl_epi64((const __m128i *)(const void *)&data[size - 8U]);
+        last = _mm_srl_epi64(last, _mm_cvtsi32_si128(128 - 8 * (int)size));
+        last = _mm_unpacklo_epi64(first, last);
+    }
+    sums = _mm_xor_si128(sums, last);
+    return _mm_xor_si128(sums, _mm_srli_si128(sums, 8));
+}
 #endif
 
 /* xor-8 */
@@ -1134,6 +1185,17 @@ static inline uint8_t rflex_drivers_xor_8_step(uint8_t sum, uint8_t byte) {
 static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
     size_t index = 0;
 #if RFLEX_DRIVERS_FAST_FEED
+#if RFLEX_DRIVERS_SSE2
+    if (size >= 8U) {
+        const __m128i sums = rflex_drivers_xor_of(data, size);
+        uint64_t all;
+        _mm_storel_epi64((__m128i *)(void *)&all, sums);
+        all ^= all >> 32;
+        all ^= all >> 16;
+        sum = (uint8_t)(sum ^ all ^ (all >> 8));
+        index = size;
+    }
+#else
     uint64_t all = 0;
     for (; size - index >= 8U; index += 8U) {
         uint64_t word;
@@ -1143,6 +1205,7 @@ static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t 
     all ^= all >> 32;
     all ^= all >> 16;
     sum = (uint8_t)(sum ^ all ^ (all >> 8));
+#endif
 #endif
     for (; index < size; index++) {
         sum = rflex_drivers_xor_8_step(sum, data[index]);
@@ -2775,48 +2838,68 @@ void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decode
 
 #if RFLEX_DRIVERS_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool rflex_drivers_linux_has_special(uint64_t word) {
+    uint64_t found = RFLEX_DRIVERS_HAS(word, 0x1BU);
+    found |= RFLEX_DRIVERS_HAS(word, 0x7CU);
+    return found != 0U;
+}
+#if RFLEX_DRIVERS_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int rflex_drivers_linux_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool rflex_drivers_linux_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= rflex_drivers_linux_specials(&data[index]);
+    }
+    return (found |
+            (rflex_drivers_linux_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder *decoder,
                                              const uint8_t *data, size_t size, size_t from,
                                              size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if RFLEX_DRIVERS_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if RFLEX_DRIVERS_SSE2
+        while (goes_on && 262U - at >= 16U && size - from >= 16U) {
+            size_t run = rflex_drivers_first(rflex_drivers_linux_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) != 0U) {
-                break;
+            goes_on = !rflex_drivers_linux_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) == 0U) {
+            if (!rflex_drivers_linux_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -2856,12 +2939,51 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool rflex_drivers_linux_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[5];
+    const uint8_t left = length;
+    *payload = left;
+    return true;
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t rflex_drivers_linux_hand_over(struct rflex_drivers_linux_decoder *decoder,
+                                            const uint8_t *content, size_t payload, size_t wire) {
+    struct rflex_drivers_linux_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[6U + payload];
+        (void)tail;
+        event.parts.class_id = content[2];
+        event.parts.number = content[3];
+        event.parts.subclass = content[4];
+    }
+    event.payload = &content[6];
+    reason = rflex_drivers_linux_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != RFLEX_DRIVERS_NO_REASON) {
+        return 0;
+    }
+    rflex_drivers_linux_end_noise(decoder);
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.reason = RFLEX_DRIVERS_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum rflex_drivers_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder *decoder,
                                              const uint8_t *data, size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 9U) {
         return 0;
@@ -2869,32 +2991,44 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
     if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    decoder->buffer[1] = data[1];
-    wire = rflex_drivers_linux_unstuff_to(decoder, data, size, 2, 2, 6);
-    if (wire == 0U) {
-        return 0;
-    }
+#if RFLEX_DRIVERS_SSE2
+    if (RFLEX_DRIVERS_EXPECT(rflex_drivers_linux_measure_head(data, &payload) &&
+                             size >= 23U + payload
+        && rflex_drivers_linux_is_plain(&data[2], 5U + payload), 1)) {
+        content = data;
+        wire = 7U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[5];
-        const uint8_t left = length;
-        payload = left;
+        decoder->buffer[0] = data[0];
+        decoder->buffer[1] = data[1];
+        wire = rflex_drivers_linux_unstuff_to(decoder, data, size, 2, 2, 6);
+        if (wire == 0U || !rflex_drivers_linux_measure_head(content, &payload)) {
+            return 0;
+        }
+        wire = rflex_drivers_linux_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
-    wire = rflex_drivers_linux_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
-    if (wire == 0U) {
-        return 0;
-    }
-    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
+    if (RFLEX_DRIVERS_EXPECT(size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U,
+                             0)) {
         return 0;
     }
     wire += 2U;
     if (wire > 780U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return rflex_drivers_linux_complete(decoder) == RFLEX_DRIVERS_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + payload) - (size_t)(2U));
+        due = rflex_drivers_xor_8_final(sum);
+        if (content[6U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return rflex_drivers_linux_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */
@@ -3480,48 +3614,68 @@ void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder,
 
 #if RFLEX_DRIVERS_FAST_FEED
 
+/* Whether one of eight bytes does not stand for itself. */
+static inline bool rflex_drivers_flex_has_special(uint64_t word) {
+    uint64_t found = RFLEX_DRIVERS_HAS(word, 0x1BU);
+    found |= RFLEX_DRIVERS_HAS(word, 0x7CU);
+    return found != 0U;
+}
+#if RFLEX_DRIVERS_SSE2
+
+/* A bit for each of sixteen bytes that does not stand for itself. */
+static inline unsigned int rflex_drivers_flex_specials(const uint8_t *data) {
+    const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)data);
+    __m128i found = _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU));
+    found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
+    return (unsigned int)_mm_movemask_epi8(found);
+}
+
+/* Whether all bytes stand for themselves. Sixteen behind them may be read. */
+static inline bool rflex_drivers_flex_is_plain(const uint8_t *data, size_t size) {
+    unsigned int found = 0;
+    size_t index = 0;
+    for (; size - index > 16U; index += 16U) {
+        found |= rflex_drivers_flex_specials(&data[index]);
+    }
+    return (found |
+            (rflex_drivers_flex_specials(&data[index]) & ((1U << (size - index)) - 1U))) == 0U;
+}
+#endif
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *decoder,
                                             const uint8_t *data, size_t size, size_t from,
                                             size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
-#if RFLEX_DRIVERS_SSE2
-    while (need - at >= 16U && size - from >= 16U) {
-        const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
-        __m128i found = _mm_setzero_si128();
-        unsigned int marks;
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x1BU)));
-        found = _mm_or_si128(found, _mm_cmpeq_epi8(block, _mm_set1_epi8((char)0x7CU)));
-        marks = (unsigned int)_mm_movemask_epi8(found);
-        _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
-        if (marks != 0U) {
-            for (; (marks & 1U) == 0U; marks >>= 1) { /* Up to the first that is special. */
-                from++;
-                at++;
-            }
-            break;
-        }
-        from += 16U;
-        at += 16U;
-    }
-#endif
     while (at < need) {
         uint8_t byte;
-        while (need - at >= 8U && size - from >= 8U) {
+        bool goes_on = true;
+#if RFLEX_DRIVERS_SSE2
+        while (goes_on && 262U - at >= 16U && size - from >= 16U) {
+            size_t run = rflex_drivers_first(rflex_drivers_flex_specials(&data[from]) | 0x10000U);
+            const __m128i block = _mm_loadu_si128((const __m128i *)(const void *)&data[from]);
+            _mm_storeu_si128((__m128i *)(void *)&buffer[at], block);
+            goes_on = run == 16U && need - at > 16U;
+            run = run < need - at ? run : need - at;
+            from += run;
+            at += run;
+        }
+#endif
+        while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
             memcpy(&word, &data[from], 8);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) != 0U) {
-                break;
+            goes_on = !rflex_drivers_flex_has_special(word);
+            if (goes_on) {
+                memcpy(&buffer[at], &word, 8);
+                from += 8U;
+                at += 8U;
             }
-            memcpy(&buffer[at], &word, 8);
-            from += 8U;
-            at += 8U;
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
             memcpy(&word, &data[from], 4);
-            if ((RFLEX_DRIVERS_HAS(word, 0x1BU) | RFLEX_DRIVERS_HAS(word, 0x7CU)) == 0U) {
+            if (!rflex_drivers_flex_has_special(word)) {
                 memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
@@ -3561,12 +3715,51 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
     return from;
 }
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Whether the head tells the size of a payload, which it is. */
+static inline bool rflex_drivers_flex_measure_head(const uint8_t *content, size_t *payload) {
+    const uint8_t length = content[5];
+    const uint8_t left = length;
+    *payload = left;
+    return true;
+}
+
+/* Deliver the event of a frame that was taken whole. Returns its size; 0 where it is none. */
+static size_t rflex_drivers_flex_hand_over(struct rflex_drivers_flex_decoder *decoder,
+                                           const uint8_t *content, size_t payload, size_t wire) {
+    struct rflex_drivers_flex_event event;
+    uint8_t message;
+    uint8_t reason;
+    {
+        const uint8_t *const tail = &content[6U + payload];
+        (void)tail;
+        event.parts.class_id = content[2];
+        event.parts.number = content[3];
+        event.parts.subclass = content[4];
+    }
+    event.payload = &content[6];
+    reason = rflex_drivers_flex_identify(&event.parts, event.payload, (uint16_t)payload, &message);
+    if (reason != RFLEX_DRIVERS_NO_REASON) {
+        return 0;
+    }
+    rflex_drivers_flex_end_noise(decoder);
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.reason = RFLEX_DRIVERS_NO_REASON;
+    event.offset = decoder->offset;
+    event.size = (uint16_t)(wire);
+    decoder->offset += event.size;
+    event.message = (enum rflex_drivers_message)message;
+    event.payload_size = (uint16_t)payload;
+    decoder->handler(decoder->user, &event);
+    return wire;
+}
+
+/* Deliver the frame that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *decoder,
                                             const uint8_t *data, size_t size) {
-    const uint8_t *const content = decoder->buffer;
-    size_t payload;
+    const uint8_t *content = decoder->buffer;
+    size_t payload = 0;
     size_t wire;
     if (size < 9U) {
         return 0;
@@ -3574,32 +3767,44 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
     if (data[0] != 0x1BU || data[1] != 0x02U) {
         return 0;
     }
-    decoder->buffer[0] = data[0];
-    decoder->buffer[1] = data[1];
-    wire = rflex_drivers_flex_unstuff_to(decoder, data, size, 2, 2, 6);
-    if (wire == 0U) {
-        return 0;
-    }
+#if RFLEX_DRIVERS_SSE2
+    if (RFLEX_DRIVERS_EXPECT(rflex_drivers_flex_measure_head(data, &payload) &&
+                             size >= 23U + payload
+        && rflex_drivers_flex_is_plain(&data[2], 5U + payload), 1)) {
+        content = data;
+        wire = 7U + payload;
+    } else
+#endif
     {
-        const uint8_t length = content[5];
-        const uint8_t left = length;
-        payload = left;
+        decoder->buffer[0] = data[0];
+        decoder->buffer[1] = data[1];
+        wire = rflex_drivers_flex_unstuff_to(decoder, data, size, 2, 2, 6);
+        if (wire == 0U || !rflex_drivers_flex_measure_head(content, &payload)) {
+            return 0;
+        }
+        wire = rflex_drivers_flex_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
+        if (wire == 0U) {
+            return 0;
+        }
     }
-    wire = rflex_drivers_flex_unstuff_to(decoder, data, size, wire, 6, 7U + payload);
-    if (wire == 0U) {
-        return 0;
-    }
-    if (size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U) {
+    if (RFLEX_DRIVERS_EXPECT(size - wire < 2U || data[wire] != 0x1BU || data[wire + 1U] != 0x03U,
+                             0)) {
         return 0;
     }
     wire += 2U;
     if (wire > 780U) {
         return 0;
     }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return rflex_drivers_flex_complete(decoder) == RFLEX_DRIVERS_FRAME ? wire : (size_t)0;
+    {
+        uint8_t sum = 0x00U;
+        uint8_t due;
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + payload) - (size_t)(2U));
+        due = rflex_drivers_xor_8_final(sum);
+        if (content[6U + payload] != (uint8_t)due) {
+            return 0;
+        }
+    }
+    return rflex_drivers_flex_hand_over(decoder, content, payload, wire);
 }
 
 /* Whether nothing of a frame is there. */

@@ -931,28 +931,46 @@ enum {
 #if RN1_FAST_FEED
 #include <string.h>
 
+#if defined(__GNUC__)
+#define RN1_EXPECT(condition, mostly) __builtin_expect((condition) ? 1 : 0, mostly)
+#else
+#define RN1_EXPECT(condition, mostly) (condition)
+#endif
 #define RN1_EACH(byte) (UINT64_C(0x0101010101010101) * (byte))
 
 /* Whether some byte has its most significant bit set. */
-static bool rn1_is_high(const uint8_t *data, size_t size) {
+static inline bool rn1_is_high(const uint8_t *data, size_t size) {
     uint64_t all = 0;
     size_t index = 0;
+    if (size >= 8U) {
+        uint64_t last;
 #if RN1_SSE2
-    __m128i found = _mm_setzero_si128();
-    for (; size - index >= 16U; index += 16U) {
-        found = _mm_or_si128(found, _mm_loadu_si128((const __m128i *)(const void *)&data[index]));
-    }
-    if (_mm_movemask_epi8(found) != 0) {
-        return true;
-    }
+        __m128i found = _mm_setzero_si128();
+        for (; size - index >= 16U; index += 16U) {
+            found = _mm_or_si128(found,
+                                 _mm_loadu_si128((const __m128i *)(const void *)&data[index]));
+        }
+        if (_mm_movemask_epi8(found) != 0) {
+            return true;
+        }
 #endif
-    for (; size - index >= 8U; index += 8U) {
-        uint64_t word;
-        memcpy(&word, &data[index], 8);
-        all |= word;
-    }
-    for (; index < size; index++) {
-        all |= data[index];
+        for (; size - index >= 8U; index += 8U) {
+            uint64_t word;
+            memcpy(&word, &data[index], 8);
+            all |= word;
+        }
+        memcpy(&last, &data[size - 8U], 8);
+        all |= last;
+    } else if (size >= 4U) {
+        uint32_t first;
+        uint32_t last;
+        memcpy(&first, data, 4);
+        memcpy(&last, &data[size - 4U], 4);
+        all = (uint64_t)first | last;
+    } else {
+        for (; index < size; index++) {
+            all |= data[index];
+        }
     }
     return (all & RN1_EACH(0x80U)) != 0U;
 }
@@ -2137,55 +2155,81 @@ void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte) {
 
 #if RN1_FAST_FEED
 
-/* Deliver the frame that stands at the start of the input. Returns its size; 0 where `push` has to
-   look at it, because it is cut off or is none. */
+/* Deliver the message that stands at the start of the input. Returns its size; 0 where
+   `push` has to look at it, because it is cut off or is none. */
 static size_t rn1_brain_take_whole(struct rn1_brain_decoder *decoder, const uint8_t *data,
                                    size_t size) {
     const uint8_t *const content = data;
-    size_t payload;
-    size_t wire;
-    if (size < 1U) {
-        return 0;
-    }
-    if (!(data[0] >= 0x80U && data[0] <= 0xFEU)) {
-        return 0;
-    }
+    struct rn1_brain_event event;
+    event.parts.start = content[0];
+    event.payload = &data[1];
     switch (content[0]) {
     case 0x80U:
-        payload = 7;
+        if (size < 8U || rn1_is_high(event.payload, 7)) {
+            return 0;
+        }
+        event.size = 8;
+        event.payload_size = 7;
+        event.message = RN1_MESSAGE_GYRO;
         break;
     case 0x81U:
-        payload = 7;
+        if (size < 8U || rn1_is_high(event.payload, 7)) {
+            return 0;
+        }
+        event.size = 8;
+        event.payload_size = 7;
+        event.message = RN1_MESSAGE_XCEL;
         break;
     case 0x82U:
-        payload = 7;
+        if (size < 8U || rn1_is_high(event.payload, 7)) {
+            return 0;
+        }
+        event.size = 8;
+        event.payload_size = 7;
+        event.message = RN1_MESSAGE_COMPASS;
         break;
     case 0x83U:
-        payload = 6;
+        if (size < 7U || rn1_is_high(event.payload, 6)) {
+            return 0;
+        }
+        event.size = 7;
+        event.payload_size = 6;
+        event.message = RN1_MESSAGE_OPTFLOW;
         break;
     case 0x84U:
-        payload = 721;
+        if (size < 722U || rn1_is_high(event.payload, 721)) {
+            return 0;
+        }
+        event.size = 722;
+        event.payload_size = 721;
+        event.message = RN1_MESSAGE_LIDAR;
         break;
     case 0x85U:
-        payload = 15;
+        if (size < 16U || rn1_is_high(event.payload, 15)) {
+            return 0;
+        }
+        event.size = 16;
+        event.payload_size = 15;
+        event.message = RN1_MESSAGE_SONAR;
         break;
     case 0xA0U:
-        payload = 5;
+        if (size < 6U || rn1_is_high(event.payload, 5)) {
+            return 0;
+        }
+        event.size = 6;
+        event.payload_size = 5;
+        event.message = RN1_MESSAGE_FACING;
         break;
     default:
         return 0;
     }
-    wire = 1U + payload;
-    if (size < wire + 0U) {
-        return 0;
-    }
-    if (rn1_is_high(&data[1], payload)) {
-        return 0;
-    }
-    decoder->payload = (uint16_t)payload;
-    decoder->wire = (uint16_t)wire;
-    decoder->behind = 0;
-    return rn1_brain_complete(decoder, data) == RN1_FRAME ? wire : (size_t)0;
+    rn1_brain_end_noise(decoder);
+    event.kind = RN1_MESSAGE;
+    event.reason = RN1_NO_REASON;
+    event.offset = decoder->offset;
+    decoder->offset += event.size;
+    decoder->handler(decoder->user, &event);
+    return event.size;
 }
 
 /* Whether nothing of a frame is there. */

@@ -14,6 +14,7 @@ from protogen.model.protocol import Protocol
 from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
 from protogen.targets.c.frame import expressions
+from protogen.targets.c.frame.fill import EVENTS, Fill
 from protogen.targets.c.frame.framing import FramingView, framing_view
 from protogen.targets.c.frame.members import members_of, memory_of
 from protogen.targets.c.frame.stuffing import StuffingKind
@@ -72,14 +73,18 @@ def _files(unit: Unit, options: COptions) -> tuple[File, ...]:
     return (*files, File(PurePosixPath(f"{name}_stubs.c"), _stubs(unit), None, once=True))
 
 
-def texts(protocol: Protocol, options: COptions, *, payloads_only: bool = False) -> tuple[str, str]:
+def texts(
+    protocol: Protocol, options: COptions, *, payloads_only: bool = False, fill: Fill = EVENTS
+) -> tuple[str, str]:
     """The text of the header and that of the source; with `payloads_only` they know no frames."""
     unit = unit_of(protocol, options)
-    return _print(unit.module, None if payloads_only else unit.framing, options)
+    return _print(unit.module, None if payloads_only else unit.framing, options, fill)
 
 
-def _print(module: Module, framing: FramingView | None, options: COptions) -> tuple[str, str]:
-    given = {"module": module, "options": options, "framing": framing}
+def _print(
+    module: Module, framing: FramingView | None, options: COptions, fill: Fill = EVENTS
+) -> tuple[str, str]:
+    given = {"module": module, "options": options, "framing": framing, "fill": fill}
     environment = c_environment()
     return (
         wrapped(environment.get_template("header.h.j2").render(given)),

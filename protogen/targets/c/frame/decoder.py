@@ -43,6 +43,18 @@ class DecoderView(ReceivedFrame):
         return self.whole is not None and self.stuffing is None
 
     @property
+    def is_idle(self) -> str:
+        """The condition that nothing of a frame is there."""
+        if self.flat is not None:
+            found = [f"decoder->{self.flat.idle_member} == {self.flat.idle_value}U"]
+            found += ["decoder->node == 0U"] if self.stuffing else []
+        else:
+            found = [f"decoder->state == {self.protocol_upper}_SEEKING"]
+            found += ["decoder->match == 0U"] if self.push.keeps_match else []
+            found += ["decoder->count == 0U"] if self.keeps_wire else []
+        return " && ".join(found)
+
+    @property
     def only_size(self) -> int | None:
         """Size of the payload, where a flat decoder knows messages of one fixed size alone."""
         return None if self.flat is None else self.flat.only_size

@@ -66,9 +66,14 @@ class FramingView:
         return any(decoder.whole and decoder.stuffing for decoder in self.decoders)
 
     @property
+    def sums_blocks(self) -> tuple[str, ...]:
+        """The kinds of checksums that add sixteen bytes at a time."""
+        return tuple(sorted({c.kind for c in self.checksums} & {"sum", "xor"}))
+
+    @property
     def finds_high(self) -> bool:
         """True if some of these frames have bytes that carry seven bits alone."""
-        return any(d.whole and d.seven_bit and not d.stuffing for d in self.decoders)
+        return any(d.whole and d.seven_bit for d in self.decoders)
 
 
 def framing_view(

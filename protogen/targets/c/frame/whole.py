@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.frame import style
+from protogen.targets.c.frame.expressions import equals
+from protogen.targets.c.frame.groups import GroupView
+from protogen.targets.c.frame.numbers import NumberView
 from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import Code, StuffingKind
 
@@ -28,6 +31,28 @@ class WholeFrames:
         starts = set(d.literal[:1] or d.never_passed)
         taken = {branch.byte for branch in root.branches} | set(root.refused)
         return tuple(sorted(taken | starts | set(d.end[:1])))
+
+    @property
+    def by_identity(self) -> bool:
+        """True if one byte tells all of a frame but its payload, whose bytes carry seven bits."""
+        d = self.decoder
+        is_bare = (d.head_size, d.tail_size, d.end_size) == (1, 0, 0) and d.stuffing is None
+        spare = any(item.seven_bit or item.padding for item in d.head_numbers)
+        return d.all_events and is_bare and d.seven_bit and d.known_by_identity and not spare
+
+    def is_alone(self, group: GroupView) -> bool:
+        """True if an identity is that of one message with a payload of one size."""
+        return bool(group.fixed) and len(group.messages) == 1
+
+    @property
+    def sizing(self) -> NumberView:
+        """The number that tells the size of the payload, itself or as an identity."""
+        return next(n for n in self.decoder.head_numbers if n.is_length or n.identifies)
+
+    def stands(self, code: Code) -> str:
+        """The condition that the rest of a sequence stands at `from`."""
+        rest = code.sequence[1:]
+        return f"size - from >= {len(rest)}U && {equals(rest, 'data', 'from')}"
 
     def codes_from(self, byte: int) -> tuple[Code, ...]:
         """The sequences of the stuffing that begin with a byte, the longest first."""

@@ -6,17 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from protogen.capture.schema import CaptureSchema, TableSchema
-from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.emit import Unit, c_environment, texts, unit_of
 from protogen.targets.c.frame.decoder import DecoderView
-from protogen.targets.c.frame.groups import GroupView
+from protogen.targets.c.frame.fill import Fill
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
-
-_CALL = "decoder->handler(decoder->user, &event)"
-_DIRECT = "protogen_take(decoder->user, &event)"
-"""The decoder calls the driver by its name, so that the compiler can put it in its place."""
 
 _SMALL = 64
 """Clearing so many bytes costs no more than finding the few between the members."""
@@ -31,16 +26,11 @@ class _Table:
     """Else, the bytes that lie between its members."""
     loads: bool
 
-
-@dataclass(frozen=True, slots=True)
-class _Direct:
-    """A message whose frame is one byte that tells all, and a payload of 7-bit bytes."""
-
-    key: str
-    fixed: int
-    checks: str
-    number: int
-    """Of its table."""
+    @property
+    def loaded(self) -> str:
+        """Arguments of the function that reads a payload."""
+        size = ", event->payload_size" if self.view.fixed is None else ""
+        return f"&row->message, event->payload{size}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +43,11 @@ class _Spelling:
     room: str
     parts: tuple[str, ...]
 
+    @property
+    def call(self) -> str:
+        """The call that makes the frame of a row."""
+        return f"{self.function}(&row->message{_of_row(self.parts)}, frame, {self.room}, &size)"
+
 
 def rows_source(
     protocol: Protocol, sender: Sender, schema: CaptureSchema, layout: Sequence[str]
@@ -62,7 +57,12 @@ def rows_source(
     `layout` are expressions that the library tells the values of.
     """
     options = COptions(style="single", senders=(sender.name,))
-    header, source = texts(protocol, options)
+    fill = Fill(
+        deliver="protogen_take",
+        messages={name: f"protogen_fill_{i}" for i, name in enumerate(schema.messages)},
+        storage="PROTOGEN_INLINE",
+    )
+    header, source = texts(protocol, options, fill=fill)
     unit = unit_of(protocol, options)
     decoder = next(item for item in unit.framing.decoders if item.name == sender.name)
     tables = tuple(
@@ -78,15 +78,10 @@ def rows_source(
             whole=decoder.whole,
             parts=decoder.parts,
             header=header,
-            source=source.replace(_CALL, _DIRECT),
-            module=unit.module.name,
-            direct=_direct(decoder, list(schema.messages)),
-            d=decoder,
-            stuffed=_stuffed(decoder),
-            names=list(schema.messages),
+            source=source,
             tables=tables,
             spellings=spellings,
-            wrapped=_wrapped(unit, decoder) if spellings else (),
+            wrapped=_wrapped(unit, decoder) if spellings else "",
             layout=layout,
         )
     )
@@ -105,38 +100,15 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
     ]
 
 
-def _wrapped(unit: Unit, decoder: DecoderView) -> tuple[str, ...]:
-    """The parts that go into a frame beside the payload, as they follow each other in C."""
+def _wrapped(unit: Unit, decoder: DecoderView) -> str:
+    """The arguments of the parts that go into a frame beside the payload."""
     frame = next(it.frame for it in unit.framing.messages if it.frame.decoder is decoder)
-    return tuple(argument.part for argument in (*frame.identity, *frame.arguments))
+    return _of_row([argument.part for argument in (*frame.identity, *frame.arguments)])
 
 
-def _direct(decoder: DecoderView, tables: list[str]) -> list[_Direct]:
-    """The messages that the driver takes by itself: there is nothing to verify but bits."""
-    is_bare = (
-        decoder.whole
-        and decoder.stuffing is None
-        and decoder.seven_bit
-        and decoder.known_by_identity
-        and decoder.start is StartRule.SET
-        and (decoder.head_size, decoder.tail_size, decoder.end_size) == (1, 0, 0)
-        and not any(item.seven_bit or item.padding for item in decoder.head_numbers)
-    )
-    if not is_bare:
-        return []
-    return [
-        _Direct(group.key, group.fixed, group.messages[0].checks, tables.index(message.name))
-        for group in decoder.groups
-        for message in group.messages
-        if group.fixed and len(group.messages) == 1
-    ]
-
-
-def _stuffed(decoder: DecoderView) -> list[GroupView]:
-    """The messages whose frames are taken sixteen bytes at a time; the rest is the decoder's."""
-    if not decoder.whole or decoder.stuffing is None or decoder.seven_bit:
-        return []
-    return [group for group in decoder.groups if len(group.messages) == 1]
+def _of_row(parts: Sequence[str]) -> str:
+    """Arguments behind others: the values that a row has of these parts."""
+    return "".join(f", row->part_{part}" for part in parts)
 
 
 def _table(view: MessageView, table: TableSchema) -> _Table:
