@@ -49,6 +49,12 @@ def test_every_path_exists(page: str) -> None:
     assert [path for path, folder in named if not exists(path, folder)] == []
 
 
+def test_every_folder_of_the_package_has_a_row() -> None:
+    folders = {path.parent.name for path in (ROOT / "protogen").glob("*/__init__.py")}
+    rows = re.findall(r"^\| `protogen/(\w+)/`", text_of("ARCHITECTURE.md"), re.MULTILINE)
+    assert folders == set(rows)
+
+
 def test_a_path_that_is_gone_is_found() -> None:
     assert expanded("passes/{names,proofs}/") == ["passes/names/", "passes/proofs/"]
     assert exists("machine.py", "protogen/runtime/")
