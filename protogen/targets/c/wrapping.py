@@ -12,7 +12,7 @@ _OPENING, _CLOSING = "([{", ")]}"
 _HEAD = re.compile(r"(?P<function>\w[\w *]*)\((?P<arguments>[^()]+)\)(?P<end>;| \{)$")
 """The head of a function without functions among its arguments."""
 _VALUE = re.compile(r"\s*(?:return |[^=(]* = )?")
-"""What stands in front of a value outside of brackets."""
+"""Text in front of a value outside of brackets."""
 
 
 _OPERATOR = re.compile(r"(?:&&| \||\|\|)$")

@@ -23,18 +23,18 @@ class DecoderView(ReceivedFrame):
 
     @cached_property
     def flat(self) -> FlatDecoder | None:
-        """What a flat decoder is made of, if this is one."""
+        """View of a flat decoder, if this is one."""
         is_flat = decoder_style(self.plan, self.events) is DecoderStyle.FLAT
         return FlatDecoder(self) if is_flat else None
 
     @cached_property
     def push(self) -> PushDecoder:
-        """What a decoder with states is made of."""
+        """View of a decoder with states."""
         return PushDecoder(self)
 
     @cached_property
     def whole(self) -> WholeFrames | None:
-        """How `feed` takes a frame at once, if it can."""
+        """View of how `feed` takes a frame at once, if it can."""
         return whole_frames(self)
 
     @property

@@ -34,7 +34,7 @@ class Index:
 
 
 def less_absent(place: Place, payload: str) -> str:
-    """What is taken off an offset of the tail where the payload is empty, with its sign."""
+    """Bytes taken off an offset of the tail where the payload is empty, with its sign."""
     if place.side is Side.HEAD or not place.absent:
         return ""
     return f" - ({payload} == 0U ? {place.absent}U : 0U)"

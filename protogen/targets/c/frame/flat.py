@@ -16,7 +16,7 @@ from protogen.targets.c.frame.stuffing import Branch, Node
 
 @dataclass(frozen=True)
 class FlatDecoder:
-    """What only a flat decoder is made of."""
+    """Counters and conditions of a flat decoder."""
 
     decoder: ReceivedFrame
 
@@ -57,7 +57,7 @@ class FlatDecoder:
 
     @property
     def idle_value(self) -> int:
-        """What that counter is then: nothing, or more than there is room for.
+        """Value of that counter then: nothing, or more than there is room for.
 
         A frame that is complete but for its end has no room either, which is the same test.
         """

@@ -9,7 +9,7 @@ from protogen.targets.c.frame.expressions import byte
 
 @dataclass(frozen=True, slots=True)
 class FollowStep:
-    """How much of a literal the input ends with, behind one byte."""
+    """Bytes of a literal that the input ends with, behind one byte."""
 
     byte: str
     matched: int

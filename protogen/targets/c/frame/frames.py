@@ -39,7 +39,7 @@ class Argument:
 
     name: str
     part: str
-    """What the schema calls it."""
+    """Name in the schema."""
     type: str
     doc: str
     refused: str
@@ -56,24 +56,24 @@ class ByteStore:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What fills one part of the content."""
+    """Stores that fill one part of the content."""
 
     in_head: bool
     stores: tuple[ByteStore, ...]
     checksum: ChecksumView | None = None
     flags: int | None = None
-    """What a writer does with its bytes, where that is not what it did with those before."""
+    """Flags of the writer for its bytes, where they differ from those before."""
 
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """What is sent byte by byte in front of the payload, or behind it."""
+    """Parts that are sent byte by byte in front of the payload, or behind it."""
 
     name: str
     steps: tuple[Step, ...]
     end: bytes = b""
     flags: int | None = None
-    """What a writer does with the payload's bytes, where that changes."""
+    """Flags of the writer for the payload's bytes, where they change."""
 
     @property
     def is_empty(self) -> bool:
@@ -279,7 +279,7 @@ class FrameView:
 
     @cached_property
     def halves(self) -> tuple[Half, ...]:
-        """What is sent in front of the payload and behind it."""
+        """Parts that are sent in front of the payload, and those behind it."""
         steps: list[Step] = []
         payload_flags: int | None = None
         before = 0
@@ -328,11 +328,11 @@ _WORDS = (
     "put result size sum tail to user wire writer"
 )
 _LOCAL = frozenset(_WORDS.split())
-"""What the functions call their own variables."""
+"""Names of the functions' own variables."""
 
 
 def argument_name(part: str) -> str:
-    """What the functions call a part that the caller gives."""
+    """Name of the argument for a part that the caller gives."""
     return f"{part}_part" if part in _LOCAL else part
 
 

@@ -13,7 +13,7 @@ from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 @dataclass(frozen=True, slots=True)
 class ReceivedMessage:
-    """How a receiver tells a message, and whether a payload is its."""
+    """A message as a receiver tells it, and the payloads that it can have."""
 
     name: str
     constant: str

@@ -21,7 +21,7 @@ class Handler:
 
     @property
     def arguments(self) -> tuple[str, ...]:
-        """What it is called with."""
+        """Parameters of the function."""
         return ("void *user", f"const {self.message.struct} *message", f"const {self.parts} *parts")
 
 

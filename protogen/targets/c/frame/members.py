@@ -62,7 +62,7 @@ class Member:
 
     @property
     def about(self) -> str:
-        """What it holds, for its reader."""
+        """Description of what it holds."""
         return _ABOUT[self.name]
 
     @property

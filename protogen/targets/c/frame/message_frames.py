@@ -22,7 +22,7 @@ class MessageFrame:
     decoder: DecoderView
     """That of a sender of the message."""
     suffix: str
-    """What tells these functions from those for other senders."""
+    """Suffix that tells these functions from those for other senders."""
     greatest_frame: int
     greatest_payload: int
     """The greatest payload that a frame can carry."""
@@ -47,7 +47,7 @@ class MessageFrame:
 
     @property
     def upper(self) -> str:
-        """What its macros begin with."""
+        """Prefix of its macros."""
         return f"{self.view.upper}{self.suffix.upper()}"
 
     @property
@@ -147,11 +147,11 @@ class MessageFrame:
 
     @property
     def frame_arguments(self) -> tuple[str, ...]:
-        """What the function that fills a buffer takes."""
+        """Parameters of the function that fills a buffer."""
         return (*self._given(), "uint8_t *frame", "size_t capacity", "size_t *size")
 
     def send_arguments(self, put: str) -> tuple[str, ...]:
-        """What the function that sends takes."""
+        """Parameters of the function that sends."""
         return (*self._given(), f"{put} put", "void *user")
 
     def _given(self) -> tuple[str, ...]:

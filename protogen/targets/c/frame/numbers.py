@@ -23,7 +23,7 @@ class NumberView:
     seven_bit: tuple[int, ...]
     """Offsets of its bytes, where their most significant bit has to be clear."""
     padding: str
-    """What has to be zero; empty where all bits belong to the number."""
+    """Bits that have to be zero; empty where all belong to the number."""
     is_length: bool
     identifies: bool
     """True if it is the identity's last part, and the identity tells the payload's size."""

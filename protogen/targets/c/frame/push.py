@@ -15,7 +15,7 @@ from protogen.targets.c.frame.stuffing import StuffingKind
 
 @dataclass(frozen=True)
 class PushDecoder(PushStates):
-    """What only a decoder with states is made of."""
+    """Members and conditions of a decoder with states."""
 
     # --- sizes ------------------------------------------------------------------------------------
 
@@ -299,7 +299,7 @@ class PushDecoder(PushStates):
     # --- start and end ----------------------------------------------------------------------------
 
     def follow(self, at: str) -> str:
-        """How much of the tracked literal the input ends with behind a byte."""
+        """Bytes of the tracked literal that the input ends with behind a byte."""
         d = self.decoder
         if len(self.matches) == 1:
             return f"({at} == {byte(self.matches[0])}) ? (uint8_t)1U : (uint8_t)0U"
@@ -372,7 +372,7 @@ class PushDecoder(PushStates):
 
     @property
     def search(self) -> str:
-        """What looks at a byte inside a candidate: the search, or none."""
+        """Call that looks at a byte inside a candidate: the search, or none."""
         d = self.decoder
         passed, sought = f"{d.prefix}_pass(decoder, byte)", f"{d.prefix}_search(decoder, byte)"
         if not self.searches:

@@ -40,17 +40,17 @@ class ReceivedFrame:
 
     @property
     def prefix(self) -> str:
-        """What its functions and types begin with."""
+        """Prefix of its functions and types."""
         return f"{self.protocol}_{self.name}"
 
     @property
     def upper(self) -> str:
-        """What its macros begin with."""
+        """Prefix of its macros."""
         return self.prefix.upper()
 
     @property
     def protocol_upper(self) -> str:
-        """What the protocol's macros begin with."""
+        """Prefix of the protocol's macros."""
         return self.protocol.upper()
 
     # --- styles -----------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ class ReceivedFrame:
 
     @property
     def unlimited(self) -> str:
-        """What bounds a payload or all content while its size is unknown: the room for it."""
+        """Bound of a payload or all content while its size is unknown: the room for it."""
         size = self.greatest if self.keeps_both else self.buffer_size
         return f"{size - self.around if self.simple else size}U"
 
@@ -138,7 +138,7 @@ class ReceivedFrame:
 
     @property
     def start(self) -> StartRule:
-        """What marks the start of a frame."""
+        """Rule that marks the start of a frame."""
         return self.plan.start
 
     @property
@@ -201,7 +201,7 @@ class ReceivedFrame:
 
     @cached_property
     def stuffing(self) -> Stuffing | None:
-        """How the region is stuffed."""
+        """Encoding of the stuffed region."""
         return stuffing_of(self.plan.region)
 
     @cached_property

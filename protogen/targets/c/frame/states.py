@@ -11,7 +11,7 @@ from protogen.targets.c.frame.received import ReceivedFrame
 
 @dataclass(frozen=True)
 class PushStates:
-    """What a decoder with states remembers."""
+    """Members of a decoder with states."""
 
     decoder: ReceivedFrame
 

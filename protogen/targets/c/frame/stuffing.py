@@ -11,7 +11,7 @@ from protogen.targets.c.frame.expressions import byte
 
 
 class StuffingKind(Enum):
-    """How a region is taken off the wire. A template is named after each."""
+    """Ways to take a region off the wire. A template is named after each."""
 
     CODES = auto()
     """A sequence for each byte that does not stand for itself, and no other sequences."""
@@ -38,13 +38,13 @@ class Code:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """What a byte does behind the sequence's beginning that was taken so far."""
+    """Effect of a byte behind the beginning of a sequence."""
 
     byte: int
     node: int | None
     """The node it leads to; None where the sequence is complete."""
     value: int
-    """What a complete sequence stands for."""
+    """Byte that a complete sequence stands for."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from protogen.targets.c.options import Events
 
 
 class DecoderStyle(Enum):
-    """How a decoder is printed."""
+    """Shape in which a decoder is printed."""
 
     PUSH = auto()
     """A machine with states, which calls a handler: any frame, any events."""

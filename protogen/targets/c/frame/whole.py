@@ -18,7 +18,7 @@ _MOST_SPECIALS = 5
 
 @dataclass(frozen=True)
 class WholeFrames:
-    """What is printed where a frame is taken at once."""
+    """View of a decoder that takes a frame at once."""
 
     decoder: ReceivedFrame
 
