@@ -52,11 +52,6 @@ def code_size(frame: Frame) -> int:
     return int(frame.transparency is not None and isinstance(frame.transparency.encoding, Cobs))
 
 
-def fixed_size(part: Part) -> int:
-    """Bytes of a part before stuffing; 0 for the payload."""
-    return part.size
-
-
 def unstuff(frame: Frame, data: bytes) -> Wire:
     """Take the frame `data` apart into units."""
     if frame.transparency is None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from contextlib import nullcontext
 
 from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
+from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python import frames as tables
-from protogen.targets.python.engine.frames import FastFrame, Kin
+from protogen.targets.python.engine.frames import FastFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.place import Place
@@ -57,37 +58,38 @@ def kinds(frame: FastFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    entries = [_kind(frame, kin) for kin in frame.kins]
+    entries = [_kind(frame, group) for group in frame.groups]
     lines = [
-        f"    {identity_key(kin.identity)}: {entry}," for kin, entry in entries_of(frame, entries)
+        f"    {identity_key(group.identity)}: {entry},"
+        for group, entry in entries_of(frame, entries)
     ]
     return "\n".join(["{", *lines, "}"])
 
 
-def entries_of(frame: FastFrame, entries: list[str | None]) -> list[tuple[Kin, str]]:
+def entries_of(frame: FastFrame, entries: list[str | None]) -> list[tuple[IdentityGroup, str]]:
     """The identities that have an entry."""
-    pairs = zip(frame.kins, entries, strict=True)
-    return [(kin, entry) for kin, entry in pairs if entry is not None]
+    pairs = zip(frame.groups, entries, strict=True)
+    return [(group, entry) for group, entry in pairs if entry is not None]
 
 
-def _kind(frame: FastFrame, kin: Kin) -> str | None:
-    reader = reader_of(frame, kin)
+def _kind(frame: FastFrame, group: IdentityGroup) -> str | None:
+    reader = reader_of(frame, group)
     if frame.length is not None:
         return reader
-    size = ~kin.greatest if kin.fixed is None else kin.fixed
+    size = ~group.greatest if group.fixed is None else group.fixed
     if frame.lists_frame_sizes:
         size += frame.head_size + frame.tail_size + len(frame.end)
-    if frame.ended_by == "kind" and frame.shows_identity:
-        return f"({size}, {reader}, {tuple_of(map(str, kin.identity))})"
+    if frame.ended_by is EndRule.IDENTITY and frame.shows_identity:
+        return f"({size}, {reader}, {tuple_of(map(str, group.identity))})"
     return f"({size}, {reader})"
 
 
-def reader_of(frame: FastFrame, kin: Kin) -> str:
+def reader_of(frame: FastFrame, group: IdentityGroup) -> str:
     """The name of the function that reads an identity's payloads."""
-    if len(kin.messages) == 1:
-        return f"_read_{kin.messages[0].name}"
+    if len(group.messages) == 1:
+        return f"_read_{group.messages[0].name}"
     # Begun in another way than those of messages: one of them may be called `host_77`.
-    return f"_choose_{frame.sender.name}_{'_'.join(map(str, kin.identity))}"
+    return f"_choose_{frame.sender.name}_{'_'.join(map(str, group.identity))}"
 
 
 def identity_key(identity: tuple[int, ...]) -> str:
@@ -127,7 +129,7 @@ class _Cutter(FrameFunction):
             self.lines.add("unchecked: list[bytes] = []")
             self.lines.add(f"together = {_FIRST}")
             self.lines.add(f"are_many = size - at > {_MANY}")
-        if self.frame.ended_by == "start":
+        if self.frame.ended_by is EndRule.NEXT_START:
             # Behind a frame that ends where the next start is, that needs not be checked again.
             with self.lines.block("try:"):
                 self._start()
@@ -136,7 +138,7 @@ class _Cutter(FrameFunction):
         with self.lines.block("try:"), self.lines.block("while at < size:"):
             if self._deferred is not None:
                 self.stop = "break"
-            if self.frame.ended_by != "start":
+            if self.frame.ended_by is not EndRule.NEXT_START:
                 self._start()
             self._frame()
             self._event()
@@ -212,18 +214,18 @@ class _Cutter(FrameFunction):
     def _locate(self) -> None:
         """Set `raw`, the frame's bytes, and `end`, the place behind them."""
         match self.frame.ended_by:
-            case "start":
+            case EndRule.NEXT_START:
                 self._until_start()
-            case "end":
+            case EndRule.DELIMITER:
                 self._until_end()
-            case "length":
+            case EndRule.LENGTH:
                 self._by_length()
-            case "kind":
+            case EndRule.IDENTITY:
                 self._by_kind()
 
     def _start(self) -> None:
         start = self.frame.start
-        if isinstance(start, AfterEnd) and self.frame.ended_by != "end":
+        if isinstance(start, AfterEnd) and self.frame.ended_by is not EndRule.DELIMITER:
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
             self._stop_if(f"data.startswith({literal(self.frame.end)}{self._from})")
         elif isinstance(start, StartSet) and not self._identity_starts:
@@ -241,7 +243,9 @@ class _Cutter(FrameFunction):
     @property
     def _identity_starts(self) -> bool:
         """Whether the first byte is the identity's, which is looked up to find the end."""
-        return self.frame.ended_by == "kind" and self.frame.parts[0] in self.frame.identity
+        return (
+            self.frame.ended_by is EndRule.IDENTITY and self.frame.parts[0] in self.frame.identity
+        )
 
     @property
     def _from(self) -> str:
@@ -308,18 +312,18 @@ class _Cutter(FrameFunction):
         return plain and is_seen and bare <= frame.framing.greatest
 
     def _not_too_long(self) -> None:
-        if self._bound and self.frame.ended_by == "end" and not self.frame.shares:
+        if self._bound and self.frame.ended_by is EndRule.DELIMITER and not self.frame.shares:
             return  # Its end would not have been found.
         size = f"len({self.raw})"
         if self.frame.shares:
             size += f" + {len(self.frame.start_bytes)}"
-        open_kinds = any(kin.fixed is None for kin in self.frame.kins)
-        if self.frame.ended_by != "kind" or open_kinds:
+        open_groups = any(group.fixed is None for group in self.frame.groups)
+        if self.frame.ended_by is not EndRule.IDENTITY or open_groups:
             self._stop_if(f"{size} > {self.frame.framing.greatest}")
 
     def _take(self) -> None:
         """Take the frame's bytes, now that its end is known."""
-        if self.frame.ended_by in ("length", "kind"):
+        if self.frame.ended_by in (EndRule.LENGTH, EndRule.IDENTITY):
             self._stop_if("end > size")
         self.lines.add("raw = data[at:end]")
 
@@ -352,13 +356,13 @@ class _Cutter(FrameFunction):
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
         key = self.identity("data", self.at)
-        varies = self.frame.has_open_kinds or self.frame.optional
+        varies = self.frame.has_open_groups or self.frame.optional
         found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
             found += f", {self.numbers}"
         self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
-        open_kinds = frame.has_open_kinds
-        if open_kinds and frame.end:
+        open_groups = frame.has_open_groups
+        if open_groups and frame.end:
             with self.lines.block("if payload_size < 0:"):
                 behind = self._place(frame.head_size)
                 self.lines.add(f"end = data.find({literal(frame.end)}, {behind}{self._bound})")
@@ -371,10 +375,10 @@ class _Cutter(FrameFunction):
                 with self.lines.block("else:"):
                     self.lines.add(f"end = {self._place(around - self.optional_size)}")
         else:
-            if open_kinds:
+            if open_groups:
                 self._stop_if("payload_size < 0")
             less = f" - {self.optional_size} * (not payload_size)" if frame.optional else ""
-            if less or open_kinds:
+            if less or open_groups:
                 self.lines.add(f"end = {self._place(around)} + payload_size{less}")
             else:
                 self.lines.add("end = at + frame_size" if self.at else "end = frame_size")
@@ -471,7 +475,7 @@ class _Cutter(FrameFunction):
                 self._stop_if(f"len(payload) > {frame.framing.payload.greatest}")
                 self._optional_length(frame.length)
         else:
-            if frame.ended_by in ("end", "start"):
+            if frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START):
                 self._stop_if(f"len({self.content}) < {max(around, 1)}")
             if not frame.gives_content:
                 self.lines.add(sliced)
@@ -487,7 +491,9 @@ class _Cutter(FrameFunction):
         """A length in bounds that is right tells that all other parts are there."""
         counted, number = self.counted(part), self.number(self.content, part)
         behind = self.frame.offset(part) + part.type.size
-        if part.type.size > 1 and (around < behind or self.frame.ended_by in ("end", "start")):
+        if part.type.size > 1 and (
+            around < behind or self.frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START)
+        ):
             self._stop_if(f"len({self.content}) < {behind}")
         self.lines.add(f"length = {number}")
         rest = around - counted
@@ -502,7 +508,7 @@ class _Cutter(FrameFunction):
 
     def _counted_optional(self, length: LengthPart) -> int:
         """What the length counts less where the payload is empty."""
-        return self.frame.counted_optional(length)
+        return self.frame.length_plan.optional
 
     def _optional_length(self, part: LengthPart) -> None:
         counted, number = self.counted(part), self.number(self.content, part)
@@ -616,7 +622,7 @@ class _Cutter(FrameFunction):
     def _numbers(self) -> None:
         """Set `numbers`, and `read` unless the place of the end has told it."""
         frame = self.frame
-        if frame.ended_by == "kind":
+        if frame.ended_by is EndRule.IDENTITY:
             if not frame.shows_identity:
                 numbers = (self.number(self.content, part) for part in frame.shown)
                 self.lines.add(f"numbers = {tuple_of(numbers)}")
@@ -677,13 +683,13 @@ class _Decoder(_Cutter):
 
     def _numbers(self) -> None:
         frame = self.frame
-        if frame.ended_by != "kind" and frame.remembered is not None:
+        if frame.ended_by is not EndRule.IDENTITY and frame.remembered is not None:
             self._known_head(*frame.remembered)
             return
         for part in frame.shown:
             if part not in frame.identity and self.has_padding(part.type):
                 self.lines.add(self.number(self.content, part))
-        if frame.ended_by != "kind":
+        if frame.ended_by is not EndRule.IDENTITY:
             self._look_up([self.number(self.content, part) for part in frame.identity])
 
     def _compare_xor(self, first: int) -> None:
@@ -705,7 +711,7 @@ class _Decoder(_Cutter):
         self._raw()
 
     def _take(self) -> None:
-        if self.frame.ended_by != "start":
+        if self.frame.ended_by is not EndRule.NEXT_START:
             self._stop_if("end != len(data)")
 
     def _unknown(self) -> None:

@@ -2,55 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
     Cobs,
-    CounterPart,
     Escape,
-    IdentityPart,
-    LengthPart,
     LiteralPart,
+    NumberPart,
     Part,
     PayloadPart,
     Substitution,
-    ValuePart,
 )
-from protogen.model.framing import AfterEnd, Anywhere, StartLiteral, StartSet
+from protogen.model.frame_plan import EndRule, LengthPlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
-from protogen.model.wire import fixed_size
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order
 from protogen.targets.python.literals import octets_in_class
 
-EndedBy = Literal["end", "start", "length", "kind"]
-"""What tells where a frame ends: an end that is looked for, the next start, a length, or the
-identity."""
-
 _MOST_SPECIALS = 4
-
-
-@dataclass(frozen=True, slots=True)
-class Kin:
-    """The messages that a receiver may find behind one identity."""
-
-    identity: tuple[int, ...]
-    messages: tuple[Message, ...]
-
-    @property
-    def fixed(self) -> int | None:
-        """The payload's size, where no message has another one."""
-        sizes = {message.sizes.fixed for message in self.messages}
-        return sizes.pop() if len(sizes) == 1 else None
-
-    @property
-    def greatest(self) -> int:
-        """The greatest payload of these messages."""
-        return max(message.sizes.greatest for message in self.messages)
 
 
 class FastFrame:
@@ -58,57 +28,45 @@ class FastFrame:
 
     def __init__(self, sender: Sender, *, skips_start: bool = False) -> None:
         """With `skips_start` the content begins behind literals in front of what is stuffed."""
+        plan = sender.plan
+        region = plan.region
         self.sender = sender
+        self.plan = plan
         self.framing = sender.framing
-        frame = sender.frame
         self.start = self.framing.start
-        self.end = b"" if self.framing.end is None else self.framing.end.bytes
-        self.parts = _without_end(frame.parts, len(self.end))
-        index = next(i for i, part in enumerate(self.parts) if isinstance(part, PayloadPart))
-        self.head, self.tail = self.parts[:index], self.parts[index + 1 :]
-        self.head_size = sum(map(fixed_size, self.head))
-        self.tail_size = sum(map(fixed_size, self.tail))
-        self.length = frame.length
-        self.checksums = frame.checksums
-        self.identity = frame.identity
-        self.shown = tuple(
-            part for part in self.parts if isinstance(part, IdentityPart | CounterPart | ValuePart)
-        )
-        self.kins = _kins(sender)
-        self.before, self.stuffed, self.behind = self._regions()
+        self.start_bytes = plan.start_bytes
+        self.end = plan.end_bytes
+        self.head = tuple(item.part for item in plan.head)
+        self.tail = tuple(item.part for item in plan.tail)
+        self.parts = (*self.head, plan.payload_part, *self.tail)
+        self.head_size = plan.head_size
+        self.tail_size = plan.tail_size
+        self.length = None if plan.length is None else plan.length.part
+        self.checksums = sender.frame.checksums
+        self.identity = plan.identity
+        self.shown = tuple(i.part for i in plan.shown if isinstance(i.part, NumberPart))
+        self.groups = plan.groups
+        self.stuffed = region is not None
+        self.before = 0 if region is None else region.before
+        self.behind = 0 if region is None else region.behind
         self.skipped = self._literals_in_front if skips_start else 0
         """Bytes at the start of a frame that are not in the content."""
         self.gives_content = False
-        """Whether readers are given the whole content of a frame, and not its payload alone."""
+        """True if readers are given the whole content of a frame, and not its payload alone."""
 
     @property
     def _literals_in_front(self) -> int:
-        """The bytes in front of what is stuffed, if they are all literals; else 0."""
-        transparency = self.sender.frame.transparency
-        if transparency is None:
+        """Bytes in front of the stuffed region, if they are all literals; else 0."""
+        region = self.plan.region
+        if region is None:
             return len(self.start_bytes) if self.shares else 0
-        names = [part.name for part in self.parts]
-        front = self.parts[: names.index(transparency.first)]
-        return self.before if all(isinstance(part, LiteralPart) for part in front) else 0
-
-    def _regions(self) -> tuple[int, bool, int]:
-        """Bytes in front of what is stuffed, whether anything is, and bytes behind it."""
-        covered = self._covered_by_stuffing
-        if not covered:
-            return 0, False, 0
-        before = sum(map(fixed_size, self.parts[: covered.start]))
-        return before, True, sum(map(fixed_size, self.parts[covered.stop :]))
+        return region.before if region.literals_in_front else 0
 
     @property
-    def _covered_by_stuffing(self) -> range:
-        """The places of the parts that are stuffed; none where nothing is."""
-        transparency = self.sender.frame.transparency
-        if transparency is None:
-            return range(0)
-        names = [part.name for part in self.parts]
-        first = names.index(transparency.first)
-        last = names.index(transparency.last) if transparency.last in names else len(names) - 1
-        return range(first, last + 1)
+    def length_plan(self) -> LengthPlan:
+        """What the length part counts; only for frames that have one."""
+        assert self.plan.length is not None
+        return self.plan.length
 
     def sends(self, message: Message) -> bool:
         """Whether the sender sends the message."""
@@ -117,56 +75,20 @@ class FastFrame:
     # --- what can be cut --------------------------------------------------------------------------
 
     @property
-    def ended_by(self) -> EndedBy | None:
-        """What tells where a frame ends; None where only the reference can."""
-        protected_end = self.framing.end is not None and self.framing.end.protected
-        protected_start = isinstance(self.start, StartLiteral | StartSet) and self.start.protected
-        if self.stuffed:
-            if protected_end:
-                return "end"
-            return "start" if protected_start and not self.end else None
-        if protected_end:
-            return "end"
-        if self.length is not None:
-            return "length"
-        return "kind" if self.identity else None
+    def ended_by(self) -> EndRule:
+        """What tells where a frame ends."""
+        return self.plan.end_rule
 
     @property
     def can_cut(self) -> bool:
-        """Whether there is a function that cuts frames; else the reference does it alone."""
-        return (
-            self.ended_by is not None
-            and not isinstance(self.start, Anywhere)
-            and all(part in self.head for part in self.identity)
-            and (self.length is None or self.length in self.head)
-            and all(isinstance(part, ChecksumPart) for part in self.tail)
-            and not any(part.over_wire for part in self.checksums if self.stuffed)
-            and self._checksums_are_alike
-            and not (self.optional and any(part in self.head for part in self.checksums))
-            and not (self.optional and self.behind and self.before < self.head_size)
-            and self._region_is_plain
-            and (not self.shares or self._shares_plainly)
-        )
-
-    @property
-    def _shares_plainly(self) -> bool:
-        """Whether a frame with a shared delimiter is all that is between two of them."""
-        alone = self._literals_in_front == len(self.start_bytes)
-        return alone and self.ended_by == "end"
-
-    @property
-    def _region_is_plain(self) -> bool:
-        """Whether the payload is in what is stuffed, if anything is, and the start is not."""
-        if not self.stuffed:
-            return True
-        starts_in_front = isinstance(self.start, AfterEnd) or self.before > 0
-        return starts_in_front and len(self.head) in self._covered_by_stuffing
+        """True if there is a function that cuts frames; else the reference does it alone."""
+        return self.plan.takes_whole
 
     @property
     def can_wait(self) -> bool:
         """Whether there is a function that tells plain beginnings of frames."""
-        transparency = self.sender.frame.transparency
-        encoding = None if transparency is None else transparency.encoding
+        region = self.plan.region
+        encoding = None if region is None else region.encoding
         return (
             self.can_cut
             and not self.shares
@@ -176,19 +98,13 @@ class FastFrame:
 
     @property
     def can_frame(self) -> bool:
-        """Whether there is a function that makes frames; else the reference does it alone."""
+        """True if there is a function that makes frames; else the reference does it alone."""
         return (
-            (self.can_cut or not self.framing.cut_ambiguous)
+            (self.plan.takes_whole or not self.plan.cut_ambiguous)
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
-            and self._checksums_are_alike
-            and self._region_is_plain
+            and self.plan.is_regular
         )
-
-    @property
-    def _checksums_are_alike(self) -> bool:
-        """Whether all of them are absent where the payload is empty, or none is."""
-        return len({part.when_payload for part in self.checksums}) < 2
 
     @property
     def optional(self) -> bool:
@@ -198,37 +114,26 @@ class FastFrame:
     @property
     def optional_size(self) -> int:
         """Bytes that are absent where the payload is empty."""
-        return sum(fixed_size(part) for part in self.checksums if part.when_payload)
-
-    def counted(self, part: LengthPart) -> int:
-        """What the length counts besides the payload."""
-        return sum(
-            fixed_size(other) for other in self.sender.frame.parts if other.name in part.counts
-        )
-
-    def counted_optional(self, length: LengthPart) -> int:
-        """What the length counts less where the payload is empty."""
-        absent = (part for part in self.checksums if part.when_payload)
-        return sum(fixed_size(part) for part in absent if part.name in length.counts)
+        return self.plan.optional_size
 
     @property
     def shares(self) -> bool:
-        """Whether the end of a frame may be the start of the next as well."""
-        return isinstance(self.start, StartLiteral) and self.start.bytes == self.end
+        """True if the end of a frame may be the start of the next as well."""
+        return self.plan.shares_delimiter
 
     @property
     def _are_all_open(self) -> bool:
-        return all(kin.fixed is None for kin in self.kins)
+        return all(group.fixed is None for group in self.groups)
 
     @property
-    def has_open_kinds(self) -> bool:
-        """Whether the payloads of some identity vary in size."""
-        return any(kin.fixed is None for kin in self.kins)
+    def has_open_groups(self) -> bool:
+        """True if the payloads of some identity vary in size."""
+        return self.plan.has_open_groups
 
     @property
     def lists_frame_sizes(self) -> bool:
         """Whether the table of identities has sizes of whole frames, and not of payloads."""
-        return self.ended_by == "kind" and not self.has_open_kinds and not self.optional
+        return self.ended_by is EndRule.IDENTITY and not self.has_open_groups and not self.optional
 
     @property
     def remembered(self) -> tuple[int, int] | None:
@@ -237,10 +142,10 @@ class FastFrame:
         None where a stream repeats these bytes too seldom for remembering what they mean.
         """
         others = [part for part in self.shown if part not in self.identity]
-        if not self.shown or sum(map(fixed_size, others)) > 1:
+        if not self.shown or sum(part.size for part in others) > 1:
             return None
         first = min(map(self.offset, self.shown))
-        last = max(self.offset(part) + fixed_size(part) for part in self.shown)
+        last = max(self.offset(part) + part.size for part in self.shown)
         between = [part for part in self.head if first <= self.offset(part) < last]
         plain = not any(isinstance(part, ChecksumPart) for part in between)
         return (first, last) if plain else None
@@ -256,11 +161,13 @@ class FastFrame:
         if not self.can_cut or self.replacements is None or specials is None:
             return False
         start, end = self.start_bytes, self.end
-        if self.ended_by == "start":
+        if self.ended_by is EndRule.NEXT_START:
             shows = len(start) == 1
         else:
             shows = (
-                self.ended_by == "end" and start[:1] != b"" and {start[0], end[0]} <= {*specials}
+                self.ended_by is EndRule.DELIMITER
+                and start[:1] != b""
+                and {start[0], end[0]} <= {*specials}
             )
         return (
             shows
@@ -283,24 +190,19 @@ class FastFrame:
         """
         if self.optional or self.framing.seven_bit:
             return None
-        if self.length is None and self.ended_by != "kind":
+        if self.length is None and self.ended_by is not EndRule.IDENTITY:
             return None
         return self.head_size - self.skipped, self.tail_size
 
     @property
     def can_decode(self) -> bool:
         """Whether there is a function that takes a frame by itself."""
-        return self.can_cut and (self.ended_by != "start" or self.length is not None)
+        return self.can_cut and (self.ended_by is not EndRule.NEXT_START or self.length is not None)
 
     @property
     def shows_identity(self) -> bool:
         """Whether events show the identity and no other part."""
         return self.shown == self.identity
-
-    @property
-    def start_bytes(self) -> bytes:
-        """The start literal; empty where there is none."""
-        return self.start.bytes if isinstance(self.start, StartLiteral) else b""
 
     # --- stuffing ---------------------------------------------------------------------------------
 
@@ -310,14 +212,10 @@ class FastFrame:
 
         None where there is none, and where a byte begins codes but has none itself.
         """
-        transparency = self.sender.frame.transparency
-        match None if transparency is None else transparency.encoding:
-            case Substitution(table=listed):
-                table = {bytes((byte,)): code for byte, code in listed}
-            case Escape(byte=byte, of=of, xor=xor):
-                table = {bytes((member,)): bytes((byte, member ^ xor)) for member in of}
-            case _:
-                return None
+        region = self.plan.region
+        if region is None or not region.codes:
+            return None
+        table = {bytes((byte,)): code for byte, code in region.codes}
         if any(code[:1] not in table for code in table.values()):
             return None
         return replacing_order(table)
@@ -335,7 +233,7 @@ class FastFrame:
                 found = {byte, *of}
             case Base16() | Cobs() | None:
                 return None
-        if not sending and self.ended_by == "start" and len(self.start_bytes) == 1:
+        if not sending and self.ended_by is EndRule.NEXT_START and len(self.start_bytes) == 1:
             found -= set(self.start_bytes)
         return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
 
@@ -344,8 +242,8 @@ class FastFrame:
     def offset(self, part: Part) -> int:
         """Where a part of the head begins in the content, and one of the tail, from its end."""
         if part in self.head:
-            return sum(map(fixed_size, self.head[: self.head.index(part)])) - self.skipped
-        return -sum(map(fixed_size, self.tail[self.tail.index(part) :]))
+            return self.plan.part(part.name).offset - self.skipped
+        return self.plan.part(part.name).offset - self.tail_size
 
     def slice_of(self, content: str, first: int, last: int) -> str:
         """Bytes of the content; a `last` of 0 is its end, negative numbers count from there."""
@@ -398,33 +296,9 @@ class FastFrame:
         if isinstance(part, PayloadPart):
             return self.head_size - self.skipped, -self.tail_size
         first = self.offset(part)
-        return first, first + fixed_size(part)
+        return first, first + part.size
 
 
 def _moved(bound: int, missing: int) -> int:
     """A place counted from the content's end, where the last `missing` bytes are not there."""
     return bound + missing if bound < 0 else bound
-
-
-def _without_end(parts: tuple[Part, ...], left: int) -> tuple[Part, ...]:
-    """The parts without the literals that make up the end."""
-    count = len(parts)
-    while left > 0 and isinstance(part := parts[count - 1], LiteralPart):
-        left -= len(part.bytes)
-        count -= 1
-    return parts[:count]
-
-
-def _kins(sender: Sender) -> tuple[Kin, ...]:
-    hidden = {
-        name
-        for overload in sender.overloads
-        if overload.yields is not None
-        for name in overload.messages
-        if name != overload.yields
-    }
-    found: dict[tuple[int, ...], list[Message]] = {}
-    for message in sender.messages:
-        if message.name not in hidden:
-            found.setdefault(message.identity, []).append(message)
-    return tuple(Kin(identity, tuple(messages)) for identity, messages in found.items())

@@ -17,7 +17,6 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
-from protogen.model.wire import fixed_size
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.cutting import FOLDED, checksum, folded
 from protogen.targets.python.engine.frames import FastFrame
@@ -184,12 +183,8 @@ class _Framer:
         return all(message.sizes.greatest <= greatest for message in self.frame.sender.messages)
 
     def _counted(self, part: LengthPart, bare: bool) -> int:
-        return sum(
-            fixed_size(other)
-            for other in self.frame.sender.frame.parts
-            if other.name in part.counts
-            and not (bare and isinstance(other, ChecksumPart) and other.when_payload)
-        )
+        plan = self.frame.length_plan
+        return plan.base + (0 if bare else plan.optional)
 
     # --- parts in wire order ----------------------------------------------------------------------
 

@@ -45,7 +45,7 @@ class FrameFunction:
 
     def counted(self, part: LengthPart) -> int:
         """What the length counts besides the payload."""
-        return self.frame.counted(part)
+        return self.frame.length_plan.base + self.frame.length_plan.optional
 
     def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
         """The value of a part of the head, in the content or, with a base, in the data.

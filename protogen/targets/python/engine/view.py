@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.targets.python.engine import cutting, framing, waiting
-from protogen.targets.python.engine.frames import FastFrame, Kin
+from protogen.targets.python.engine.frames import FastFrame
 from protogen.targets.python.engine.layout import outer_names
 from protogen.targets.python.engine.lines import Constants
 from protogen.targets.python.engine.reading import message_reader, struct_reader
@@ -219,19 +220,19 @@ def _overloads(frame: FastFrame) -> list[Function]:
     """Readers of identities that several messages share."""
     if not frame.can_cut:
         return []
-    return [_overload(frame, kin) for kin in frame.kins if len(kin.messages) > 1]
+    return [_overload(frame, group) for group in frame.groups if len(group.messages) > 1]
 
 
-def _overload(frame: FastFrame, kin: Kin) -> Function:
-    given = " | ".join(class_name(message.name) for message in kin.messages)
+def _overload(frame: FastFrame, group: IdentityGroup) -> Function:
+    given = " | ".join(class_name(message.name) for message in group.messages)
     body: list[str] = []
     around = sum(frame.around or ()) if frame.gives_content else 0
     size = f"len(data) - {around}" if around else "len(data)"
-    for message in kin.messages:
+    for message in group.messages:
         body.append(f"if {size} in {class_name(message.name)}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
     body.append("raise _fast.NeedsReference")
-    return _function(cutting.reader_of(frame, kin), "data: bytes", given, tuple(body))
+    return _function(cutting.reader_of(frame, group), "data: bytes", given, tuple(body))
 
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
@@ -241,7 +242,7 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
-    if frame.can_cut and frame.ended_by != "kind" and frame.remembered is not None:
+    if frame.can_cut and frame.ended_by is not EndRule.IDENTITY and frame.remembered is not None:
         body = cutting.header(frame, constants)
         head = _function(f"_head_{name}", "head: bytes", "tuple[_typing.Any, ...]", body)
     if frame.can_decode:

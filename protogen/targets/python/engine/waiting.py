@@ -236,7 +236,7 @@ class _Waiting(FrameFunction):
         if frame.lists_frame_sizes:
             self._within("frame_size", -len(frame.end))
             return
-        if frame.has_open_kinds:
+        if frame.has_open_groups:
             with self.lines.block("if payload_size < 0:"):
                 self._open()
         if frame.optional:
