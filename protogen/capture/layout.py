@@ -18,22 +18,19 @@ from protogen.capture.schema import (
 from protogen.copying import replace
 from protogen.model.frame import CounterPart, IdentityPart, NumberPart, ValuePart
 from protogen.model.messages import Message
-from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Field,
-    Fill,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Type,
-    count_name,
-    counting_bits,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    RestStep,
 )
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.types import Float, Integer, counting_bits
 from protogen.model.types import Text as TextType
 
 _BYTE = Number("u1", 1)
@@ -101,7 +98,7 @@ def _table(framed: Sequence[Column], message: Message) -> TableSchema:
 
 def message_record(message: Message) -> Record:
     """The message's own columns, under the names that the schema and C give them."""
-    return record(_columns(message.fields, {}))
+    return record(_columns(message.plan.steps))
 
 
 def _counted_anew(column: Column, renamed: dict[str, str]) -> Column:
@@ -142,85 +139,61 @@ def _free(name: str, taken: Sequence[str]) -> str:
 # --- fields ---------------------------------------------------------------------------------------
 
 
-Constants = dict[str, int]
-"""The fields in front that are constant integers. They may count or select, and have no column."""
+def _columns(steps: Sequence[AnyStep]) -> Iterator[Column]:
+    for step in steps:
+        if isinstance(step, BytesStep | RepeatStep) and step.fills:
+            yield Column(
+                name=step.count.member,
+                role="count",
+                source=step.name,
+                shape=_counting(step.count.greatest),
+                field=step.field,
+            )
+        if step.holds_values:
+            yield _column(step)
 
 
-def _columns(fields: Sequence[Field], around: Constants) -> Iterator[Column]:
-    constants = dict(around)
-    for field in fields:
-        counter = _counter(fields, field)
-        if counter is not None:
-            yield counter
-        if field.is_stored:
-            by = None if counter is None else counter.name
-            yield _column(field.type, field.name, field, constants, by)
-        value = field.constant_number
-        constants.pop(field.name, None)
-        if value is not None:
-            constants[field.name] = value
-
-
-def _counter(fields: Sequence[Field], field: Field) -> Column | None:
-    extent = field.type.extent
-    if extent is None or not field.fills:
-        return None
-    return Column(
-        name=count_name(fields, field),
-        role="count",
-        source=field.name,
-        shape=_counting(extent.room),
-        field=field,
-    )
-
-
-def _column(
-    type_: Type, name: str, field: Field, constants: Constants, filled_by: str | None = None
-) -> Column:
+def _column(step: AnyStep) -> Column:
     dimensions: list[Dimension] = []
-    while isinstance(type_, Array):
-        dimensions.append(_dimension(type_.extent, constants, filled_by))
-        type_, filled_by = type_.element, None
-    if isinstance(type_, TextType | Octets):
-        dimensions.append(_dimension(type_.extent, constants, filled_by))
+    name, element = step.name, step
+    while isinstance(element, RepeatStep):
+        dimensions.append(_dimension(element.count))
+        element = element.element
+    if isinstance(element, BytesStep):
+        dimensions.append(_dimension(element.count))
     return Column(
         name=name,
         role="field",
         source=name,
-        shape=_shape(type_, field, constants),
+        shape=_shape(element),
         dimensions=tuple(dimensions),
-        field=field,
+        field=step.field,
     )
 
 
-def _dimension(extent: Extent, constants: Constants, filled_by: str | None) -> Dimension:
+def _dimension(count: Count) -> Dimension:
     """C has no empty arrays, so there is room for one element at least."""
-    capacity = max(1, extent.room)
-    match extent:
-        case Counted(field=name) if name not in constants:
-            return Dimension(capacity, name)
-        case Fill():
-            return Dimension(capacity, filled_by)
-        case _:
-            return Dimension(capacity)
+    capacity = max(1, count.greatest)
+    if count.fills:
+        return Dimension(capacity, count.member)
+    return Dimension(capacity, None if count.by is None else count.by.name)
 
 
-def _shape(type_: Type, field: Field, constants: Constants) -> Shape:
-    match type_:
-        case Integer():
-            return _number(type_)
-        case Float(bits=bits):
+def _shape(step: AnyStep) -> Shape:
+    match step:
+        case IntegerStep():
+            return _number(step.type)
+        case FloatStep(type=Float(bits=bits)):
             return Number(f"f{bits // 8}", bits // 8)
-        case TextType(extent=extent):
-            return Text(max(1, extent.room))
-        case Octets():
-            return _BYTE
-        case Struct(fields=fields):
-            return record(_columns(fields, constants))
-        case Switch():
-            return _choice(type_, field, constants)
-        case Array():
-            raise AssertionError("an array is a dimension")
+        case BytesStep():
+            is_text = isinstance(step.type, TextType)
+            return Text(max(1, step.count.greatest)) if is_text else _BYTE
+        case RecordStep():
+            return record(_columns(step.steps))
+        case ChooseStep():
+            return _choice(step)
+        case _:
+            raise AssertionError("an array is a dimension, and a constant has no column")
 
 
 def _number(type_: Integer) -> Number:
@@ -235,36 +208,33 @@ def _counting(greatest: int) -> Number:
     return Number(f"u{size}", size)
 
 
-def _choice(switch: Switch, field: Field, constants: Constants) -> Choice:
-    cases = tuple(
-        (case.value, _column(case.type, case.name, field, constants))
-        for case in switch.cases
-        if case.type.holds_values
-    )
-    empty = tuple(case.value for case in switch.cases if not case.type.holds_values)
-    rest = None if switch.rest is None else _rest(switch, switch.rest, field)
+def _choice(step: ChooseStep) -> Choice:
+    held = [case for case in step.cases if case.step.holds_values]
+    cases = tuple((case.value, _column(case.step)) for case in held)
+    empty = tuple(case.value for case in step.cases if not case.step.holds_values)
+    rest = None if step.rest is None else _rest(step.rest)
     every = [column for _, column in cases] + ([] if rest is None else [rest])
     alignment = max(item.shape.alignment for item in every)
     size = _aligned(max(item.size for item in every), alignment)
-    selector = constants.get(switch.selector, switch.selector)
+    selector = step.selector if isinstance(step.selector, int) else step.selector_name
     return Choice(selector, cases, empty, rest, size, alignment)
 
 
-def _rest(switch: Switch, greatest: int, field: Field) -> Column:
-    size = Column(name="size", role="count", source="bytes", shape=_counting(greatest))
+def _rest(step: RestStep) -> Column:
+    size = Column(name="size", role="count", source="bytes", shape=_counting(step.greatest))
     held = Column(
         name="bytes",
         role="field",
         source="bytes",
         shape=_BYTE,
-        dimensions=(Dimension(max(1, greatest), "size"),),
+        dimensions=(Dimension(max(1, step.greatest), "size"),),
     )
     return Column(
-        name=switch.rest_name,
+        name=step.name,
         role="field",
-        source=field.name,
+        source=step.field.name,
         shape=record([size, held]),
-        field=field,
+        field=step.field,
     )
 
 
