@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import struct
-
-from protogen.model.types import Array, Constant, Field, Fixed, Float, Integer, Octets, Text, Type
+from protogen.model.types import Constant, Field, Fixed, NumberType, Text, Type
 from protogen.runtime.number import Number
 
 
-def codec(type_: Integer | Float) -> Number:
+def codec(type_: NumberType) -> Number:
     """Codec of a number's raw value; of a float it is that of its bits."""
-    signed = isinstance(type_, Integer) and type_.signed
-    return Number(type_.bits, signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
+    return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
 
 
-def number_bytes(type_: Integer, value: int) -> bytes:
+def number_bytes(type_: NumberType, value: int) -> bytes:
     """The unstuffed bytes of a number, in wire order."""
     mask = (1 << type_.byte_bits) - 1
     value &= (1 << type_.bits) - 1
@@ -25,29 +22,17 @@ def number_bytes(type_: Integer, value: int) -> bytes:
 def constant_bytes(field: Field) -> bytes:
     """The wire bytes of a constant field."""
     assert field.const is not None
+    if isinstance(field.const, tuple):
+        return b"".join(_wire_bytes(field.element, item) for item in field.const)
     return _wire_bytes(field.type, field.const)
 
 
 def _wire_bytes(type_: Type, value: Constant) -> bytes:
-    match type_, value:
-        case Integer(), int():
-            return codec(type_).encode(int(value))
-        case Float(), int() | float():
-            return codec(type_).encode(float_bits(type_, value))
-        case Text(), str():
-            return _padded(type_, value.encode("latin-1"))
-        case Octets(), bytes():
-            return value
-        case Array(element=element), tuple():
-            return b"".join(_wire_bytes(element, item) for item in value)
-    raise TypeError(f"{value!r} is no constant of {type_!r}")
-
-
-def float_bits(type_: Float, value: float) -> int:
-    """The bits of a float that is that value."""
-    form, size = ("<f", 4) if type_.bits == 32 else ("<d", 8)
-    return int.from_bytes(struct.pack(form, value)[:size], "little")
-
-
-def _padded(type_: Text, data: bytes) -> bytes:
-    return data.ljust(type_.extent.count, b"\0") if isinstance(type_.extent, Fixed) else data
+    if isinstance(value, bytes):
+        return value
+    if isinstance(value, str):
+        is_padded = isinstance(type_, Text) and isinstance(type_.extent, Fixed)
+        return value.encode("latin-1").ljust(type_.sizes.least if is_padded else 0, b"\0")
+    assert isinstance(type_, NumberType)
+    assert isinstance(value, int | float)
+    return codec(type_).encode(type_.raw(value))

@@ -5,6 +5,7 @@ A type says how a value lies on the wire; what the value means is on the field.
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
@@ -72,6 +73,20 @@ class Integer(msgspec.Struct, frozen=True, kw_only=True):
         return storage_bits(self.bits)
 
     @property
+    def unsigned(self) -> Integer:
+        """The unsigned integer in the same bytes."""
+        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
+
+    @property
+    def is_named(self) -> bool:
+        """True if its values or its bits have names of their own type."""
+        return self.enum is not None or self.flags is not None
+
+    def raw(self, value: float) -> int:
+        """The number whose bits lie on the wire."""
+        return int(value)
+
+    @property
     def is_closed(self) -> bool:
         """True if only the values of a closed enum are valid."""
         return self.enum is not None and self.enum.closed
@@ -107,9 +122,15 @@ class Float(msgspec.Struct, frozen=True, kw_only=True):
     bits: Literal[32, 64]
     byte_bits: Literal[7, 8] = 8
     byte_order: ByteOrder = "little"
+    signed: ClassVar[bool] = False
     extent: ClassVar[None] = None
     holds_values: ClassVar[bool] = True
     needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    def raw(self, value: float) -> int:
+        """The number whose bits lie on the wire."""
+        form, size = ("<f", 4) if self.bits == 32 else ("<d", 8)
+        return int.from_bytes(struct.pack(form, value)[:size], "little")
 
     @property
     def name(self) -> str:

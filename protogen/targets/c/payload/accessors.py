@@ -11,7 +11,6 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
 )
-from protogen.model.types import Integer
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
@@ -54,7 +53,7 @@ class Accessors:
         match element:
             case IntegerStep():
                 type_ = integer_type(element.type)
-                _read(element.type, body)
+                _read(element, body)
             case FloatStep():
                 type_ = self._helpers.float_type(element.type)
                 with self._helpers.public():
@@ -75,7 +74,8 @@ class Accessors:
         return ("\n".join([*doc, text]),)
 
 
-def _read(type_: Integer, body: Lines) -> None:
+def _read(step: IntegerStep, body: Lines) -> None:
+    type_ = step.type
     if type_.role == "bool":
         body.add("return at[0] != 0U;")
     elif is_plain(type_):

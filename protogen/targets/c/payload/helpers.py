@@ -134,7 +134,7 @@ class Helpers:
         """The unsigned value of a signed number at `at`."""
         if not type_.signed:
             return ""
-        return f"{self.load(_unsigned(type_))}(at)" if type_.size > 1 else "at[0]"
+        return f"{self.load(type_.unsigned)}(at)" if type_.size > 1 else "at[0]"
 
     def _load_float(self, type_: Float) -> str:
         key = f"load_{layout_name(type_)}"
@@ -388,10 +388,6 @@ def _label(value: int, type_: Integer) -> str:
 def is_plain(type_: Integer) -> bool:
     """True if the number is a byte as it is."""
     return type_.size == 1 and (type_.bits == 8 or not type_.signed)
-
-
-def _unsigned(type_: Integer) -> Integer:
-    return Integer(bits=type_.bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order)
 
 
 def widened(type_: Integer) -> Integer:

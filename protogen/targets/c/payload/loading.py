@@ -12,7 +12,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.types import Float, Integer
+from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.payload.placed import PlacedWalk, times
@@ -21,7 +21,7 @@ from protogen.targets.c.payload.walk import amount
 from protogen.targets.c.spelling import counting_type, integer_type
 
 
-def loaded(helpers: Helpers, type_: Integer | Float, byte: str, address: str) -> str:
+def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:
     """The number that lies there; `byte` is its first byte."""
     if isinstance(type_, Float):
         return f"{helpers.load(type_)}({address})"
@@ -30,8 +30,7 @@ def loaded(helpers: Helpers, type_: Integer | Float, byte: str, address: str) ->
     if is_plain(type_):
         return f"({integer_type(type_)}){byte}" if type_.signed else byte
     if type_.signed and is_whole(type_):
-        raw = Integer(bits=type_.bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order)
-        return f"({integer_type(type_)}){helpers.load(raw)}({address})"
+        return f"({integer_type(type_)}){helpers.load(type_.unsigned)}({address})"
     return f"{helpers.load(type_)}({address})"
 
 

@@ -10,7 +10,7 @@ from protogen.model.annotate import Row, annotate
 from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Field, Float, Integer
+from protogen.model.types import Field, Integer, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.values import raw_text, value_meaning
 from protogen.targets.markdown.frames.parts import identity_value, role
@@ -147,7 +147,7 @@ def _member(row: Row) -> str:
 
 
 def _is_number(row: Row) -> bool:
-    return isinstance(row.value_type, Integer | Float)
+    return isinstance(row.value_type, NumberType)
 
 
 def _doc(row: Row) -> str:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from protogen.model.payload_plan import AnyStep, BytesStep, FloatStep, IntegerStep, without_constant
-from protogen.model.types import Float, Integer, Octets
-from protogen.targets.python.engine.layout import code_of, is_named, is_native, is_pair
+from protogen.model.types import Float, Octets
+from protogen.targets.python.engine.layout import code_of, is_native, is_pair
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.spelling import class_name
 
@@ -20,8 +20,8 @@ class Converter:
     def converted(self, variable: str, step: AnyStep) -> str:
         """The attribute's value for what `struct` has read."""
         match without_constant(step):
-            case IntegerStep(type=type_):
-                return self.named(self._integer(variable, type_, code_of(step)), type_)
+            case IntegerStep() as number:
+                return self.named(self._integer(variable, number), number)
             case FloatStep(type=Float(byte_bits=7) as type_):
                 call = f'_fast.seven_bit_float({type_.bits}, "{type_.byte_order}").decode'
                 return f"{self.lines.constants.named('FLOAT', call)}({variable})"
@@ -29,17 +29,19 @@ class Converter:
                 return self.string(variable, string)
         return variable
 
-    def _integer(self, variable: str, type_: Integer, code: str | None) -> str:
+    def _integer(self, variable: str, step: IntegerStep) -> str:
+        type_ = step.type
         if type_.role == "bool":
             self.lines.refuse_if(f"{variable} > 1")
             return f"{variable} == 1"
-        if is_native(type_):
+        if is_native(step):
             return variable
-        if is_pair(type_):
+        if is_pair(step):
             if self.is_ascii and type_.bits == 14:
                 table = f"_TABLES.pairs({type_.bits}, {type_.signed})"
                 return f"{self.lines.constants.named('PAIRS', table)}[{variable}]"
-            return f"{self._pairs(type_)}[{variable}]"
+            return f"{self._pairs(step)}[{variable}]"
+        code = code_of(step)
         assert code is not None
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.decode({variable})"
@@ -50,12 +52,14 @@ class Converter:
         sign = f"0x{1 << (type_.bits - 1):X}"
         return f"({variable} ^ {sign}) - {sign}"
 
-    def _pairs(self, type_: Integer) -> str:
+    def _pairs(self, step: IntegerStep) -> str:
+        type_ = step.type
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
         return self.lines.constants.named("PAIRS", f"_fast.Pairs({arguments})")
 
-    def named(self, value: str, type_: Integer) -> str:
+    def named(self, value: str, step: IntegerStep) -> str:
         """The member of an enum or a set of flags for a number."""
+        type_ = step.type
         named = type_.enum or type_.flags
         if named is None:
             return value
@@ -81,4 +85,4 @@ class Converter:
             return False
         type_ = step.type
         is_byte = (self.is_ascii, type_.bits, type_.size, type_.signed) == (True, 7, 1, False)
-        return is_byte and type_.role != "bool" and not is_named(type_)
+        return is_byte and type_.role != "bool" and not type_.is_named

@@ -14,7 +14,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Integer, Struct
+from protogen.model.types import Struct
 
 _UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
@@ -25,8 +25,8 @@ def code_of(step: AnyStep) -> str | None:
     A number that `struct` does not know is so many bytes, to be converted.
     """
     match without_constant(step):
-        case IntegerStep(type=type_):
-            return _integer(type_)
+        case IntegerStep() as number:
+            return _integer(number)
         case FloatStep(type=type_):
             known = "f" if type_.bits == 32 else "d"
             return known if type_.byte_bits == 8 else f"{type_.size}s"
@@ -35,17 +35,19 @@ def code_of(step: AnyStep) -> str | None:
     return None
 
 
-def _integer(type_: Integer) -> str:
+def _integer(step: IntegerStep) -> str:
+    type_ = step.type
     if type_.byte_bits == 7 and type_.size > 2:
         return f"{type_.size}s"
     code = _UNSIGNED.get(type_.size)
     if code is None:
         return f"{type_.size}s"
-    return code.lower() if type_.signed and is_native(type_) else code
+    return code.lower() if type_.signed and is_native(step) else code
 
 
-def is_native(type_: Integer) -> bool:
+def is_native(step: IntegerStep) -> bool:
     """True if `struct` itself reads and writes the value."""
+    type_ = step.type
     return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.role != "bool"
 
 
@@ -66,24 +68,19 @@ def common_order(steps: Sequence[AnyStep]) -> str | None:
     return orders.pop() if orders else ""
 
 
-def is_named(type_: Integer) -> bool:
-    """True if the attribute is a member of an enum or a set of flags."""
-    return type_.enum is not None or type_.flags is not None
-
-
 def array_code(step: RepeatStep) -> str | None:
     """The code of one element, where `struct` reads all of them as they are."""
     element = step.element
     if isinstance(element, IntegerStep):
-        plain = is_native(element.type) and not is_named(element.type)
+        plain = is_native(element) and not element.type.is_named
         return code_of(element) if plain else None
     is_known = isinstance(element, FloatStep) and element.type.byte_bits == 8
     return code_of(element) if is_known else None
 
 
-def is_pair(type_: Integer) -> bool:
+def is_pair(step: IntegerStep) -> bool:
     """True if the value is one of 8 to 14 bits in two bytes of 7 bits."""
-    return type_.byte_bits == 7 and type_.size == 2
+    return step.type.byte_bits == 7 and step.type.size == 2
 
 
 def outside(sizes: SizeSet, data: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.targets.python.wrapping import wrapped
 
 _INDENT = "    "
@@ -24,7 +24,7 @@ class Constants:
             self._names[expression] = f"_{kind}_{count}"
         return self._names[expression]
 
-    def number(self, type_: Integer) -> str:
+    def number(self, type_: NumberType) -> str:
         """The name of what reads and writes an integer that `struct` does not know."""
         seven = type_.byte_bits == 7
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'

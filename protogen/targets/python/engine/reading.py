@@ -27,7 +27,6 @@ from protogen.targets.python.engine.layout import (
     array_code,
     code_of,
     common_order,
-    is_named,
     is_native,
     is_pair,
     order_of,
@@ -158,7 +157,7 @@ class _Reader(Converter):
         self._run.variables.append(variable)
         value = without_constant(step)
         if is_field and isinstance(value, IntegerStep):
-            self.raw[step.name] = variable if is_native(value.type) else target
+            self.raw[step.name] = variable if is_native(value) else target
         if not direct:
             self._run.after.append((target, variable, step))
 
@@ -166,7 +165,7 @@ class _Reader(Converter):
     def _is_direct(step: AnyStep) -> bool:
         """True if `struct` itself gives the attribute's value."""
         if isinstance(step, IntegerStep):
-            return is_native(step.type) and not is_named(step.type)
+            return is_native(step) and not step.type.is_named
         if isinstance(step, BytesStep) and not isinstance(step.type, Octets):
             return False
         return isinstance(step, FloatStep | BytesStep) and step.type.byte_bits == 8
@@ -369,7 +368,7 @@ class _Reader(Converter):
 
     def _elements(self, step: RepeatStep, size: int, count: str) -> str:
         element = step.element
-        if isinstance(element, IntegerStep) and is_pair(element.type):
+        if isinstance(element, IntegerStep) and is_pair(element):
             return self._pair_elements(element, count)
         code = array_code(step)
         if code is not None:
@@ -405,9 +404,9 @@ class _Reader(Converter):
             end = str(self.place.offset + 2 * int(count))
         self.lines.add(f"{values} = {unpack}(data[{start} : {end}])")
         self.lines.refuse_if(f"len({values}) != {count}")
-        if not is_named(type_):
+        if not type_.is_named:
             return values
-        return f"[{self.named('value', type_)} for value in {values}]"
+        return f"[{self.named('value', element)} for value in {values}]"
 
     def _struct_elements(self, element: RecordStep, size: int, count: str) -> str:
         outer = "".join(f", {self.raw[name]}" for name in outer_names(element.type))

@@ -20,13 +20,12 @@ from protogen.model.payload_plan import (
     RestStep,
     without_constant,
 )
-from protogen.model.types import Field, Integer, Struct, Text
+from protogen.model.types import Field, Struct, Text
 from protogen.targets.python.engine.layout import (
     array_code,
     code_of,
     common_order,
     holds_records,
-    is_named,
     is_native,
     is_pair,
     order_of,
@@ -95,20 +94,21 @@ def _are_plain(steps: Sequence[AnyStep]) -> bool:
 
 
 def _is_plain(step: AnyStep) -> bool:
-    if not isinstance(step, IntegerStep) or not is_native(step.type):
+    if not isinstance(step, IntegerStep) or not is_native(step):
         return False
     return not step.field.ranged and not step.type.is_closed
 
 
-def _is_narrow(type_: Integer) -> bool:
+def _is_narrow(step: IntegerStep) -> bool:
     """True if `struct` writes the value, but as one that may be greater."""
-    return type_.size == 1 and not type_.signed and not is_native(type_) and type_.role != "bool"
+    type_ = step.type
+    return type_.size == 1 and not type_.signed and not is_native(step) and type_.role != "bool"
 
 
-def _is_looked_up(type_: Integer) -> bool:
+def _is_looked_up(step: IntegerStep) -> bool:
     """True if a list has the bytes of each value."""
-    is_byte = type_.size == 1 and not is_native(type_) and not _is_narrow(type_)
-    return type_.role != "bool" and (is_pair(type_) or is_byte)
+    is_byte = step.type.size == 1 and not is_native(step) and not _is_narrow(step)
+    return step.type.role != "bool" and (is_pair(step) or is_byte)
 
 
 def _is_bounded(item: Field) -> bool:
@@ -194,7 +194,7 @@ class _Writer:
         """Let `struct` write a value together with its neighbours."""
         code = code_of(step)
         assert code is not None
-        if isinstance(step, IntegerStep) and _is_narrow(step.type) and step.type.bits == _SEVEN:
+        if isinstance(step, IntegerStep) and _is_narrow(step) and step.type.bits == _SEVEN:
             code = "b"  # Which has no number above 127.
         self._pack(Packed(order_of(step), code, expression))
 
@@ -245,19 +245,20 @@ class _Writer:
         type_ = step.type
         if type_.role == "bool":
             self.lines.refuse_if(f"type({value}) is not bool")
-        elif not is_native(type_) and not _is_narrow(type_) and not _is_looked_up(type_):
-            self._unseen(value, type_)
+        elif not is_native(step) and not _is_narrow(step) and not _is_looked_up(step):
+            self._unseen(value, step)
         if type_.enum is not None and type_.is_closed:
             members = f"frozenset(map(int, {class_name(type_.enum.name)}))"
             self.lines.refuse_if(f"{value} not in {self.lines.constants.named('VALUES', members)}")
         self._in_range(value, item)
-        if _is_looked_up(type_) and (item is None or not _is_bounded(item)):
+        if _is_looked_up(step) and (item is None or not _is_bounded(item)):
             # Nothing but an integer is an index of a list, but -1 is that of the last element.
             self.lines.refuse_if(f"{value} < {type_.least} or {value} > {type_.greatest}")
         self._put(step, self._coded(value, step))
 
-    def _unseen(self, value: str, type_: Integer) -> None:
+    def _unseen(self, value: str, step: IntegerStep) -> None:
         """See to it that a value is an integer where neither `struct` nor a list does."""
+        type_ = step.type
         named = type_.enum or type_.flags
         if named is None:
             self._bytes.integers.append(value)
@@ -277,28 +278,28 @@ class _Writer:
     def _coded(self, value: str, step: IntegerStep) -> str:
         """The value that `struct` is given for an integer."""
         type_ = step.type
-        if is_native(type_) or type_.role == "bool":
+        if is_native(step) or type_.role == "bool":
             return value
-        if _is_looked_up(type_):
-            kind = "codes" if is_pair(type_) else "narrow"
+        if _is_looked_up(step):
+            kind = "codes" if is_pair(step) else "narrow"
             codes = f"_CODES.{kind}({type_.bits})"
             return f"{self.lines.constants.named(_CODES, codes)}[{value}]"
         code = code_of(step)
         assert code is not None
         if code.endswith("s"):
             return f"{self.lines.constants.number(type_)}.encode({value})"
-        if _is_narrow(type_):
-            self._in_narrow(value, type_)
+        if _is_narrow(step):
+            self._in_narrow(value, step)
             return value
         self.lines.refuse_if(f"not {type_.least} <= {value} <= {type_.greatest}")
         return f"{value} & 0x{(1 << type_.bits) - 1:X}" if type_.signed else value
 
-    def _in_narrow(self, value: str, type_: Integer) -> None:
+    def _in_narrow(self, value: str, step: IntegerStep) -> None:
         """Check a value that fewer than 8 bits have to hold; `struct` sees that 7 are enough."""
-        if type_.bits == _SEVEN:
+        if step.type.bits == _SEVEN:
             self.lines.refuse_if(f"{value} < 0")
         else:
-            self.lines.refuse_if(f"not 0 <= {value} <= {type_.greatest}")
+            self.lines.refuse_if(f"not 0 <= {value} <= {step.type.greatest}")
 
     def _float(self, value: str, step: FloatStep, item: Field | None) -> None:
         type_ = step.type
@@ -391,11 +392,7 @@ class _Writer:
             written = f"_write_{element.type.name}(each{outer})"
             self.lines.add(f'{data} = b"".join([{written} for each in {value}])')
             self._piece(data)
-        elif (
-            isinstance(element, IntegerStep)
-            and is_pair(element.type)
-            and not is_named(element.type)
-        ):
+        elif isinstance(element, IntegerStep) and is_pair(element) and not element.type.is_named:
             self._all_in_range(value, item)
             type_ = element.type
             arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
