@@ -480,8 +480,7 @@ static inline size_t matty_first(unsigned int marks) {
 /* From place n on: 16 - n bytes that are left out, and n that are not. */
 static const uint8_t matty_mask[32] = {
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
-};
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 /* The sum of bytes; there are at least eight. */
 static inline __m128i matty_sum_of(const uint8_t *data, size_t size) {
@@ -1486,8 +1485,8 @@ static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_
         return 0;
     }
 #if MATTY_SSE2
-    if (MATTY_EXPECT(matty_pc_measure_head(data, &payload) && size >= 21U + payload
-        && matty_pc_is_plain(&data[1], 4U + payload), 1)) {
+    if (matty_pc_measure_head(data, &payload) && size >= 21U + payload &&
+        MATTY_EXPECT(matty_pc_is_plain(&data[1], 4U + payload), 1)) {
         content = data;
         wire = 5U + payload;
     } else
@@ -2008,8 +2007,8 @@ static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint
         return 0;
     }
 #if MATTY_SSE2
-    if (MATTY_EXPECT(matty_esp_measure_head(data, &payload) && size >= 21U + payload
-        && matty_esp_is_plain(&data[1], 4U + payload), 1)) {
+    if (matty_esp_measure_head(data, &payload) && size >= 21U + payload &&
+        MATTY_EXPECT(matty_esp_is_plain(&data[1], 4U + payload), 1)) {
         content = data;
         wire = 5U + payload;
     } else

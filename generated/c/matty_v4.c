@@ -603,8 +603,7 @@ static inline size_t matty_v4_first(unsigned int marks) {
 /* From place n on: 16 - n bytes that are left out, and n that are not. */
 static const uint8_t matty_v4_mask[32] = {
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
-};
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 /* The sum of bytes; there are at least eight. */
 static inline __m128i matty_v4_sum_of(const uint8_t *data, size_t size) {
@@ -1738,8 +1737,8 @@ static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const 
         return 0;
     }
 #if MATTY_V4_SSE2
-    if (MATTY_V4_EXPECT(matty_v4_pc_measure_head(data, &payload) && size >= 21U + payload
-        && matty_v4_pc_is_plain(&data[1], 4U + payload), 1)) {
+    if (matty_v4_pc_measure_head(data, &payload) && size >= 21U + payload &&
+        MATTY_V4_EXPECT(matty_v4_pc_is_plain(&data[1], 4U + payload), 1)) {
         content = data;
         wire = 5U + payload;
     } else
@@ -2269,8 +2268,8 @@ static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, cons
         return 0;
     }
 #if MATTY_V4_SSE2
-    if (MATTY_V4_EXPECT(matty_v4_esp_measure_head(data, &payload) && size >= 21U + payload
-        && matty_v4_esp_is_plain(&data[1], 4U + payload), 1)) {
+    if (matty_v4_esp_measure_head(data, &payload) && size >= 21U + payload &&
+        MATTY_V4_EXPECT(matty_v4_esp_is_plain(&data[1], 4U + payload), 1)) {
         content = data;
         wire = 5U + payload;
     } else

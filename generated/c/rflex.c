@@ -884,8 +884,7 @@ static inline size_t rflex_first(unsigned int marks) {
 /* From place n on: 16 - n bytes that are left out, and n that are not. */
 static const uint8_t rflex_mask[32] = {
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
-};
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 /* All bytes, each xor the next; there are at least eight. */
 static inline __m128i rflex_xor_of(const uint8_t *data, size_t size) {
@@ -2499,8 +2498,8 @@ static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const 
         return 0;
     }
 #if RFLEX_SSE2
-    if (RFLEX_EXPECT(rflex_linux_measure_head(data, &payload) && size >= 23U + payload
-        && rflex_linux_is_plain(&data[2], 5U + payload), 1)) {
+    if (rflex_linux_measure_head(data, &payload) && size >= 23U + payload &&
+        RFLEX_EXPECT(rflex_linux_is_plain(&data[2], 5U + payload), 1)) {
         content = data;
         wire = 7U + payload;
     } else
@@ -3249,8 +3248,8 @@ static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const ui
         return 0;
     }
 #if RFLEX_SSE2
-    if (RFLEX_EXPECT(rflex_flex_measure_head(data, &payload) && size >= 23U + payload
-        && rflex_flex_is_plain(&data[2], 5U + payload), 1)) {
+    if (rflex_flex_measure_head(data, &payload) && size >= 23U + payload &&
+        RFLEX_EXPECT(rflex_flex_is_plain(&data[2], 5U + payload), 1)) {
         content = data;
         wire = 7U + payload;
     } else

@@ -1149,8 +1149,7 @@ static inline size_t rflex_drivers_first(unsigned int marks) {
 /* From place n on: 16 - n bytes that are left out, and n that are not. */
 static const uint8_t rflex_drivers_mask[32] = {
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
-};
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 /* All bytes, each xor the next; there are at least eight. */
 static inline __m128i rflex_drivers_xor_of(const uint8_t *data, size_t size) {
@@ -2992,9 +2991,8 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
         return 0;
     }
 #if RFLEX_DRIVERS_SSE2
-    if (RFLEX_DRIVERS_EXPECT(rflex_drivers_linux_measure_head(data, &payload) &&
-                             size >= 23U + payload
-        && rflex_drivers_linux_is_plain(&data[2], 5U + payload), 1)) {
+    if (rflex_drivers_linux_measure_head(data, &payload) && size >= 23U + payload &&
+        RFLEX_DRIVERS_EXPECT(rflex_drivers_linux_is_plain(&data[2], 5U + payload), 1)) {
         content = data;
         wire = 7U + payload;
     } else
@@ -3768,9 +3766,8 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
         return 0;
     }
 #if RFLEX_DRIVERS_SSE2
-    if (RFLEX_DRIVERS_EXPECT(rflex_drivers_flex_measure_head(data, &payload) &&
-                             size >= 23U + payload
-        && rflex_drivers_flex_is_plain(&data[2], 5U + payload), 1)) {
+    if (rflex_drivers_flex_measure_head(data, &payload) && size >= 23U + payload &&
+        RFLEX_DRIVERS_EXPECT(rflex_drivers_flex_is_plain(&data[2], 5U + payload), 1)) {
         content = data;
         wire = 7U + payload;
     } else
