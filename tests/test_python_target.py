@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from protogen.api import load, module_of
+from protogen.model.names import unit_suffix
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.targets.markdown.emit import emit as emit_markdown
 from protogen.targets.python.emit import emit as emit_python
-from protogen.targets.python.spelling import class_name, unit_suffix
+from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, remark, wrapped
 
 ROOT = Path(__file__).parent.parent

@@ -14,6 +14,7 @@ def starter_schema(name: str, framing: Framing, file: str) -> str:
         .get_template("schema.yaml.j2")
         .render(
             name=name,
+            title=name.replace("_", " ").capitalize(),
             file=file,
             framing=framing,
             numbers=numbers_of(framing),
