@@ -80,23 +80,23 @@ def _crc(spec: ChecksumSpec, function: str) -> Algorithm:
         enter = f"sum = ({type_})(sum ^ byte);"
         advance = (
             f"sum = ({type_})((sum & 1U) != 0U ? "
-            f"({type_})(sum >> 1) ^ {hexadecimal(poly, digits)} : ({type_})(sum >> 1));"
+            f"({type_})(sum >> 1) ^ {_constant(poly, bits, digits)} : ({type_})(sum >> 1));"
         )
         register = "sum"
     else:
         poly, init = spec.poly << spare, spec.init << spare
         entering = "byte" if bits == 8 else f"({type_})(({type_})byte << {bits - 8})"
         enter = f"sum = ({type_})(sum ^ {entering});"
-        top = hexadecimal(1 << (bits - 1), digits)
+        top, added = (_constant(value, bits, digits) for value in (1 << (bits - 1), poly))
         advance = (
             f"sum = ({type_})((sum & {top}) != 0U ? "
-            f"({type_})(({type_})(sum << 1) ^ {hexadecimal(poly, digits)}) : ({type_})(sum << 1));"
+            f"({type_})(({type_})(sum << 1) ^ {added}) : ({type_})(sum << 1));"
         )
         register = f"({type_})(sum >> {spare})" if spare else "sum"
     reverses = spec.refin != spec.refout
     result = f"{function}_reversed({register})" if reverses else register
     if spec.xorout:
-        result = f"({type_})({result} ^ {hexadecimal(spec.xorout, digits)})"
+        result = f"({type_})({result} ^ {_constant(spec.xorout, bits, digits)})"
     return Algorithm(
         function,
         spec.name,
@@ -104,12 +104,17 @@ def _crc(spec: ChecksumSpec, function: str) -> Algorithm:
         type_,
         type_,
         spec.width,
-        hexadecimal(init, digits),
+        _constant(init, bits, digits),
         (enter, advance),
         result,
         True,
         reverses,
     )
+
+
+def _constant(value: int, bits: int, digits: int) -> str:
+    """Constant of a register's type: `long` is wider than 32 bits on some machines."""
+    return f"UINT{bits}_C(0x{value:0{digits}X})" if bits >= 32 else hexadecimal(value, digits)
 
 
 def _reversed(value: int, width: int) -> int:
