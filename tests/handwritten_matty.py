@@ -211,14 +211,18 @@ class Gps(rt.Message):
 # --- frames -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(rt.Frozen):
     """The parts of a frame that are no message's field."""
+
+    __slots__ = ("command", "counter")
 
     counter: int
     """Counts what the sender sends; an acknowledgement has the counter of its command."""
     command: int
     """Which command or message this is."""
+
+    def __init__(self, counter: int, command: int) -> None:
+        self._set(counter, command)
 
 
 FRAME = rt.FrameSpec(

@@ -23,6 +23,7 @@ from schema_fuzzing.values import all_parts, parts_of, values_of
 from protogen.compiler import Compilation, compile_file
 from protogen.copying import replace
 from protogen.live import module_of
+from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.problems import Problems, Span, render_text, to_github, to_json
@@ -108,7 +109,14 @@ def without_places(protocol: Protocol) -> Protocol:
     def moved(messages: tuple[Message, ...]) -> tuple[Message, ...]:
         return tuple(replace(message, span=NOWHERE) for message in messages)
 
-    senders = (replace(item, messages=moved(item.messages)) for item in protocol.senders)
+    def planned(plan: FramePlan) -> FramePlan:
+        groups = (replace(group, messages=moved(group.messages)) for group in plan.groups)
+        return replace(plan, groups=tuple(groups))
+
+    senders = (
+        replace(item, messages=moved(item.messages), plan=planned(item.plan))
+        for item in protocol.senders
+    )
     return replace(protocol, messages=moved(protocol.messages), senders=tuple(senders))
 
 

@@ -91,4 +91,4 @@ def test_random_structs(schema: Schema, tmp_path_factory: pytest.TempPathFactory
     assert made is not None
     sizes = StructSizes(NATURAL)
     for item in made.messages:
-        assert sizes.of(item.fields) == ctypes.sizeof(structure_of(item.fields))
+        assert sizes.of(item.plan.steps) == ctypes.sizeof(structure_of(item.fields))
