@@ -20,7 +20,6 @@ from protogen.model.frame import (
     Frame,
     IdentityPart,
     LengthPart,
-    NumberPart,
     Part,
     PayloadPart,
     ValuePart,
@@ -358,11 +357,6 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
         """The parts that events show: identity, counters and values."""
         kinds = IdentityPart | CounterPart | ValuePart
         return tuple(item for item in self.placed if isinstance(item.part, kinds))
-
-    @property
-    def numbers(self) -> tuple[PlacedPart, ...]:
-        """The parts that are numbers, without checksums."""
-        return tuple(item for item in self.placed if isinstance(item.part, NumberPart))
 
     # --- start and end ----------------------------------------------------------------------------
 

@@ -57,8 +57,7 @@ def size_is_early(plan: FramePlan, events: Events) -> bool:
 
 def known_from(plan: FramePlan) -> int:
     """Bytes of content that tell the payload's size, where the head tells it; else 0."""
-    numbers = numbers_of(plan, plan.head)
-    return next((n.last + 1 for n in numbers if n.is_length or n.identifies), 0)
+    return plan.size_known_at or 0
 
 
 def first_head(plan: FramePlan) -> int:
