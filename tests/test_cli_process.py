@@ -84,22 +84,6 @@ def test_nothing_heavy_is_imported_to_help(option: str) -> None:
     assert result.stdout.splitlines()[-1] == b"[]"
 
 
-def test_start_takes_less_than_200_ms() -> None:
-    """Of processor time, the best of five: the machine may be busy with other things."""
-    usages = []
-    for _ in range(5):
-        before = os.times()
-        start("--help")
-        after = os.times()
-        usages.append(
-            after.children_user
-            - before.children_user
-            + after.children_system
-            - before.children_system
-        )
-    assert min(usages) < 0.2
-
-
 def test_characters_that_the_terminal_lacks() -> None:
     result = start("decode", MATTY, "--sender", "esp", "--hex", GPS, PYTHONIOENCODING="ascii")
     assert result.returncode == 0
