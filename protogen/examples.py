@@ -218,9 +218,8 @@ def _differences(message: Any, stated: dict[str, Any]) -> list[str]:
         if name not in found:
             texts.append(f"there is no field `{name}`")
             continue
-        rule = dict(message.RULES)[name]
         try:
-            expected = _expected(message, name, rule, value)
+            expected = _expected(message, name, value)
         except EncodeError as error:
             texts.append(f"`{name}`: {error}")
             continue
@@ -229,7 +228,7 @@ def _differences(message: Any, stated: dict[str, Any]) -> list[str]:
     return texts
 
 
-def _expected(message: Any, name: str, rule: Any, value: Any) -> Any:
+def _expected(message: Any, name: str, value: Any) -> Any:
     """A stated value in the form of `to_dict`: names become raw values, bytes hex digits."""
     written = _hex_digits(value)
     whole = {**message.to_dict(), name: written}

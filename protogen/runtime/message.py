@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
@@ -12,15 +11,19 @@ from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
     from protogen.runtime.constructs import Construct
-    from protogen.runtime.records import FieldRules
-    from protogen.runtime.rules import Violation
+    from protogen.runtime.records import FieldRules, StructRule
+    from protogen.runtime.rules import Scope, Violation
 
 
-def _records() -> ModuleType:
-    """The functions of the reference, imported where values have to be looked at one by one."""
-    from protogen.runtime import records
+def _rule(record: type[Record]) -> tuple[StructRule, Scope]:
+    """The rule for all fields, and the scope around them, which is empty.
 
-    return records
+    It is imported where values have to be looked at one by one.
+    """
+    from protogen.runtime.records import StructRule
+    from protogen.runtime.rules import Scope
+
+    return StructRule(record), Scope()
 
 
 class Sizes(Frozen):
@@ -69,8 +72,8 @@ class Record(Value):
 
         A decoder keeps them. Strict encoding refuses the forbidden ones among them.
         """
-        found: list[Violation] = _records().record_violations(self)
-        return found
+        rule, scope = _rule(type(self))
+        return rule.violations(self, scope)
 
     def to_dict(self) -> dict[str, Any]:
         """The fields for JSON.
@@ -78,8 +81,8 @@ class Record(Value):
         Numbers are raw; bytes are hexadecimal text; not-a-number and the infinities, for which
         JSON has no numbers, are the texts `nan`, `inf` and `-inf`; structs are mappings.
         """
-        shown: dict[str, Any] = _records().record_to_json(self)
-        return shown
+        rule, scope = _rule(type(self))
+        return rule.to_json(self, scope)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -88,7 +91,8 @@ class Record(Value):
         Raises EncodeError with the field's path where a field is missing, unknown or of another
         kind. Whether the values can be sent is asked when they are.
         """
-        record: Self = _records().record_from_json(cls, data)
+        rule, scope = _rule(cls)
+        record: Self = rule.from_json(data, scope)
         return record
 
 
@@ -166,13 +170,15 @@ class Message(Record):
             problem = f"{cls.NAME} has {cls.SIZES} bytes of payload, not {len(payload)}"
             raise PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
         raw = whole(cls.FORMAT).parse(payload)
-        message: Self = _records().record_from_wire(cls, raw)
+        rule, scope = _rule(cls)
+        message: Self = rule.from_wire(raw, scope)
         return message
 
 
 def build_payload(message: Message, strict: bool = True) -> bytes:
     """The payload of a message as construct builds it. Raises EncodeError."""
-    values = _records().record_to_wire(message, strict)
+    rule, scope = _rule(type(message))
+    values = rule.to_wire(message, scope, strict)
     try:
         payload = bytes(type(message).FORMAT.build(values))
     except PayloadFault as error:

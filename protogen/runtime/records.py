@@ -16,120 +16,88 @@ OUTERMOST: Scope = ChainMap()
 """The scope around a message's own fields, which is empty."""
 
 
-def record_to_wire(record: Any, strict: bool, scope: Scope = OUTERMOST) -> dict[str, Any]:
-    """What FORMAT builds for the fields of `record`. Raises EncodeError with the field's path."""
-    inner = scope.new_child()
-    for name, rule in record.RULES:
-        try:
-            inner[name] = rule.to_wire(getattr(record, name), inner, strict)
-        except EncodeError as error:
-            raise error.inside(name) from None
-    return dict(inner.maps[0])
-
-
-def record_from_wire(cls: Any, raw: Mapping[str, Any], scope: Scope = OUTERMOST) -> Any:
-    """The record of what FORMAT parsed."""
-    inner = scope.new_child()
-    values = {}
-    for name, rule in cls.RULES:
-        values[name] = rule.from_wire(raw[name], inner)
-        inner[name] = raw[name]
-    return cls(**values)
-
-
-def record_violations(record: Any, scope: Scope = OUTERMOST) -> list[Violation]:
-    """The violations of all fields, up to the first value that does not even fit the wire."""
-    inner = scope.new_child()
-    found: list[Violation] = []
-    for name, rule in record.RULES:
-        value = getattr(record, name)
-        try:
-            raw = rule.to_wire(value, inner, strict=False)
-        except EncodeError as error:
-            unfit = error.inside(name)
-            return [*found, Violation(unfit.path, unfit.problem)]
-        found += [violation.inside(name) for violation in rule.violations(value, inner)]
-        inner[name] = raw
-    return found
-
-
-def record_to_json(record: Any, scope: Scope = OUTERMOST) -> dict[str, Any]:
-    """The fields as JSON shows them: raw numbers, bytes as hexadecimal text."""
-    inner = scope.new_child()
-    shown = {}
-    for name, rule in record.RULES:
-        shown[name] = inner[name] = rule.to_json(getattr(record, name), inner)
-    return shown
-
-
-def record_from_json(cls: Any, data: Any, scope: Scope = OUTERMOST) -> Any:
-    """The record of what JSON shows; a field with a default may be left out.
-
-    Raises EncodeError with the field's path where a field is missing, unknown or of another kind.
-    """
-    if not isinstance(data, Mapping):
-        raise EncodeError("", f"must be a mapping of fields, not {data!r}")
-    _check_names(cls, data)
-    inner = scope.new_child()
-    values = {}
-    # Of a list, this is a mark: one is made for each record. No field counts or selects by it.
-    defaults = cls.__init__.__kwdefaults__ or {}
-    for name, rule in cls.RULES:
-        if name in data:
-            values[name] = inner[name] = _field_from_json(name, rule, data[name], inner)
-        elif name in defaults:
-            inner[name] = defaults[name]
-        else:
-            raise EncodeError(name, "the value is missing")
-    return cls(**values)
-
-
-def _field_from_json(name: str, rule: Rule, data: Any, scope: Scope) -> Any:
-    try:
-        return rule.from_json(data, scope)
-    except EncodeError as error:
-        raise error.inside(name) from None
-
-
-def _check_names(cls: Any, data: Mapping[str, Any]) -> None:
-    names = [name for name, _ in cls.RULES]
-    for name in data:
-        if name not in names:
-            has = ", ".join(names) or "none"
-            raise EncodeError(str(name), f"there is no such field; there are: {has}")
-
-
 class StructRule(Rule):
-    """Fields one after another: an instance of the dataclass `record`."""
-
-    __slots__ = ("record",)
-
-    record: type[Any]
+    """Fields one after another: an instance of the class `record`, which has a rule for each."""
 
     def __init__(self, record: type[Any]) -> None:
-        self._set(record)
+        self.record = record
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> dict[str, Any]:
-        """The struct's values."""
+        """The fields' values. Raises EncodeError with the field's path."""
         if not isinstance(value, self.record):
             raise EncodeError("", f"must be a {self.record.__name__}, not {value!r}")
-        return record_to_wire(value, strict, scope)
+        inner = scope.new_child()
+        for name, rule in self.record.RULES:
+            try:
+                inner[name] = rule.chosen(inner).to_wire(getattr(value, name), inner, strict)
+            except EncodeError as error:
+                raise error.inside(name) from None
+        return dict(inner.maps[0])
 
-    def from_wire(self, raw: Any, scope: Scope) -> Any:
-        """The struct."""
-        return record_from_wire(self.record, raw, scope)
+    def from_wire(self, raw: Mapping[str, Any], scope: Scope) -> Any:
+        """The record of what FORMAT parsed."""
+        inner = scope.new_child()
+        values = {}
+        for name, rule in self.record.RULES:
+            values[name] = rule.chosen(inner).from_wire(raw[name], inner)
+            inner[name] = raw[name]
+        return self.record(**values)
 
     def violations(self, value: Any, scope: Scope) -> list[Violation]:
-        """Those of the struct's fields."""
-        return record_violations(value, scope)
+        """Those of all fields, up to the first value that does not even fit the wire."""
+        inner = scope.new_child()
+        found: list[Violation] = []
+        for name, rule in self.record.RULES:
+            field = getattr(value, name)
+            try:
+                chosen = rule.chosen(inner)
+                raw = chosen.to_wire(field, inner, strict=False)
+            except EncodeError as error:
+                return [*found, Violation(error.path, error.problem).inside(name)]
+            found += [violation.inside(name) for violation in chosen.violations(field, inner)]
+            inner[name] = raw
+        return found
 
     def to_json(self, value: Any, scope: Scope) -> dict[str, Any]:
         """A mapping of the fields."""
-        return record_to_json(value, scope)
+        inner = scope.new_child()
+        shown = {}
+        for name, rule in self.record.RULES:
+            chosen = rule.chosen(inner)
+            shown[name] = inner[name] = chosen.to_json(getattr(value, name), inner)
+        return shown
 
     def from_json(self, data: Any, scope: Scope) -> Any:
-        """The struct of a mapping of the fields."""
-        return record_from_json(self.record, data, scope)
+        """The record of a mapping of the fields; one with a default may be left out.
+
+        Raises EncodeError with the field's path where one is missing, unknown or of another kind.
+        """
+        if not isinstance(data, Mapping):
+            raise EncodeError("", f"must be a mapping of fields, not {data!r}")
+        self._check_names(data)
+        inner = scope.new_child()
+        values = {}
+        # Of a list, this is a mark: one is made for each record. No field counts or selects by it.
+        defaults = self.record.__init__.__kwdefaults__ or {}
+        for name, rule in self.record.RULES:
+            if name in data:
+                try:
+                    values[name] = rule.chosen(inner).from_json(data[name], inner)
+                except EncodeError as error:
+                    raise error.inside(name) from None
+                inner[name] = values[name]
+            elif name in defaults:
+                inner[name] = defaults[name]
+            else:
+                raise EncodeError(name, "the value is missing")
+        return self.record(**values)
+
+    def _check_names(self, data: Mapping[str, Any]) -> None:
+        names = [name for name, _ in self.record.RULES]
+        for name in data:
+            if name not in names:
+                has = ", ".join(names) or "none"
+                raise EncodeError(str(name), f"there is no such field; there are: {has}")
 
 
 class ArrayRule(Rule):
@@ -138,13 +106,6 @@ class ArrayRule(Rule):
     None: to the end of the payload, at most `greatest`.
     """
 
-    __slots__ = ("const", "count", "element", "greatest")
-
-    element: Rule
-    count: int | str | None
-    greatest: int | None
-    const: Sequence[Any] | None
-
     def __init__(
         self,
         element: Rule,
@@ -152,7 +113,10 @@ class ArrayRule(Rule):
         greatest: int | None = None,
         const: Sequence[Any] | None = None,
     ) -> None:
-        self._set(element, count, greatest, const)
+        self.element = element
+        self.count = count
+        self.greatest = greatest
+        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> list[Any]:
         """The elements."""
@@ -207,8 +171,6 @@ def _each(convert: Any, elements: Sequence[Any], *context: Any) -> Iterator[Any]
 class NothingRule(Rule):
     """A case without bytes: its value is None."""
 
-    __slots__ = ()
-
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> None:
         """Nothing."""
         if value is not None:
@@ -220,7 +182,7 @@ class NothingRule(Rule):
             raise EncodeError("", f"must be null, not {data!r}")
 
 
-NOTHING = NothingRule()
+_NOTHING = NothingRule()
 
 
 class SwitchRule(Rule):
@@ -229,45 +191,19 @@ class SwitchRule(Rule):
     A case of None has no bytes. A value without a case is `rest`, or can't be sent without one.
     """
 
-    __slots__ = ("_chosen", "cases", "rest", "selector")
-
-    selector: str
-    cases: Mapping[int, Rule | None]
-    rest: OctetsRule | None
-    _chosen: Mapping[int, Rule]
-
     def __init__(
         self, selector: str, cases: Mapping[int, Rule | None], rest: OctetsRule | None = None
     ) -> None:
-        self._set(selector, cases, rest)
-        chosen = {value: rule or NOTHING for value, rule in cases.items()}
-        object.__setattr__(self, "_chosen", chosen)
+        self.selector = selector
+        self.cases = cases
+        self.rest = rest
 
-    def case(self, scope: Scope) -> Rule:
+    def chosen(self, scope: Scope) -> Rule:
         """The rule that the selector chooses. Raises EncodeError if there is none."""
-        rule = self._chosen.get(scope[self.selector], self.rest)
-        if rule is None:
-            known = ", ".join(str(int(value)) for value in self.cases)
-            value = int(scope[self.selector])
+        value = int(scope[self.selector])
+        if value in self.cases:
+            return (self.cases[value] or _NOTHING).chosen(scope)
+        if self.rest is None:
+            known = ", ".join(str(int(case)) for case in self.cases)
             raise EncodeError("", f"there is no case for {self.selector} = {value}, only {known}")
-        return rule
-
-    def to_wire(self, value: Any, scope: Scope, strict: bool) -> Any:
-        """The value of the case."""
-        return self.case(scope).to_wire(value, scope, strict)
-
-    def from_wire(self, raw: Any, scope: Scope) -> Any:
-        """The value of the case."""
-        return self.case(scope).from_wire(raw, scope)
-
-    def violations(self, value: Any, scope: Scope) -> list[Violation]:
-        """Those of the case."""
-        return self.case(scope).violations(value, scope)
-
-    def to_json(self, value: Any, scope: Scope) -> Any:
-        """The case's value."""
-        return self.case(scope).to_json(value, scope)
-
-    def from_json(self, data: Any, scope: Scope) -> Any:
-        """The case's value."""
-        return self.case(scope).from_json(data, scope)
+        return self.rest

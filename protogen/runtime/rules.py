@@ -11,46 +11,42 @@ import math
 from collections import ChainMap
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import EncodeError, join_path
 from protogen.runtime.nearest import nearest_reading
 from protogen.runtime.number import as_integer
-from protogen.runtime.values import Frozen
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""
 
 
-class Violation(Frozen):
+class Violation(NamedTuple):
     """A value that the schema does not foresee.
 
     `forbidden`: strict encoding refuses it. Otherwise it has no name in the schema, but it may be
     sent.
     """
 
-    __slots__ = ("forbidden", "path", "problem")
-
     path: str
     problem: str
-    forbidden: bool
-
-    def __init__(self, path: str, problem: str, forbidden: bool = True) -> None:
-        self._set(path, problem, forbidden)
+    forbidden: bool = True
 
     def inside(self, outer: str) -> Violation:
         """The same violation as seen by what holds the field."""
-        return Violation(join_path(outer, self.path), self.problem, self.forbidden)
+        return self._replace(path=join_path(outer, self.path))
 
     def __str__(self) -> str:
         return f"{self.path}: {self.problem}" if self.path else self.problem
 
 
-class Rule(Frozen):
+class Rule:
     """What all rules can do. `scope` holds the raw values of the fields in front."""
 
-    __slots__ = ()
+    def chosen(self, scope: Scope) -> Rule:
+        """The rule that holds here. Raises EncodeError if there is none."""
+        return self
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> Any:
         """The value that FORMAT builds. Raises EncodeError."""
@@ -94,32 +90,6 @@ class IntegerRule(Rule):
     raw x scale + offset, in `unit`.
     """
 
-    __slots__ = (
-        "bits",
-        "closed",
-        "const",
-        "greatest",
-        "least",
-        "named",
-        "offset",
-        "scale",
-        "signed",
-        "special",
-        "unit",
-    )
-
-    bits: int
-    signed: bool
-    named: type[OpenEnum | Flags] | None
-    closed: bool
-    least: int | None
-    greatest: int | None
-    const: int | None
-    special: Mapping[str, int]
-    scale: Fraction
-    offset: Fraction
-    unit: str | None
-
     def __init__(  # noqa: PLR0913 - an argument for each field
         self,
         bits: int,
@@ -134,7 +104,17 @@ class IntegerRule(Rule):
         offset: Fraction = Fraction(0),
         unit: str | None = None,
     ) -> None:
-        self._set(bits, signed, named, closed, least, greatest, const, special, scale, offset, unit)
+        self.bits = bits
+        self.signed = signed
+        self.named = named
+        self.closed = closed
+        self.least = least
+        self.greatest = greatest
+        self.const = const
+        self.special = special
+        self.scale = scale
+        self.offset = offset
+        self.unit = unit
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> int:
         """The raw value."""
@@ -159,7 +139,7 @@ class IntegerRule(Rule):
             return [Violation("", f"must be {self.const}, not {value}")]
         if value in self.special.values():
             return []
-        if not self._in_range(value):
+        if not _within(value, self.least, self.greatest):
             return [Violation("", self._out_of_range(value, self.least, self.greatest))]
         return self._unnamed(value)
 
@@ -230,10 +210,6 @@ class IntegerRule(Rule):
     def _is_flags(self) -> bool:
         return self.named is not None and issubclass(self.named, Flags)
 
-    def _in_range(self, value: int) -> bool:
-        above = self.least is None or self.least <= value
-        return above and (self.greatest is None or value <= self.greatest)
-
     def _out_of_range(self, value: int, least: int | None, greatest: int | None) -> str:
         unit = f" ({self.unit})" if self.unit and self.scale == 1 and not self.offset else ""
         return f"{value} is not in {_bounds(least, greatest)}{unit}"
@@ -268,16 +244,6 @@ class FloatRule(Rule):
     `inf` and `-inf`.
     """
 
-    __slots__ = ("bits", "const", "greatest", "least", "offset", "scale", "unit")
-
-    bits: Literal[32, 64]
-    least: Fraction | None
-    greatest: Fraction | None
-    const: float | None
-    scale: Fraction
-    offset: Fraction
-    unit: str | None
-
     def __init__(
         self,
         bits: Literal[32, 64],
@@ -288,7 +254,13 @@ class FloatRule(Rule):
         offset: Fraction = Fraction(0),
         unit: str | None = None,
     ) -> None:
-        self._set(bits, least, greatest, const, scale, offset, unit)
+        self.bits = bits
+        self.least = least
+        self.greatest = greatest
+        self.const = const
+        self.scale = scale
+        self.offset = offset
+        self.unit = unit
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> float:
         """The number, if it is not too large for its bits."""
@@ -305,7 +277,7 @@ class FloatRule(Rule):
         """A constant or range that does not hold."""
         if self.const is not None and value != self.const:
             return [Violation("", f"must be {self.const}, not {value}")]
-        if self._in_range(value):
+        if _within(value, self.least, self.greatest):
             return []
         return [Violation("", f"{value} is not in {_bounds(self.least, self.greatest)}")]
 
@@ -329,11 +301,6 @@ class FloatRule(Rule):
         """The raw value for a physical value. Raises ValueError if it is not finite."""
         return float((_exact(physical) - self.offset) / self.scale)
 
-    def _in_range(self, value: float) -> bool:
-        if self.least is not None and not value >= self.least:
-            return False
-        return self.greatest is None or value <= self.greatest
-
 
 def _float(value: float) -> float:
     try:
@@ -352,6 +319,11 @@ def _exact(physical: float | Fraction) -> Fraction:
         raise ValueError(f"{physical!r} is no physical value") from None
 
 
+def _within(value: float, least: int | Fraction | None, greatest: int | Fraction | None) -> bool:
+    """True if the value is in the range; not-a-number is in none that has a bound."""
+    return (least is None or value >= least) and (greatest is None or value <= greatest)
+
+
 def _bounds(least: object, greatest: object) -> str:
     if least is None:
         return f"..{greatest}"
@@ -361,12 +333,8 @@ def _bounds(least: object, greatest: object) -> str:
 class BoolRule(Rule):
     """False or true."""
 
-    __slots__ = ("const",)
-
-    const: bool | None
-
     def __init__(self, const: bool | None = None) -> None:
-        self._set(const)
+        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bool:
         """False or true; 0 and 1 are taken as well."""
@@ -400,16 +368,12 @@ def _is_bit(value: Any) -> bool:
 class OctetsRule(Rule):
     """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
 
-    __slots__ = ("const", "greatest", "size")
-
-    size: int | str | None
-    greatest: int | None
-    const: bytes | None
-
     def __init__(
         self, size: int | str | None = None, greatest: int | None = None, const: bytes | None = None
     ) -> None:
-        self._set(size, greatest, const)
+        self.size = size
+        self.greatest = greatest
+        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
@@ -440,16 +404,12 @@ class TextRule(Rule):
     pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
     """
 
-    __slots__ = ("const", "greatest", "size")
-
-    size: int | str | None
-    greatest: int | None
-    const: str | None
-
     def __init__(
         self, size: int | str | None = None, greatest: int | None = None, const: str | None = None
     ) -> None:
-        self._set(size, greatest, const)
+        self.size = size
+        self.greatest = greatest
+        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""
