@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.passes.context import Context
@@ -12,8 +13,7 @@ from protogen.problems import Problem, Problems, Severity, SourceMap
 from protogen.schema.load import load_syntax
 
 
-@dataclass(frozen=True, slots=True)
-class Compilation:
+class Compilation(msgspec.Struct, frozen=True):
     """What became of one schema file. There is a protocol exactly where there is no error."""
 
     path: str

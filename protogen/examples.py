@@ -7,9 +7,10 @@ a frame first.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
+
+import msgspec
 
 from protogen.live import module_of
 from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, PayloadPart
@@ -32,8 +33,7 @@ def verify_examples(protocol: Protocol, problems: Problems) -> None:
             _Verification(protocol, module, message, example, problems).run()
 
 
-@dataclass(frozen=True, slots=True)
-class _Reading:
+class _Reading(msgspec.Struct, frozen=True):
     """What a decoder makes of the example's frame."""
 
     fails: str

@@ -19,10 +19,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import suppress
-from dataclasses import dataclass, field
 from itertools import pairwise
 from threading import Lock, get_ident
 from typing import Any, Protocol
+
+import msgspec
 
 from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.errors import CaptureError
@@ -94,8 +95,7 @@ class Engine(Protocol):
         """Take the end of the capture."""
 
 
-@dataclass(slots=True)
-class _Run:
+class _Run(msgspec.Struct):
     """A part of the capture: its decoder, and what that found."""
 
     engine: Engine
@@ -105,7 +105,7 @@ class _Run:
     """How far its decoder may come before the next part is decoded."""
     position: int
     """How far the decoder has come."""
-    found: deque[Tables] = field(default_factory=deque)
+    found: deque[Tables] = msgspec.field(default_factory=deque)
     """What is not delivered yet."""
     is_held: bool = False
     """Whether its decoder holds that still."""
@@ -119,16 +119,14 @@ class _Run:
     """Whether it has to be decoded on to find that place."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Known:
+class _Known(msgspec.Struct, frozen=True):
     """A place behind which no byte belongs to an event in front of it: the next event's number."""
 
     offset: int
     number: int
 
 
-@dataclass(frozen=True, slots=True)
-class _Meeting:
+class _Meeting(msgspec.Struct, frozen=True):
     """A frame that two decoders have completed: its number for each of them, and its end."""
 
     number: int

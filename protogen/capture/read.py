@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import BinaryIO
+
+import msgspec
 
 from protogen.capture.arrays import numpy
 from protogen.capture.engines import Engine, EngineName, Maker, makers
@@ -92,8 +93,7 @@ def _reading(
         yield _Reading(capture, maker, in_parts)
 
 
-@dataclass(frozen=True, slots=True)
-class _Reading:
+class _Reading(msgspec.Struct, frozen=True):
     """A capture, and what decodes it."""
 
     capture: memoryview | BinaryIO

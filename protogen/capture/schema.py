@@ -6,10 +6,11 @@ parts, then the struct of the message. Its members lie as a C compiler lays them
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from math import prod
 from typing import Literal
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import NumberPart
@@ -45,8 +46,7 @@ class InvalidReason(IntEnum):
 # --- what a column holds --------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(msgspec.Struct, frozen=True):
     """A number: `u` or `i` and its bytes, `f4`, `f8`, or `?` for a bool."""
 
     code: str
@@ -58,8 +58,7 @@ class Number:
         return self.size
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(msgspec.Struct, frozen=True):
     """ASCII of at most `size` bytes, filled up with NUL bytes.
 
     A byte above 7F is the character of that number (Latin 1).
@@ -69,8 +68,7 @@ class Text:
     alignment: int = 1
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class Record(msgspec.Struct, frozen=True):
     """A struct: columns inside of a column."""
 
     columns: tuple[Column, ...]
@@ -85,8 +83,7 @@ class Record:
         raise KeyError(name)
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(msgspec.Struct, frozen=True):
     """A switch. Its cases share the same bytes; only the one that the selector chooses is there.
 
     `cases` gives the column of each value that has one, and `empty` the values whose case holds
@@ -106,8 +103,7 @@ class Choice:
 Shape = Number | Text | Record | Choice
 
 
-@dataclass(frozen=True, slots=True)
-class Dimension:
+class Dimension(msgspec.Struct, frozen=True):
     """The elements of an array.
 
     `capacity`: how many a row has room for; those that are not there are zero. `counted_by`: the
@@ -119,8 +115,7 @@ class Dimension:
     counted_by: str | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Column:
+class Column(msgspec.Struct, frozen=True, kw_only=True):
     """A column of a table, or of a record in one."""
 
     name: str
@@ -207,8 +202,7 @@ class Column:
 # --- tables ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TableSchema:
+class TableSchema(msgspec.Struct, frozen=True, kw_only=True):
     """A table: its row."""
 
     row: Record
@@ -256,8 +250,7 @@ def _holes_in(column: Column) -> tuple[range, ...] | None:
     return None if inner and column.counts else inner
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CaptureSchema:
+class CaptureSchema(msgspec.Struct, frozen=True, kw_only=True):
     """All tables of what one endpoint sends."""
 
     protocol: str

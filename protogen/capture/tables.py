@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from protogen.capture.arrays import dtype_of, numpy
 from protogen.capture.schema import CaptureSchema
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
     Rows = np.ndarray[Any, np.dtype[Any]]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tables:
+class Tables(msgspec.Struct, frozen=True, kw_only=True):
     """The events of a capture, or of a stretch of it: a table for each kind.
 
     Every row begins with `offset` (of its first byte in the capture), `sequence` (the number of

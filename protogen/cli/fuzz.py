@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
+import msgspec
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
@@ -53,8 +53,7 @@ def fuzz(
     return FINDINGS if failed or not are_whole else CLEAN
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(msgspec.Struct, frozen=True):
     """Selection of samples."""
 
     examples: int

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(msgspec.Struct, frozen=True):
     """Some bits of a field's raw value, as a frame has to have them to show a change."""
 
     mask: int
@@ -21,8 +20,7 @@ class Mark:
         return raw & ~self.mask | self.bits
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
+class Change(msgspec.Struct, frozen=True, kw_only=True):
     """A difference that has one rule."""
 
     rule: str
@@ -56,7 +54,7 @@ class Change:
     """The names of a frame's part that has another one now."""
     taken_by: tuple[str, ...] = ()
     """Messages of NEW that have this one's identity."""
-    places: tuple[str, ...] = field(default=())
+    places: tuple[str, ...] = msgspec.field(default=())
     """Other places with the same change, as an enum has that several fields use."""
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, named
@@ -14,8 +15,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Link, Protocol, Sender
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(msgspec.Struct, frozen=True):
     """Two versions of a protocol, and what changed between them."""
 
     old: Protocol

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, named
@@ -22,8 +23,7 @@ _CHANGES = {
 """Words about a special value that changed."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldComparison:
+class FieldComparison(msgspec.Struct, frozen=True):
     """Compares fields, and what is inside them, of one message."""
 
     message: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.evolution.change import Change
@@ -21,8 +22,7 @@ _MOST_MESSAGES = 3
 """Messages of a protocol that is gone that are named."""
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(msgspec.Struct, frozen=True):
     """A change and its consequences."""
 
     change: Change
@@ -54,13 +54,12 @@ class Finding:
         return ", ".join(found) or "recompile"
 
 
-@dataclass(frozen=True, slots=True)
-class Gate:
+class Gate(msgspec.Struct, frozen=True):
     """Selection of rules: names or categories to use, rules to except, places to ignore."""
 
     use: tuple[str, ...] = ("WIRE", "VALUE")
     except_: tuple[str, ...] = ()
-    ignore: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    ignore: Mapping[str, Sequence[str]] = msgspec.field(default_factory=dict)
     """Rules, or `*`, with patterns of places."""
 
     def unknown(self) -> list[str]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 from typing import Any
+
+import msgspec
 
 from protogen.evolution.quantities import quantity
 from protogen.fuzzing.engine import Refused
@@ -24,8 +25,7 @@ from protogen.runtime.decoder import Decoder
 from protogen.runtime.values import as_dict
 
 
-@dataclass(frozen=True)
-class Contents:
+class Contents(msgspec.Struct, frozen=True, dict=True):
     """Content of a payload."""
 
     fields: tuple[Field, ...] = ()
@@ -53,8 +53,7 @@ class Contents:
         return {row.path: _meaning(row) for row in self._rows}
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(msgspec.Struct, frozen=True):
     """Observation by a receiver."""
 
     message: str | None
@@ -62,7 +61,7 @@ class Reading:
     why: str = ""
     """Reason why there is none."""
     contents: Contents = Contents()
-    parts: Mapping[str, str] = field(default_factory=dict)
+    parts: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Values that the sender chose in the frame itself."""
 
     @property

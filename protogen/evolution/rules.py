@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+import msgspec
 
 
 class Category(StrEnum):
@@ -19,8 +20,7 @@ class Category(StrEnum):
     """Nobody has to do anything."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(msgspec.Struct, frozen=True):
     """A kind of change."""
 
     name: str

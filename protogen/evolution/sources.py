@@ -8,10 +8,11 @@ import subprocess
 import tarfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+
+import msgspec
 
 from protogen.compiler import Compilation, compile_file
 from protogen.evolution.lock import LockError, read_lock
@@ -33,8 +34,7 @@ class _AbsentError(NoVersionError):
     """A place where no schema is."""
 
 
-@dataclass(frozen=True, slots=True)
-class Version:
+class Version(msgspec.Struct, frozen=True):
     """The schemas of one side, by their paths below what was given."""
 
     title: str

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice
 from random import Random
 from typing import Any
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, Mark
@@ -45,8 +46,7 @@ class Harm(StrEnum):
     """New information is ignored."""
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(msgspec.Struct, frozen=True):
     """A value that is read as another one."""
 
     path: str
@@ -56,8 +56,7 @@ class Difference:
     """None where the receiver does not see it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Witness:
+class Witness(msgspec.Struct, frozen=True):
     """A frame, and both readings of it."""
 
     old_sends: bool

@@ -5,9 +5,10 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+import msgspec
 
 from protogen.footprint.elf import Elf, read_elf
 from protogen.footprint.machines import Machine
@@ -32,8 +33,7 @@ class CompilerError(Exception):
     """The compiler refused the program; the text is what it said."""
 
 
-@dataclass(frozen=True, slots=True)
-class Build:
+class Build(msgspec.Struct, frozen=True):
     """A compiled protocol."""
 
     elf: Elf

@@ -6,8 +6,9 @@ With a section for each function and each constant, a relocation says who needs 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from struct import Struct
+
+import msgspec
 
 _WRITE, _ALLOC, _EXEC = 1, 2, 4
 _SYMTAB, _RELA, _NOBITS, _REL = 2, 4, 8, 9
@@ -16,8 +17,7 @@ _NOT_PLACED = 0xFF00
 _FUNCTION, _OBJECT = 2, 1
 
 
-@dataclass(frozen=True, slots=True)
-class Section:
+class Section(msgspec.Struct, frozen=True):
     """A piece of the program that the linker takes or leaves as a whole."""
 
     index: int
@@ -29,8 +29,7 @@ class Section:
     """True if the file holds its bytes, which then are in flash."""
 
 
-@dataclass(frozen=True, slots=True)
-class Symbol:
+class Symbol(msgspec.Struct, frozen=True):
     """A name: of a function, of data, or of something that another file has."""
 
     name: str
@@ -39,8 +38,7 @@ class Symbol:
     is_function: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
+class Reference(msgspec.Struct, frozen=True):
     """A place in a section that needs the address of a symbol."""
 
     section: int
@@ -48,8 +46,7 @@ class Reference:
     symbol: Symbol
 
 
-@dataclass(frozen=True, slots=True)
-class Elf:
+class Elf(msgspec.Struct, frozen=True):
     """An object file."""
 
     sections: tuple[Section, ...]
@@ -58,8 +55,7 @@ class Elf:
     references: tuple[Reference, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _Header:
+class _Header(msgspec.Struct, frozen=True):
     name: int
     type: int
     flags: int

@@ -7,7 +7,8 @@ counts as shared there; what messages and decoders have in common has a row of i
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.footprint.build import Build, build
 from protogen.footprint.graph import Graph
@@ -17,8 +18,7 @@ from protogen.targets.c.emit import Unit, unit_of
 from protogen.targets.c.options import COptions
 
 
-@dataclass(frozen=True, slots=True)
-class FunctionCost:
+class FunctionCost(msgspec.Struct, frozen=True):
     """A function with what it alone needs."""
 
     role: str
@@ -29,8 +29,7 @@ class FunctionCost:
     """The deepest that it goes, with all that it calls, without the user's functions."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cost:
+class Cost(msgspec.Struct, frozen=True):
     """A message or a decoder."""
 
     name: str
@@ -55,8 +54,7 @@ class Cost:
         return tuple(function for function in self.functions if function.role == role)
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(msgspec.Struct, frozen=True):
     """Cost of a protocol."""
 
     protocol: str
@@ -81,8 +79,7 @@ class Report:
         return self.static + sum(decoder.struct for decoder in self.decoders)
 
 
-@dataclass(frozen=True, slots=True)
-class _Owner:
+class _Owner(msgspec.Struct, frozen=True):
     """A message, a decoder or all handlers, before anything is measured."""
 
     name: str

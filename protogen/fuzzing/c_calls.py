@@ -7,8 +7,9 @@ or all at once on a machine that takes a file.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
+
+import msgspec
 
 from protogen.fuzzing.c_driver import DrivenDecoder, DrivenPart, Driver
 from protogen.fuzzing.c_values import Answers, number, pack, unpack
@@ -34,16 +35,14 @@ REASONS = (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Call(Generic[T]):
+class Call(msgspec.Struct, Generic[T], frozen=True):
     """A request, and what reads its answer."""
 
     request: bytes
     read: Callable[[Answers], T]
 
 
-@dataclass(frozen=True, slots=True)
-class Encoded:
+class Encoded(msgspec.Struct, frozen=True):
     """Result of encoding."""
 
     result: int
@@ -54,16 +53,14 @@ class Encoded:
     """No other byte of the buffer was changed."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sent:
+class Sent(msgspec.Struct, frozen=True):
     """Result of sending byte by byte."""
 
     result: int
     data: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Decoded:
+class Decoded(msgspec.Struct, frozen=True):
     """Result of decoding; `intact`: where it failed, the struct was left alone."""
 
     result: int
@@ -71,8 +68,7 @@ class Decoded:
     intact: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class CEvent:
+class CEvent(msgspec.Struct, frozen=True):
     """An event; what is None is not part of it, or was left out by `--events messages`."""
 
     kind: str

@@ -8,8 +8,9 @@ a driver of a protocol.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
@@ -17,8 +18,7 @@ from protogen.model.protocol import Protocol
 TEMPLATES = Path(__file__).with_name("templates")
 
 
-@dataclass(frozen=True, slots=True)
-class DrivenPart:
+class DrivenPart(msgspec.Struct, frozen=True):
     """A part of a frame, as C has it."""
 
     name: str
@@ -30,8 +30,7 @@ class DrivenPart:
         return int(self.type.removeprefix("uint").removesuffix("_t")) // 8
 
 
-@dataclass(frozen=True, slots=True)
-class DrivenMessage:
+class DrivenMessage(msgspec.Struct, frozen=True):
     """A message, and the functions of its payload."""
 
     model: Message
@@ -42,8 +41,7 @@ class DrivenMessage:
     decode: str
 
 
-@dataclass(frozen=True, slots=True)
-class DrivenFrame:
+class DrivenFrame(msgspec.Struct, frozen=True):
     """The functions that make the frame of a message."""
 
     index: int
@@ -55,8 +53,7 @@ class DrivenFrame:
     room: int
 
 
-@dataclass(frozen=True, slots=True)
-class DrivenHandler:
+class DrivenHandler(msgspec.Struct, frozen=True):
     """The function that a decoder calls with a message."""
 
     function: str
@@ -64,8 +61,7 @@ class DrivenHandler:
     message: int
 
 
-@dataclass(frozen=True, slots=True)
-class DrivenDecoder:
+class DrivenDecoder(msgspec.Struct, frozen=True):
     """The decoder of what one endpoint sends."""
 
     index: int
@@ -78,8 +74,7 @@ class DrivenDecoder:
     handlers: tuple[DrivenHandler, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Driver:
+class Driver(msgspec.Struct, frozen=True):
     """The functions that a driver calls, and its sources."""
 
     protocol: Protocol

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
 from typing import Any
+
+import msgspec
 
 from protogen.model.frame import CounterPart, ValuePart
 from protogen.model.messages import Message
@@ -39,8 +40,7 @@ _ANY = 1 << 64
 """More than any integer of a schema."""
 
 
-@dataclass(frozen=True, slots=True)
-class Choices:
+class Choices(msgspec.Struct, frozen=True):
     """Boundaries of a value, and a function that draws any other."""
 
     boundaries: Sequence[Any]
@@ -63,8 +63,7 @@ def unspecified_choices(message: Message) -> Choices:
 # --- numbers that count or select ----------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Need:
+class Need(msgspec.Struct, frozen=True):
     """Bounds of a number because it counts something, or selects one of several cases."""
 
     least: int

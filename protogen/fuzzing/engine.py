@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from protogen.fuzzing.samples import Values
 
@@ -13,8 +14,7 @@ class Refused(Exception):  # noqa: N818 - an answer, not an error of the program
     """The engine will not send these values, and says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(msgspec.Struct, frozen=True):
     """Event of a decoder; all but `kind` and `size` is a message's."""
 
     kind: str

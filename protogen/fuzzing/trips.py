@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import islice
 from random import Random
 from typing import Any
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.fuzzing.engine import Engine, Refused, Seen
@@ -16,8 +17,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 
 
-@dataclass(frozen=True, slots=True)
-class Case:
+class Case(msgspec.Struct, frozen=True):
     """One sample of one message."""
 
     sender: str
@@ -26,8 +26,7 @@ class Case:
     parts: Values
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(msgspec.Struct, frozen=True):
     """Outcome of a case: fine where there is neither a problem nor a refusal."""
 
     case: Case

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.layout.nodes import Collection, Comment, Item, Scalar, walk
 
 _COMMENT = re.compile(r"(?<!\S)#[^\n]*")
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
+class _Found(msgspec.Struct, frozen=True):
     text: str
     start: int
     column: int

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+
+import msgspec
 
 
-@dataclass(slots=True)
-class Scalar:
+class Scalar(msgspec.Struct):
     """A single value."""
 
     value: str
@@ -26,8 +26,7 @@ class Scalar:
         return self.style in ("|", ">")
 
 
-@dataclass(slots=True)
-class Alias:
+class Alias(msgspec.Struct):
     """Stands for what an anchor names."""
 
     name: str
@@ -36,8 +35,7 @@ class Alias:
     anchor: str | None = None
 
 
-@dataclass(slots=True)
-class Comment:
+class Comment(msgspec.Struct):
     """A comment behind something on the same line."""
 
     text: str
@@ -45,8 +43,7 @@ class Comment:
     """Column where it begins if it is lined up with others; else 0."""
 
 
-@dataclass(slots=True)
-class Item:
+class Item(msgspec.Struct):
     """A key with its value, or an element of a list, which has no key."""
 
     key: Node | None
@@ -56,13 +53,12 @@ class Item:
     column: int
     value_column: int | None
     """Column where the value begins if that is on the line of the key."""
-    leading: list[str] = field(default_factory=list)
+    leading: list[str] = msgspec.field(default_factory=list)
     """Comments on lines of their own in front of it; an empty text is a blank line."""
-    beside: list[Comment] = field(default_factory=list)
+    beside: list[Comment] = msgspec.field(default_factory=list)
 
 
-@dataclass(slots=True)
-class Collection:
+class Collection(msgspec.Struct):
     """A mapping or a list."""
 
     is_mapping: bool
@@ -71,7 +67,7 @@ class Collection:
     start: int
     end: int
     anchor: str | None = None
-    foot: list[str] = field(default_factory=list)
+    foot: list[str] = msgspec.field(default_factory=list)
     """Comments behind the last item."""
 
     @property
@@ -83,8 +79,7 @@ class Collection:
 Node = Scalar | Alias | Collection
 
 
-@dataclass(slots=True)
-class Text:
+class Text(msgspec.Struct):
     """A whole file."""
 
     head: list[str]

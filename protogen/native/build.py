@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import platform
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+import msgspec
 
 from protogen.native.cache import SUFFIX, cache_folder, check, safe_folder
 from protogen.native.compiler import Compiler, compilers, working
@@ -16,8 +17,7 @@ from protogen.native.errors import NativeError, NoCompilerError
 from protogen.version import VERSION
 
 
-@dataclass(frozen=True, slots=True)
-class Built:
+class Built(msgspec.Struct, frozen=True):
     """A library, and whether it was compiled just now."""
 
     path: Path

@@ -6,10 +6,11 @@ import os
 import shlex
 import shutil
 import subprocess
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+import msgspec
 
 from protogen.native.errors import NativeError, NoCompilerError
 
@@ -24,8 +25,7 @@ _PROBE = "#include <stdint.h>\n#include <stdlib.h>\n#include <string.h>\n"
 _HELP = "pip install 'protogen-serial[compiler]' brings a C compiler"
 
 
-@dataclass(frozen=True, slots=True)
-class Compiler:
+class Compiler(msgspec.Struct, frozen=True):
     """How the compiler is called."""
 
     command: tuple[str, ...]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from typing import NamedTuple
+
+import msgspec
 
 MAX_INTEGER = 20
 """Characters of an integer of 64 bits with its sign."""
@@ -14,8 +15,7 @@ MAX_FLOAT = 40
 """Characters of a float."""
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(msgspec.Struct, frozen=True):
     """Location of a number, or of the first byte of something, in a row."""
 
     depth: int
@@ -53,38 +53,33 @@ class Spelling(Enum):
     PLAIN = "put_plain"
 
 
-@dataclass(frozen=True, slots=True)
-class Literal:
+class Literal(msgspec.Struct, frozen=True):
     """A fixed text."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Int:
+class Int(msgspec.Struct, frozen=True):
     """An integer; `from_start`: with the offset of the capture's first byte added."""
 
     place: Place
     from_start: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Bool:
+class Bool(msgspec.Struct, frozen=True):
     """A bool: `true` or `false`."""
 
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Float:
+class Float(msgspec.Struct, frozen=True):
     """The shortest decimal that is read as the same float."""
 
     place: Place
     others: Others
 
 
-@dataclass(frozen=True, slots=True)
-class Physical:
+class Physical(msgspec.Struct, frozen=True):
     """The physical value of a raw one, raw x scale + offset, rounded once."""
 
     place: Place
@@ -97,16 +92,14 @@ class Physical:
     others: Others
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(msgspec.Struct, frozen=True):
     """The text of a number; nothing for a number that has none."""
 
     place: Place
     texts: Mapping[int, str]
 
 
-@dataclass(frozen=True, slots=True)
-class Characters:
+class Characters(msgspec.Struct, frozen=True):
     """Text that lies in the row, padded with NUL.
 
     `count`: its characters; None: up to the last one that is not NUL.
@@ -118,8 +111,7 @@ class Characters:
     spelling: Spelling
 
 
-@dataclass(frozen=True, slots=True)
-class Hex:
+class Hex(msgspec.Struct, frozen=True):
     """Two digits for each of some bytes that lie in the row."""
 
     place: Place
@@ -135,8 +127,7 @@ class Source(Enum):
     """The payloads of unknown frames."""
 
 
-@dataclass(frozen=True, slots=True)
-class HexOf:
+class HexOf(msgspec.Struct, frozen=True):
     """Two digits for each of some bytes that lie elsewhere."""
 
     source: Source
@@ -144,8 +135,7 @@ class HexOf:
     size: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Repeat:
+class Repeat(msgspec.Struct, frozen=True):
     """Steps for each element of a list, with commas between the elements."""
 
     first: Place
@@ -154,8 +144,7 @@ class Repeat:
     body: Steps
 
 
-@dataclass(frozen=True, slots=True)
-class Choose:
+class Choose(msgspec.Struct, frozen=True):
     """The steps of the case whose value a number has, else those of `rest`."""
 
     place: Place
@@ -172,21 +161,18 @@ class Condition(Enum):
     """The time of the row is known."""
 
 
-@dataclass(frozen=True, slots=True)
-class When:
+class When(msgspec.Struct, frozen=True):
     """Steps that are taken where a condition holds."""
 
     condition: Condition
     body: Steps
 
 
-@dataclass(frozen=True, slots=True)
-class Time:
+class Time(msgspec.Struct, frozen=True):
     """The time of the row."""
 
 
-@dataclass(frozen=True, slots=True)
-class Quoted:
+class Quoted(msgspec.Struct, frozen=True):
     """One value of CSV, in quotes where it needs them."""
 
     body: Steps

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from protogen.capture.arrays import numpy
 from protogen.native.build import compiled
@@ -18,8 +19,7 @@ _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
 
 
-@dataclass(frozen=True, slots=True)
-class PrintedRows:
+class PrintedRows(msgspec.Struct, frozen=True):
     """Rows to be printed."""
 
     table: int
@@ -60,8 +60,7 @@ class _Rows(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class BuiltPrinter:
+class BuiltPrinter(msgspec.Struct, frozen=True):
     """A library that prints rows, and whether it was compiled just now."""
 
     path: Path

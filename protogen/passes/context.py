@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from protogen.model.origin import NOTHING, About, Source
 from protogen.problems import Problem, Problems, Span
@@ -27,8 +28,7 @@ _OF_REFERENCES = frozenset({"PG116", "PG117", "PG121"})
 Find = Callable[[Loc], Span]
 
 
-@dataclass(slots=True)
-class Tally:
+class Tally(msgspec.Struct):
     """Number of errors found, the same problem counted each time."""
 
     errors: int = 0
@@ -36,8 +36,7 @@ class Tally:
     """Number of errors that concern examples only."""
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(msgspec.Struct, frozen=True):
     """One schema on its way through the passes."""
 
     syntax: ProtocolSyntax
@@ -54,7 +53,7 @@ class Context:
     """Names of which is not known what they mean; a key of the root stands for all its names."""
     spoilt: bool = False
     """True if more than some examples could not be read."""
-    tally: Tally = field(default_factory=Tally)
+    tally: Tally = msgspec.field(default_factory=Tally)
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
         """Report a problem at a value."""

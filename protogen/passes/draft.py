@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from protogen.model.frame import Frame
 from protogen.model.framing import Framing
@@ -13,26 +13,25 @@ from protogen.passes.context import Context
 from protogen.passes.types.named_types import NamedTypes
 
 
-@dataclass(slots=True)
-class Draft:
+class Draft(msgspec.Struct):
     """Results by pass; a later pass reads those of earlier ones and adds its own."""
 
     named: NamedTypes
     senders: tuple[str, ...] = ()
-    frames: dict[str, Frame] = field(default_factory=dict)
-    messages: dict[str, Message] = field(default_factory=dict)
-    unidentified: set[str] = field(default_factory=set)
+    frames: dict[str, Frame] = msgspec.field(default_factory=dict)
+    messages: dict[str, Message] = msgspec.field(default_factory=dict)
+    unidentified: set[str] = msgspec.field(default_factory=set)
     """Messages whose identity is wrong: no receiver could have them, so later passes don't."""
-    too_large: set[str] = field(default_factory=set)
+    too_large: set[str] = msgspec.field(default_factory=set)
     """Messages that no frame can hold."""
     used_types: frozenset[str] = frozenset()
     """The declared types that messages have."""
-    overloads: dict[str, list[Overload]] = field(default_factory=dict)
+    overloads: dict[str, list[Overload]] = msgspec.field(default_factory=dict)
     """By sender."""
-    framings: dict[str, Framing] = field(default_factory=dict)
+    framings: dict[str, Framing] = msgspec.field(default_factory=dict)
     decisions: tuple[Decision, ...] = ()
     exchanges: tuple[Exchange, ...] = ()
-    reserved: Reserved = field(default_factory=Reserved)
+    reserved: Reserved = msgspec.field(default_factory=Reserved)
 
     @classmethod
     def of(cls, context: Context) -> Draft:

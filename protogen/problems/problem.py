@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.problems.catalogue import CODES
 from protogen.problems.severity import Severity
@@ -15,8 +16,7 @@ Note = tuple[Span | None, str]
 SortKey = tuple[str, int, int, str, str]
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
+class Problem(msgspec.Struct, frozen=True):
     """A problem, its place, and how to fix it. Problems order by file, line, column and code."""
 
     code: str

@@ -12,8 +12,9 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from protogen.problems import Problems, SourceMap, Span
 
@@ -25,8 +26,7 @@ Lookup = Callable[[str, Span], str | None]
 """Gives the text for a name that stands at a place; None where there is none, which is reported."""
 
 
-@dataclass(frozen=True, slots=True)
-class Page:
+class Page(msgspec.Struct, frozen=True):
     """A hand-written file, and what should stand in it."""
 
     path: Path
@@ -39,8 +39,7 @@ class Page:
         return self.old == self.new
 
 
-@dataclass(frozen=True, slots=True)
-class _Block:
+class _Block(msgspec.Struct, frozen=True):
     """A block: the numbers of the lines of its marks, counted from 0, and the name in it."""
 
     opening: int

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
+
+import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems, SourceMap, Span, hint_for
@@ -16,13 +17,12 @@ from protogen.targets.markdown.pages.sections import moved, section_names, secti
 _PROTOCOL = re.compile(r"[^.#]*")
 
 
-@dataclass(frozen=True, slots=True)
-class _Sections:
+class _Sections(msgspec.Struct, frozen=True):
     """The sections of all protocols by the names that blocks have for them."""
 
     protocols: dict[str, Protocol]
     problems: Problems
-    made: dict[str, dict[str, str]] = field(default_factory=dict)
+    made: dict[str, dict[str, str]] = msgspec.field(default_factory=dict)
 
     def find(self, name: str, place: Span) -> tuple[str, str] | None:
         """Return the protocol's name and the section; an unknown name is reported."""

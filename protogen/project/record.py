@@ -19,11 +19,12 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import Any
+
+import msgspec
 
 from protogen.problems.sources import SourceMap
 from protogen.schema.dialects.project_folder import project_folder
@@ -40,8 +41,7 @@ Job = tuple[Sequence[File], Path, bool]
 """The files of a target, their folder, and whether others of ours in it are stale."""
 
 
-@dataclass(frozen=True, slots=True)
-class Made:
+class Made(msgspec.Struct, frozen=True):
     """Contents of one target's folder."""
 
     folder: str
@@ -57,8 +57,7 @@ class Made:
         return sum(digest is not None for digest in self.expected.values())
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class Record(msgspec.Struct, frozen=True):
     """One run. Paths are relative to the folder of the project."""
 
     key: str
@@ -80,8 +79,7 @@ def program() -> str:
     return _hash("\n".join([*parts, *map(_library, _LIBRARIES)]))
 
 
-@dataclass(frozen=True, slots=True)
-class Keeper:
+class Keeper(msgspec.Struct, frozen=True):
     """Reads and writes the record of a run with certain options."""
 
     root: Path
@@ -90,7 +88,7 @@ class Keeper:
     """Other things that the output depends on, as JSON has them."""
     schemas: Sequence[Path]
     pages: Sequence[Path]
-    program: str = field(default_factory=program)
+    program: str = msgspec.field(default_factory=program)
     """Identity of this program, asked once: it may change while it runs."""
 
     def current(self) -> Record | None:
@@ -117,7 +115,8 @@ class Keeper:
             return  # Something has changed since.
         made = tuple(self._made(*job) for job in jobs)
         try:
-            self._write(json.dumps(asdict(Record(self._key(), inputs, made, len(pages)))))
+            record = Record(self._key(), inputs, made, len(pages))
+            self._write(json.dumps(msgspec.to_builtins(record)))
         except OSError:
             return  # Then the next run compiles.
 

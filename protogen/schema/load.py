@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.problems import Problems, SourceMap
 from protogen.schema.dialects.extends import Merged, merge_bases
@@ -14,8 +15,7 @@ from protogen.schema.text.document import decode_document, read_document
 from protogen.schema.text.nodes import MappingNode, to_data
 
 
-@dataclass(frozen=True, slots=True)
-class Loaded:
+class Loaded(msgspec.Struct, frozen=True):
     """A schema as it was written, and where each of its nodes stands."""
 
     syntax: ProtocolSyntax

@@ -8,8 +8,9 @@ consequences, so two sets are kept. *Doubtful* items lack something that they ho
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.protocol import ProtocolSyntax
@@ -41,14 +42,13 @@ _ITEMS = frozenset({"types", "decisions", "overloads"})
 """Keys of the root whose items others refer to."""
 
 
-@dataclass(slots=True)
-class Recovery:
+class Recovery(msgspec.Struct):
     """Parts of a schema dropped so that checking can go on."""
 
     data: dict[str, Any]
-    doubtful: set[Loc] = field(default_factory=set)
+    doubtful: set[Loc] = msgspec.field(default_factory=set)
     """Items of the root that are not whole, and fields; `fields` stands for what refers to any."""
-    lost: set[Loc] = field(default_factory=set)
+    lost: set[Loc] = msgspec.field(default_factory=set)
     """Names that can't be referred to any more; a key of the root stands for all of its names."""
 
     def drop(self, loc: Loc, *, unknown_key: bool) -> bool:

@@ -7,7 +7,8 @@ finds all references, each with the mappings that may declare it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.schema.scopes import Place, Scopes
 from protogen.schema.syntax.forms import Form
@@ -21,16 +22,14 @@ _NAMINGS = ("values", "flags", "bits")
 """Keys under which a field names its values or bits."""
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
+class Spot(msgspec.Struct, frozen=True):
     """Scalar of a tree: a value, or the key of an item."""
 
     place: Place
     at_key: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
+class Reference(msgspec.Struct, frozen=True):
     """A name in the text of a scalar, and the mappings that may declare it, nearest first."""
 
     kind: Kind

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+import msgspec
 
 
 class Framing(StrEnum):
@@ -34,8 +35,7 @@ _SUMMARIES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Numbers:
+class Numbers(msgspec.Struct, frozen=True):
     """Look of numbers on the wire of a framing."""
 
     small: str
@@ -50,8 +50,7 @@ WHOLE_BYTES = Numbers("uint8", "uint16", "sint16", "0x7FFF", ("0x01", "0x02", "0
 SEVEN_BITS = Numbers("uint7", "uint14", "sint14", "0x1FFF", ("0x80", "0x81", "0x90"))
 
 
-@dataclass(frozen=True, slots=True)
-class Bytes:
+class Bytes(msgspec.Struct, frozen=True):
     """The frames of the examples, as a schema has them."""
 
     set_mode: str

@@ -6,11 +6,12 @@ A target is imported when it is asked to print, so that a command which needs no
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 from typing import Protocol as Interface
+
+import msgspec
 
 if TYPE_CHECKING:
     from protogen.model.protocol import Protocol
@@ -32,8 +33,7 @@ class Target(Interface):
         """Return the files for these protocols, in the order of their paths."""
 
 
-@dataclass(frozen=True, slots=True)
-class LazyTarget:
+class LazyTarget(msgspec.Struct, frozen=True):
     """A target whose module, which has a function `emit`, is imported at the first use."""
 
     name: str

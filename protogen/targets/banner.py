@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from protogen.targets.escape import c_comment, html_comment, python_comment
 from protogen.version import VERSION
@@ -18,8 +19,7 @@ _DIGITS = 12
 """Hex digits of the spec hash that are shown; enough to tell specs apart, and it fits a line."""
 
 
-@dataclass(frozen=True, slots=True)
-class CommentSyntax:
+class CommentSyntax(msgspec.Struct, frozen=True):
     """How a language writes a comment of one line."""
 
     opening: str

@@ -11,12 +11,13 @@ import json
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from difflib import unified_diff
 from enum import StrEnum
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from stat import S_ISREG
+
+import msgspec
 
 from protogen.targets.banner import is_banner
 
@@ -28,8 +29,7 @@ _LONGEST_BANNER = 4096
 """Bytes of a file that are searched for the end of its first line."""
 
 
-@dataclass(frozen=True, slots=True)
-class File:
+class File(msgspec.Struct, frozen=True):
     r"""A file to be generated, at a path relative to its folder.
 
     `banner` is the first line, without its line break; None where the format has no comments.
@@ -66,8 +66,7 @@ class State(StrEnum):
     """Not ours, or out of reach; the reason says which."""
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(msgspec.Struct, frozen=True):
     """A path in the folder that is not as it should be."""
 
     path: PurePosixPath
@@ -78,8 +77,7 @@ class Difference:
         return f"{self.path}: {self.state}" + (f", {self.reason}" if self.reason else "")
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(msgspec.Struct, frozen=True):
     """What `write_files` did. With anything refused before the first write, nothing was written."""
 
     written: tuple[PurePosixPath, ...] = ()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
+import msgspec
 import typer
 
 from protogen.cli.exits import UsageError
@@ -52,8 +52,7 @@ Stubs = Annotated[
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(msgspec.Struct, frozen=True):
     """Options of the command line about C; None where it said nothing."""
 
     style: str | None
@@ -68,8 +67,7 @@ class Choice:
         return not any((self.style, self.events, self.only, self.senders, self.stubs))
 
 
-@dataclass(frozen=True, slots=True)
-class ChosenC:
+class ChosenC(msgspec.Struct, frozen=True):
     """The C target, with what the command line said."""
 
     choice: Choice

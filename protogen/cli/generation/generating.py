@@ -6,9 +6,10 @@ import gc
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
 from protogen.cli.generation.depfile import write_depfile
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
     from protogen.project.record import Keeper
 
 
-@dataclass(frozen=True, slots=True)
-class Mode:
+class Mode(msgspec.Struct, frozen=True):
     """Use of the files that a run makes."""
 
     check: bool = False
@@ -40,16 +40,15 @@ class Mode:
         return not self.check and not self.diff
 
 
-@dataclass(slots=True)
-class Reads:
+class Reads(msgspec.Struct):
     """Files that a run depends on, as far as it came: for `--watch`."""
 
-    files: set[Path] = field(default_factory=set)
+    files: set[Path] = msgspec.field(default_factory=set)
     """Files that were read or looked for, other than those of the plan."""
     plan: Plan | None = None
-    missing: set[Path] = field(default_factory=set)
+    missing: set[Path] = msgspec.field(default_factory=set)
     """Files that schemas extend and that were not there."""
-    written: set[Path] = field(default_factory=set)
+    written: set[Path] = msgspec.field(default_factory=set)
     """Files that are read and written, which are known as they are now."""
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from protogen.targets.output import File, Report
 
 
-@dataclass(frozen=True, slots=True)
-class Job:
+class Job(msgspec.Struct, frozen=True):
     """The files of one target, and the folder that they go to."""
 
     files: tuple[File, ...]

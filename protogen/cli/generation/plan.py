@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from protogen.cli.exits import UsageError
 from protogen.cli.generation import c_options
@@ -22,8 +23,7 @@ _PYTHON = "python"
 _MARKDOWN = "markdown"
 
 
-@dataclass(frozen=True, slots=True)
-class Given:
+class Given(msgspec.Struct, frozen=True):
     """Request of the command line; None where it said nothing."""
 
     schemas: Sequence[Path] | None
@@ -33,8 +33,7 @@ class Given:
     c: c_options.Choice
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(msgspec.Struct, frozen=True):
     """Plan of what is to be generated from what."""
 
     schemas: tuple[Path, ...]
@@ -59,7 +58,7 @@ class Plan:
             "output": self.output.as_posix(),
             "targets": self.targets,
             "standalone": self.standalone,
-            "c": asdict(self.c),
+            "c": msgspec.structs.asdict(self.c),
             "prune": self.prune,
         }
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError, explain
@@ -37,14 +37,13 @@ def generate_and_watch(given: Given, mode: Mode) -> int:
         return CLEAN
 
 
-@dataclass(slots=True)
-class _Watch:
+class _Watch(msgspec.Struct):
     """Files that are watched, and how they were before the last run."""
 
     given: Given
     mode: Mode
-    reads: Reads = field(default_factory=Reads)
-    before: States = field(default_factory=dict)
+    reads: Reads = msgspec.field(default_factory=Reads)
+    before: States = msgspec.field(default_factory=dict)
 
     def say(self, text: str) -> None:
         """Print what happens."""

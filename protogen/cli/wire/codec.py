@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from protogen.cli.exits import UsageError
 from protogen.cli.schemas import find_sender, open_protocol
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from protogen.runtime.decoder import Decoder
 
 
-@dataclass(frozen=True, slots=True)
-class Codec:
+class Codec(msgspec.Struct, frozen=True):
     """A protocol, and what the module that would be generated for it makes of it."""
 
     protocol: Protocol

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 from protogen.convert.columns.tables import ColumnType, Listed, Names
@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, np.dtype[Any]]
 
 
-@dataclass(frozen=True, slots=True)
-class Numbers:
+class Numbers(msgspec.Struct, frozen=True):
     """Numbers; those where `missing` holds are not there."""
 
     values: Array
@@ -34,8 +33,7 @@ class Numbers:
         return _numbers(self.values, self.missing)
 
 
-@dataclass(frozen=True, slots=True)
-class Nothing:
+class Nothing(msgspec.Struct, frozen=True):
     """A column without a single value."""
 
     count: int
@@ -56,8 +54,7 @@ class Nothing:
         return pa.nulls(self.count, type_of(type))
 
 
-@dataclass(frozen=True, slots=True)
-class Codes:
+class Codes(msgspec.Struct, frozen=True):
     """Places in a list of texts; -1: none of them."""
 
     codes: Array
@@ -81,8 +78,7 @@ class Codes:
         return pa.DictionaryArray.from_arrays(indices, pa.array(type.texts, pa.string()))
 
 
-@dataclass(frozen=True, slots=True)
-class Lists:
+class Lists(msgspec.Struct, frozen=True):
     """A list in each row: the first `counts` numbers of the row of a matrix; None: all of them."""
 
     values: Array
@@ -130,8 +126,7 @@ class Lists:
         return _numbers(chosen, self.missing.reshape(-1) if there is None else self.missing[there])
 
 
-@dataclass(frozen=True, slots=True)
-class Octets:
+class Octets(msgspec.Struct, frozen=True):
     """Bytes in each row: the first `counts` of the row of a matrix; None: all of them."""
 
     values: Array
@@ -158,8 +153,7 @@ class Octets:
         return pa.Array.from_buffers(pa.binary(), len(self), buffers)
 
 
-@dataclass(frozen=True, slots=True)
-class Spans:
+class Spans(msgspec.Struct, frozen=True):
     """Bytes in each row: from `starts` on, up to `ends`, of what all rows share."""
 
     data: bytes

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Protocol
+
+import msgspec
 
 from protogen.convert.columns.csv_text import csv_of
 from protogen.convert.columns.event_values import plain_fields, reached
@@ -19,17 +20,16 @@ from protogen.runtime.sender import SenderSpec
 _ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
 
 
-@dataclass(slots=True)
-class Tally:
+class Tally(msgspec.Struct):
     """Counts of what was in a capture, for people."""
 
     bytes: int = 0
     """Bytes of the line."""
-    messages: Counter[str] = field(default_factory=Counter)
+    messages: Counter[str] = msgspec.field(default_factory=Counter)
     """Frames of each message."""
     unknown: int = 0
     """Frames of unknown identity."""
-    invalid: Counter[str] = field(default_factory=Counter)
+    invalid: Counter[str] = msgspec.field(default_factory=Counter)
     """Bytes that are no frame, by reason."""
 
     def add(self, other: Tally) -> None:
@@ -119,8 +119,7 @@ class EventDecoder:
         return EventBatch(self._tables, events, times, self._start)
 
 
-@dataclass(frozen=True, slots=True)
-class EventBatch:
+class EventBatch(msgspec.Struct, frozen=True):
     """Events, each with the time of its last byte."""
 
     tables: Tables

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
+import msgspec
 import numpy as np
 
 from protogen.capture.engines import Engine
@@ -50,8 +50,7 @@ _REASON_CODES = np.array(
 """The place in `REASONS` of each number of a reason."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(msgspec.Struct, frozen=True):
     """Readers of a message's columns."""
 
     table: Table
@@ -201,8 +200,7 @@ def _text_reader(column: Held, type: TextType, counted_by: str | None) -> Reader
 # --- batches --------------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
-class Times:
+class Times(msgspec.Struct):
     """Times of the bytes of a capture: runs of bytes, each with its end and its time."""
 
     ends: Array
@@ -219,8 +217,7 @@ class Times:
         return Numbers(found, missing if missing.any() else None)
 
 
-@dataclass(slots=True)
-class ColumnBatch:
+class ColumnBatch(msgspec.Struct):
     """Rows of a stretch of a capture, in NumPy tables."""
 
     readings: Readings

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 from protogen.convert.columns.arrays import Array
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 
-@dataclass(frozen=True, slots=True)
-class Same:
+class Same(msgspec.Struct, frozen=True):
     """The same value in each row."""
 
     value: Any
@@ -36,8 +35,7 @@ class Same:
         return _arrow(type, [self.value]).take(_indices(np.zeros(self.count, "i8")))
 
 
-@dataclass(frozen=True, slots=True)
-class Scattered:
+class Scattered(msgspec.Struct, frozen=True):
     """Values of some of the rows: `places` has the number of each row's value; -1: none."""
 
     values: Values
@@ -57,8 +55,7 @@ class Scattered:
         return _placed(type, _arrow(type, self.values), self.places)
 
 
-@dataclass(frozen=True, slots=True)
-class Structs:
+class Structs(msgspec.Struct, frozen=True):
     """Named values in each row."""
 
     members: Mapping[str, Values]
@@ -87,8 +84,7 @@ class Structs:
         return pa.StructArray.from_arrays(arrays, fields=list(type_of(type)))
 
 
-@dataclass(frozen=True, slots=True)
-class Cases:
+class Cases(msgspec.Struct, frozen=True):
     """One of several named values in each row: for each name those of the rows that have it."""
 
     members: Mapping[str, Scattered]
@@ -127,8 +123,7 @@ class Cases:
         return pa.StructArray.from_arrays(arrays, fields=list(type_of(type)))
 
 
-@dataclass(frozen=True, slots=True)
-class ListsOf:
+class ListsOf(msgspec.Struct, frozen=True):
     """Several values in each row: `elements` has those of all rows, `counts` how many are whose."""
 
     elements: Values

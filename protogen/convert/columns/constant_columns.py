@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
 from protogen.convert.columns.arrays import Array
@@ -35,8 +35,7 @@ def at_places(scope: Scope, places: Callable[[], Array]) -> Scope:
     return ChainMap(_Picked(scope, places))
 
 
-@dataclass(frozen=True, slots=True)
-class CaseRows:
+class CaseRows(msgspec.Struct, frozen=True):
     """The rows that have one case of a switch."""
 
     rows: Array

@@ -20,10 +20,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 from typing import Any
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.messages import Message
@@ -53,22 +54,19 @@ Path = tuple[str, ...]
 # --- what a column holds --------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Scalar:
+class Scalar(msgspec.Struct, frozen=True):
     """One value: `int8` to `uint64`, `float32`, `float64`, `bool`, `text` or `bytes`."""
 
     kind: str
 
 
-@dataclass(frozen=True, slots=True)
-class Names:
+class Names(msgspec.Struct, frozen=True):
     """One of a few texts."""
 
     texts: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Listed:
+class Listed(msgspec.Struct, frozen=True):
     """Several values of one kind; `count` where there are always as many, and not none."""
 
     element: ColumnType
@@ -77,8 +75,7 @@ class Listed:
     """True if some of them may be missing."""
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class Record(msgspec.Struct, frozen=True):
     """Named values."""
 
     members: tuple[tuple[str, ColumnType], ...]
@@ -99,8 +96,7 @@ FLOAT64 = Scalar("float64")
 # --- what is computed from a raw value ------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Physical:
+class Physical(msgspec.Struct, frozen=True):
     """The physical value of a raw one: (raw x `times` + `plus`) / `over`; None for `special`.
 
     The whole numbers give the exact quotient rounded once, which scale and offset as floats do not.
@@ -142,8 +138,7 @@ class Physical:
         return float(raw * self.scale + self.offset)
 
 
-@dataclass(frozen=True, slots=True)
-class Naming:
+class Naming(msgspec.Struct, frozen=True):
     """The name of a raw value; None for one without."""
 
     names: Mapping[int, str]
@@ -158,8 +153,7 @@ Derived = Physical | Naming
 # --- columns and tables ---------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(msgspec.Struct, frozen=True):
     """A column of a table. `derived` says how its values follow from the raw ones at `path`."""
 
     name: str
@@ -167,12 +161,11 @@ class Column:
     path: Path
     derived: Derived | None = None
     nullable: bool = False
-    facts: Mapping[str, str] = field(default_factory=dict)
+    facts: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Facts for readers, in the metadata of formats that have such."""
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(msgspec.Struct, frozen=True):
     """A table: the rows of one message, or of what is none."""
 
     name: str
@@ -188,8 +181,7 @@ class Table:
         return self.frame_columns + self.columns
 
 
-@dataclass(frozen=True, slots=True)
-class Tables:
+class Tables(msgspec.Struct, frozen=True):
     """The tables of one sender's captures."""
 
     protocol: Protocol

@@ -5,14 +5,14 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 PIECE = 1 << 20
 """About so many bytes are decoded at once."""
 
 
-@dataclass(frozen=True, slots=True)
-class Chunk:
+class Chunk(msgspec.Struct, frozen=True):
     """Some bytes of the line, and when they came.
 
     `times` has the nanoseconds of each run of bytes that came together, `ends` where the run ends,

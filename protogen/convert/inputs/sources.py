@@ -20,10 +20,11 @@ import sys
 import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from io import BufferedReader, RawIOBase
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO, cast
+
+import msgspec
 
 from protogen.capture.record import MAGIC
 from protogen.convert.errors import ConvertError, needed
@@ -49,8 +50,7 @@ _WORDS = {
 _KINDS = {".hex": InputKind.HEX}
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(msgspec.Struct, frozen=True):
     """Origin of a capture: a path, a URL that fsspec knows, or `-`."""
 
     place: str
@@ -174,8 +174,7 @@ def _url_stamp(url: str) -> tuple[int | None, str | None]:
     return known.get("size"), None if version is None else str(version)
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class Format(msgspec.Struct, frozen=True):
     """Format of a capture."""
 
     kind: InputKind
@@ -191,8 +190,7 @@ class Format:
         return f"{_WORDS[self.kind]}{packed}"
 
 
-@dataclass(slots=True)
-class Capture:
+class Capture(msgspec.Struct):
     """A capture that was opened: what it is, and its bytes."""
 
     format: Format

@@ -18,9 +18,9 @@ By induction from the capture's start, all rows are those of one decoder, whatev
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any, BinaryIO
 
+import msgspec
 import numpy as np
 
 from protogen.capture.tables import Tables as Filled
@@ -37,8 +37,7 @@ GREATEST = 1 << (64 - _SIZE_BITS)
 """The most bytes of a capture whose parts can be told to fit each other: 8 TiB."""
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(msgspec.Struct, frozen=True):
     """Frame at which decoders meet: its offset and size in the capture."""
 
     offset: int

@@ -10,12 +10,13 @@ from __future__ import annotations
 import json
 import pickle
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, cast
 from uuid import uuid4
+
+import msgspec
 
 from protogen.convert.columns.batches import Tally, batches_of
 from protogen.convert.columns.tables import Tables, tables_of
@@ -33,8 +34,7 @@ _LEAST_LEAD = 1 << 14
 """A decoder that is to guess an entry begins at least so many bytes before the range."""
 
 
-@dataclass(frozen=True, slots=True)
-class Work:
+class Work(msgspec.Struct, frozen=True):
     """Facts that all parts of a run have in common."""
 
     protocol: Protocol
@@ -43,8 +43,7 @@ class Work:
     engine: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(msgspec.Struct, frozen=True):
     """A part of a capture: a range of bytes, or where `span` is None the whole of it."""
 
     name: str
@@ -62,8 +61,7 @@ class Part:
     """None: to be guessed."""
 
 
-@dataclass(frozen=True, slots=True)
-class PartDone:
+class PartDone(msgspec.Struct, frozen=True):
     """Result of a part."""
 
     name: str

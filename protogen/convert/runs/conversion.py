@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from protogen.convert.columns.batches import BatchDecoder, Tally, batches_of
 from protogen.convert.columns.tables import Tables, tables_of
@@ -29,8 +31,7 @@ Complain = Callable[[str], None]
 Advance = Callable[[int], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Job:
+class Job(msgspec.Struct, frozen=True, dict=True):
     """Order for a conversion: whose bytes, from which format to which, and where they go."""
 
     protocol: Protocol
@@ -44,10 +45,11 @@ class Job:
     """True if files that no earlier run made may be replaced, and what is done is done again."""
     engine: str | None = None
     """Decoder: `native`, `python`, or `events`, which needs no NumPy; None: the fastest."""
-    tables: Tables = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "tables", tables_of(self.protocol, self.sender))
+    @cached_property
+    def tables(self) -> Tables:
+        """The tables that the conversion fills."""
+        return tables_of(self.protocol, self.sender)
 
     def decoder(self, start: int = 0) -> BatchDecoder:
         """A decoder of bytes from `start` on."""
@@ -71,8 +73,7 @@ class Job:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Fleet:
+class Fleet(msgspec.Struct, frozen=True):
     """Workers: those of a scheduler's address, or with None on this machine."""
 
     address: str | None = None
@@ -80,8 +81,7 @@ class Fleet:
     part_size: int = PART_SIZE
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
+class Result(msgspec.Struct, frozen=True):
     """Result of one capture."""
 
     place: str

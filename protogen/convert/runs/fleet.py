@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
+
+import msgspec
 
 from protogen.convert.columns.batches import Tally
 from protogen.convert.errors import ConvertError, needed
@@ -49,8 +50,7 @@ _DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 would print a traceback each."""
 
 
-@dataclass(slots=True)
-class _Capture:
+class _Capture(msgspec.Struct):
     """A capture on its way: its parts, and what became of them."""
 
     name: str
@@ -59,7 +59,7 @@ class _Capture:
     format: str
     stamp: Mapping[str, Any]
     parts: list[Part]
-    done: dict[int, PartDone] = field(default_factory=dict)
+    done: dict[int, PartDone] = msgspec.field(default_factory=dict)
     fitting: int = 0
     """Number of parts in front that are done and right: they are not looked at again."""
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from protogen.convert.columns.batches import Tally
 from protogen.convert.runs.folder_locks import one_after_another
@@ -21,8 +22,7 @@ RECORD = ".protogen-convert.json"
 _VERSION = 1
 
 
-@dataclass(frozen=True, slots=True)
-class Done:
+class Done(msgspec.Struct, frozen=True):
     """A capture that was converted: from what, to which files, and what was in it."""
 
     stamp: Mapping[str, Any]

@@ -8,9 +8,9 @@ than compressing them does. Numbers at random are neither close to each other no
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 if TYPE_CHECKING:
@@ -28,13 +28,12 @@ _LITTLE = 9 / 10
 """Numbers are compressed where at most this part of them is left."""
 
 
-@dataclass(slots=True)
-class Spelling:
+class Spelling(msgspec.Struct):
     """Encodings of columns, by their paths."""
 
-    encodings: dict[str, str] = field(default_factory=dict)
+    encodings: dict[str, str] = msgspec.field(default_factory=dict)
     """Encodings of those that are not written as they are."""
-    compression: dict[str, str] = field(default_factory=dict)
+    compression: dict[str, str] = msgspec.field(default_factory=dict)
     """Compressions of all."""
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from math import prod
 from typing import Any
+
+import msgspec
 
 from protogen.capture.schema import Choice, Column, Dimension, Number, Record
 from protogen.capture.schema import Text as TextShape
@@ -47,8 +48,7 @@ Scope = ChainMap[str, Count]
 """The numbers in front, which count and choose: their places, or constant ones themselves."""
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
+class Spot(msgspec.Struct, frozen=True):
     """A value in a record: how many lists are around, bytes from where the record begins."""
 
     depth: int

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import Frame, LiteralPart
 from protogen.passes.context import Context, Loc
@@ -14,8 +15,7 @@ from protogen.passes.proofs.wire_code import ByteSet, segments
 from protogen.schema.syntax.protocol import ALL_SENDERS
 
 
-@dataclass(frozen=True, slots=True)
-class Delimiter:
+class Delimiter(msgspec.Struct, frozen=True):
     """Literals that stand together at one end of a frame."""
 
     parts: tuple[LiteralPart, ...]
@@ -33,8 +33,7 @@ class Delimiter:
         return self.witness is None
 
 
-@dataclass(frozen=True, slots=True)
-class Delimiters:
+class Delimiters(msgspec.Struct, frozen=True):
     """Delimiters of the frames of one sender."""
 
     head: Delimiter | None

@@ -7,10 +7,11 @@ and then it is proved that there is none.
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
+
+import msgspec
 
 from protogen.copying import replace
 
@@ -120,8 +121,7 @@ def prefix_clash(code: Code) -> tuple[int, int] | None:
 # --- occurrence of a literal --------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Segment:
+class Segment(msgspec.Struct, frozen=True):
     """A stretch of a frame: `least` to `greatest` words, each any of `words`.
 
     `greatest` None is no limit. `own` marks the place where a literal is meant to stand: an

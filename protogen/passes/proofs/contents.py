@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
+
+import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
@@ -14,8 +15,7 @@ from protogen.passes.proofs.wire_code import ByteSet, code_of, covered_parts, pa
 from protogen.runtime import checksum as sums
 
 
-@dataclass(frozen=True, slots=True)
-class Stretch:
+class Stretch(msgspec.Struct, frozen=True):
     """So many bytes in a row, each of which is one of `values`."""
 
     values: ByteSet

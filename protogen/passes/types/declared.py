@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.copying import replace
 from protogen.passes.context import Context, Loc
@@ -21,8 +21,7 @@ _NAMING_KEYS = ("fields", *VALUE_NAMES)
 _LAYOUT_KEYS = (*_NAMING_KEYS, "switch", "cases")
 
 
-@dataclass(frozen=True, slots=True)
-class Effective:
+class Effective(msgspec.Struct, frozen=True):
     """A field's syntax once declared types are followed."""
 
     syntax: FieldSyntax

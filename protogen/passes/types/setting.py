@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from dataclasses import dataclass, field
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.sizes import SizeSet
@@ -15,8 +16,7 @@ Scope = ChainMap[str, Field]
 """Earlier fields by name, those of the innermost struct first."""
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
+class Setting(msgspec.Struct, frozen=True):
     """Surroundings in which the fields at hand are built."""
 
     layout: Layout
@@ -32,7 +32,7 @@ class Setting:
     """The least number of bytes of the payload in front."""
     position: int | None = 0
     """The number of bytes of the struct or message in front, where it is always the same."""
-    outer: Scope = field(default_factory=ChainMap)
+    outer: Scope = msgspec.field(default_factory=ChainMap)
     """Fields that counts and switches may name, from the structs around."""
     stack: tuple[str, ...] = ()
     """Declared types that are being resolved, the outermost first."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Literal
+
+import msgspec
 
 from protogen.model.types import ByteOrder, Float, Integer
 from protogen.problems import hint_for
@@ -36,8 +37,7 @@ _OTHER_WORDS = {
 _OTHER_INTEGER = re.compile(r"(u|uint|unsigned|i|s|int|sint|signed)([0-9]{0,3})(_t)?")
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(msgspec.Struct, frozen=True):
     """Layout of numbers in the payload or frame at hand. `byte_order` None: nobody has said."""
 
     byte_bits: Literal[7, 8]

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.problems.severity import Severity
 
 _FILE_HEADER = re.compile(r"^# file: (\S+)\n", re.MULTILINE)
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(msgspec.Struct, frozen=True):
     """A kind of problem: its stable code, its short name, and how to fix it.
 
     ``explanation`` is Markdown. The examples are YAML; one that needs several files starts each

@@ -6,7 +6,7 @@ name: it is a mapping, or a number in a mapping of names to numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.problems import Problems
 from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
@@ -22,8 +22,7 @@ Rename = tuple[ScalarNode, ScalarNode]
 """An old name and the new one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Directives:
+class Directives(msgspec.Struct, frozen=True):
     """Directives of a mapping of a dialect, about the mapping of the base that it meets."""
 
     renames: tuple[Rename, ...] = ()
@@ -36,8 +35,7 @@ class Directives:
     """The keys of directives whose value has the wrong shape."""
 
 
-@dataclass(frozen=True, slots=True)
-class Placement:
+class Placement(msgspec.Struct, frozen=True):
     """``after: name`` or ``before: name`` in the mapping of an item."""
 
     where: str

@@ -7,8 +7,9 @@ The tree keeps the spans of the files that its nodes come from.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from protogen.problems import Problems, SourceMap, Span
 from protogen.schema.dialects.by_sender import spread_shared
@@ -21,8 +22,7 @@ from protogen.schema.text.document import Document, decode_document, read_bytes,
 from protogen.schema.text.nodes import Loc, MappingNode, Node, ScalarNode, find
 
 
-@dataclass(frozen=True, slots=True)
-class Merged:
+class Merged(msgspec.Struct, frozen=True):
     """The tree of a schema and its bases. ``files`` are the schema's own, its base's, and so on."""
 
     root: Node

@@ -6,7 +6,7 @@ another document there, so before schemas are merged each source is given its do
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.copying import replace
 from protogen.schema.syntax.protocol import keyed_by_names
@@ -14,8 +14,7 @@ from protogen.schema.text.edit import items_of
 from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
 
 
-@dataclass(frozen=True, slots=True)
-class _Origin:
+class _Origin(msgspec.Struct, frozen=True):
     """The document that a file is about, and whether the file is laid over another one."""
 
     document: ScalarNode

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any
 
+import msgspec
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
@@ -140,8 +140,7 @@ def pair_of(what: str) -> Callable[[Any], Any]:
     return read
 
 
-@dataclass(frozen=True, slots=True)
-class ShortForm:
+class ShortForm(msgspec.Struct, frozen=True):
     """Lets a bare scalar stand for a mapping that has only `key`."""
 
     key: str

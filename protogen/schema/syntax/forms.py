@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import types
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from typing import Annotated, Any, Union, get_args, get_origin
 
+import msgspec
 from pydantic import BaseModel, BeforeValidator
 
 from protogen.schema.syntax.base import ShortForm
 from protogen.schema.syntax.names import Mark
 
 
-@dataclass(slots=True)
-class Form:
+class Form(msgspec.Struct):
     """The alternatives of one annotation, side by side."""
 
-    marks: list[Mark] = field(default_factory=list)
-    models: list[type[BaseModel]] = field(default_factory=list)
+    marks: list[Mark] = msgspec.field(default_factory=list)
+    models: list[type[BaseModel]] = msgspec.field(default_factory=list)
     """Classes of mappings with fixed keys."""
     short: str | None = None
     """Key that a bare scalar stands for."""

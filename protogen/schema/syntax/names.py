@@ -6,9 +6,10 @@ is one of these needs nothing else to be followed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Any
+
+import msgspec
 
 from protogen.schema.syntax.base import Name, Text
 
@@ -26,8 +27,7 @@ class Kind(Enum):
     DECISION = "decision"
 
 
-@dataclass(frozen=True, slots=True)
-class Ref:
+class Ref(msgspec.Struct, frozen=True):
     """Mark of a value, or of the keys of a mapping: the name of something of this kind."""
 
     kind: Kind
@@ -35,18 +35,15 @@ class Ref:
     """Key beside it that names the owner: the message of an example, the switch of a case."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldPath:
+class FieldPath(msgspec.Struct, frozen=True):
     """Mark of keys that are MESSAGE.FIELD, or a declared type."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldValues:
+class FieldValues(msgspec.Struct, frozen=True):
     """Mark of a mapping that mirrors the fields of the message around it."""
 
 
-@dataclass(frozen=True, slots=True)
-class BySender:
+class BySender(msgspec.Struct, frozen=True):
     """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import yaml
 
 from protogen.problems import Problems, Span
@@ -73,8 +73,7 @@ class _GiveUpError(Exception):
     """A problem was reported that makes going on pointless."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Anchored:
+class _Anchored(msgspec.Struct, frozen=True):
     """A node that an alias can repeat."""
 
     node: Node

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from protogen.problems import Problem, Problems, SourceMap, Span
 from protogen.problems.sources import end_of, split_lines
@@ -27,8 +28,7 @@ _BYTE_ORDER_MARK = "\ufeff"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
-@dataclass(frozen=True, slots=True)
-class Document:
+class Document(msgspec.Struct, frozen=True):
     """The tree of one file. ``file`` is its name as in spans; the text has no byte order mark."""
 
     root: Node

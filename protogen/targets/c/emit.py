@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import PurePosixPath
 
+import msgspec
 from jinja2 import Environment
 
 from protogen.model.frame_plan import StartRule
@@ -30,8 +30,7 @@ _BAUD = 115200
 """Baud rate of a sketch where the schema does not say."""
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
+class Unit(msgspec.Struct, frozen=True):
     """A protocol with everything that is printed of it."""
 
     protocol: Protocol

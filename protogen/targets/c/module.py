@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
@@ -32,8 +33,7 @@ from protogen.targets.c.spelling import Names
 from protogen.targets.c.writers import writer_argument, writer_parameter
 
 
-@dataclass(frozen=True, slots=True)
-class StructView:
+class StructView(msgspec.Struct, frozen=True):
     """A struct, the macros of its fields, and what reads its bits."""
 
     heading: str
@@ -42,8 +42,7 @@ class StructView:
     bits: tuple[BitsView, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Module:
+class Module(msgspec.Struct, frozen=True):
     """Everything that the templates print of the payloads."""
 
     name: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.origin import About
@@ -25,8 +26,7 @@ from protogen.targets.escape import one_line, paragraphs
 _LEAST_INT, _GREATEST_INT = -0x8000, 0x7FFF
 
 
-@dataclass(frozen=True, slots=True)
-class Macro:
+class Macro(msgspec.Struct, frozen=True):
     """A name for a constant."""
 
     name: str
@@ -34,8 +34,7 @@ class Macro:
     doc: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class EnumView:
+class EnumView(msgspec.Struct, frozen=True):
     """Names of values: an enum where each of them fits an `int` of 16 bits, else macros."""
 
     tag: str
@@ -83,8 +82,7 @@ def _remark(item: About, indent: int = 0) -> tuple[str, ...]:
     return comments.comment([descriptions.sentence(texts[0]), *texts[1:]], indent) if texts else ()
 
 
-@dataclass(frozen=True, slots=True)
-class BitsView:
+class BitsView(msgspec.Struct, frozen=True):
     """A run of bits, and the functions that read and write it."""
 
     doc: tuple[str, ...]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, get_args
+
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
@@ -14,8 +15,7 @@ STYLES: tuple[Style, ...] = get_args(Style)
 EVENTS: tuple[Events, ...] = get_args(Events)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class COptions:
+class COptions(msgspec.Struct, frozen=True, kw_only=True):
     """Parts and style of what is printed. None stands for all of them."""
 
     style: Style = "split"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.targets.c.lines import WIDTH, prototype
 
@@ -19,8 +20,7 @@ _OPERATOR = re.compile(r"(?:&&| \||\|\|)$")
 """Operators behind which a line is broken."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Break:
+class _Break(msgspec.Struct, frozen=True):
     """A place where a line can be broken."""
 
     end: int

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
@@ -22,8 +23,7 @@ from protogen.targets.python.wrapping import WIDTH, docstring, method, remark, u
 _INDENT = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(msgspec.Struct, frozen=True):
     """A named value."""
 
     name: str
@@ -31,8 +31,7 @@ class Member:
     comment: str
 
 
-@dataclass(frozen=True, slots=True)
-class EnumClass:
+class EnumClass(msgspec.Struct, frozen=True):
     """An enum or a set of flags."""
 
     name: str
@@ -41,16 +40,14 @@ class EnumClass:
     members: tuple[Member, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Attribute:
+class Attribute(msgspec.Struct, frozen=True):
     """A field of a class, or a property that shows one."""
 
     text: str
     doc: str
 
 
-@dataclass(frozen=True, slots=True)
-class Constructor:
+class Constructor(msgspec.Struct, frozen=True):
     """The slots of a class and its `__init__`, whose head ends with the colon."""
 
     slots: str
@@ -58,8 +55,7 @@ class Constructor:
     body: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class RecordClass:
+class RecordClass(msgspec.Struct, frozen=True):
     """A struct or a message."""
 
     name: str

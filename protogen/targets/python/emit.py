@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
+
+import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
@@ -37,8 +38,7 @@ def _files(protocol: Protocol) -> Iterator[File]:
     yield File(PurePosixPath(f"{codec_name(protocol)}.py"), text.codec, first_line)
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(msgspec.Struct, frozen=True):
     """The text of a protocol's two modules."""
 
     module: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.frame import CounterPart, IdentityPart, ValuePart
 from protogen.model.messages import Message
@@ -20,8 +20,7 @@ _INDENT = 4
 _ENGINE = 'engine: _rt.Engine = "fast"'
 
 
-@dataclass(frozen=True, slots=True)
-class PartsClass:
+class PartsClass(msgspec.Struct, frozen=True):
     """The class of the parts that events show."""
 
     name: str
@@ -29,8 +28,7 @@ class PartsClass:
     made: Constructor
 
 
-@dataclass(frozen=True, slots=True)
-class SenderView:
+class SenderView(msgspec.Struct, frozen=True):
     """What one endpoint sends."""
 
     name: str
@@ -51,8 +49,7 @@ class SenderView:
     """Messages that no sender before it sends."""
 
 
-@dataclass(frozen=True, slots=True)
-class Module:
+class Module(msgspec.Struct, frozen=True):
     """Everything that the template prints."""
 
     name: str

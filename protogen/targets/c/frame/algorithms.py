@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import storage_bits
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
-@dataclass(frozen=True, slots=True)
-class Algorithm:
+class Algorithm(msgspec.Struct, frozen=True):
     """One algorithm.
 
     CRCs whose bytes enter most significant bit first are kept in the upper bits of the register, so

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
@@ -11,8 +11,7 @@ from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs, wire_bytes
 
 
-@dataclass(frozen=True, slots=True)
-class CoveredRun:
+class CoveredRun(msgspec.Struct, frozen=True):
     """A run of content that a checksum covers."""
 
     first: Index
@@ -27,16 +26,14 @@ class CoveredRun:
         return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
 
 
-@dataclass(frozen=True, slots=True)
-class CoveredLiteral:
+class CoveredLiteral(msgspec.Struct, frozen=True):
     """A literal of the end that a checksum covers."""
 
     literal: bytes
     stuffed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ChecksumView:
+class ChecksumView(msgspec.Struct, frozen=True):
     """A checksum part."""
 
     name: str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from protogen.model.protocol import Sender
@@ -17,8 +16,7 @@ from protogen.targets.c.options import Events
 from protogen.targets.c.payload.messages import MessageView
 
 
-@dataclass(frozen=True)
-class DecoderView(ReceivedFrame):
+class DecoderView(ReceivedFrame, frozen=True, dict=True):
     """Everything that the templates print of a decoder."""
 
     @cached_property

@@ -8,15 +8,15 @@ writes a fragment gives its C.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame_plan import Place, Side
 from protogen.model.types import Integer
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
-@dataclass(frozen=True, slots=True)
-class Index:
+class Index(msgspec.Struct, frozen=True):
     """An index into the content of a frame."""
 
     place: Place

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
+
+import msgspec
 
 from protogen.targets.c.frame import style
 from protogen.targets.c.frame.expressions import byte
@@ -14,8 +15,7 @@ from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import Branch, Node
 
 
-@dataclass(frozen=True)
-class FlatDecoder:
+class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
     """Counters and conditions of a flat decoder."""
 
     decoder: ReceivedFrame

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.targets.c.frame.expressions import byte
 
 
-@dataclass(frozen=True, slots=True)
-class FollowStep:
+class FollowStep(msgspec.Struct, frozen=True):
     """Bytes of a literal that the input ends with, behind one byte."""
 
     byte: str
     matched: int
 
 
-@dataclass(frozen=True, slots=True)
-class Followed:
+class Followed(msgspec.Struct, frozen=True):
     """A literal that is tracked byte by byte."""
 
     name: str

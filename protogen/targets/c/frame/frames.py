@@ -7,8 +7,9 @@ second buffer is needed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import (
@@ -33,8 +34,7 @@ _FEW = 4
 """So many bytes are copied one by one, without a loop."""
 
 
-@dataclass(frozen=True, slots=True)
-class Argument:
+class Argument(msgspec.Struct, frozen=True):
     """A part of the frame that the caller gives."""
 
     name: str
@@ -46,16 +46,14 @@ class Argument:
     """The condition of a value out of range; empty where all of the type's are in it."""
 
 
-@dataclass(frozen=True, slots=True)
-class ByteStore:
+class ByteStore(msgspec.Struct, frozen=True):
     """One byte of a part, at an offset from the head's or tail's first byte."""
 
     index: str
     value: str
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """Stores that fill one part of the content."""
 
     in_head: bool
@@ -65,8 +63,7 @@ class Step:
     """Flags of the writer for its bytes, where they differ from those before."""
 
 
-@dataclass(frozen=True, slots=True)
-class Half:
+class Half(msgspec.Struct, frozen=True):
     """Parts that are sent byte by byte in front of the payload, or behind it."""
 
     name: str
@@ -81,8 +78,7 @@ class Half:
         return not self.steps and not self.end
 
 
-@dataclass(frozen=True)
-class FrameView:
+class FrameView(msgspec.Struct, frozen=True, dict=True):
     """A sender's frame, as it is built."""
 
     decoder: DecoderView

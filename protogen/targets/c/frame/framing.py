@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.frame.algorithms import Algorithm
@@ -16,16 +17,14 @@ from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.writers import is_stateless
 
 
-@dataclass(frozen=True, slots=True)
-class Sum:
+class Sum(msgspec.Struct, frozen=True):
     """The register of a checksum that is worked out while a frame is written."""
 
     name: str
     type: str
 
 
-@dataclass(frozen=True, slots=True)
-class FramingView:
+class FramingView(msgspec.Struct, frozen=True):
     """Everything that the templates print of frames and decoders."""
 
     decoders: tuple[DecoderView, ...]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame_plan import FramePlan, IdentityGroup
 from protogen.model.messages import Message
@@ -11,8 +12,7 @@ from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
-@dataclass(frozen=True, slots=True)
-class ReceivedMessage:
+class ReceivedMessage(msgspec.Struct, frozen=True):
     """A message as a receiver tells it, and the payloads that it can have."""
 
     name: str
@@ -51,8 +51,7 @@ class ReceivedMessage:
         return " || ".join(found)
 
 
-@dataclass(frozen=True, slots=True)
-class GroupView:
+class GroupView(msgspec.Struct, frozen=True):
     """The messages of one identity."""
 
     key: str

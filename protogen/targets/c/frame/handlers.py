@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.payload.messages import MessageView
 
 
-@dataclass(frozen=True, slots=True)
-class Handler:
+class Handler(msgspec.Struct, frozen=True):
     """The function for one message of one sender."""
 
     function: str
@@ -25,8 +25,7 @@ class Handler:
         return ("void *user", f"const {self.message.struct} *message", f"const {self.parts} *parts")
 
 
-@dataclass(frozen=True, slots=True)
-class Dispatch:
+class Dispatch(msgspec.Struct, frozen=True):
     """Calls the handlers for what one endpoint sends."""
 
     decoder: DecoderView

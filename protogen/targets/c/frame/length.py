@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.frame_plan import FramePlan
 from protogen.targets.c.spelling import unsigned_type
 
 
-@dataclass(frozen=True, slots=True)
-class LengthView:
+class LengthView(msgspec.Struct, frozen=True):
     """The length part."""
 
     least: int

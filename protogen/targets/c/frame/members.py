@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.stuffing import StuffingKind
@@ -46,8 +47,7 @@ _ABOUT = {
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(msgspec.Struct, frozen=True):
     """A member of the struct."""
 
     type: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
@@ -12,8 +12,7 @@ from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal
 
 
-@dataclass(frozen=True, slots=True)
-class MessageFrame:
+class MessageFrame(msgspec.Struct, frozen=True):
     """The functions for one message, from senders of one frame."""
 
     message: Message

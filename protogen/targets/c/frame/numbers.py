@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import IdentityPart, LengthPart, LiteralPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart
@@ -12,8 +13,7 @@ from protogen.targets.c.frame.expressions import byte, less_absent, number_of
 from protogen.targets.c.spelling import unsigned_type
 
 
-@dataclass(frozen=True, slots=True)
-class NumberView:
+class NumberView(msgspec.Struct, frozen=True):
     """A number that is checked as soon as its last byte is there."""
 
     last: int
@@ -34,16 +34,14 @@ class NumberView:
         return f"({' | '.join(f'content[{offset}]' for offset in self.seven_bit)})"
 
 
-@dataclass(frozen=True, slots=True)
-class LiteralView:
+class LiteralView(msgspec.Struct, frozen=True):
     """A byte that is fixed."""
 
     index: int
     byte: str
 
 
-@dataclass(frozen=True, slots=True)
-class PartView:
+class PartView(msgspec.Struct, frozen=True):
     """A part that events show."""
 
     placed: PlacedPart

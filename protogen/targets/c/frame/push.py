@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from protogen.model.frame_plan import Side, StartRule
@@ -13,8 +12,7 @@ from protogen.targets.c.frame.states import PushStates
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 
-@dataclass(frozen=True)
-class PushDecoder(PushStates):
+class PushDecoder(PushStates, frozen=True, dict=True):
     """Members and conditions of a decoder with states."""
 
     # --- sizes ------------------------------------------------------------------------------------

@@ -6,8 +6,9 @@ not need left out. What is a fact of the frame is in its plan; here is what C ma
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
+
+import msgspec
 
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
 from protogen.targets.c.frame import style
@@ -26,8 +27,7 @@ from protogen.targets.c.frame.stuffing import Node, Stuffing, stuffing_of
 from protogen.targets.c.options import Events
 
 
-@dataclass(frozen=True)
-class ReceivedFrame:
+class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     """A sender's frame, as a decoder receives it."""
 
     protocol: str

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.frame.follow import Followed, followed
 from protogen.targets.c.frame.received import ReceivedFrame
 
 
-@dataclass(frozen=True)
-class PushStates:
+class PushStates(msgspec.Struct, frozen=True, dict=True):
     """Members of a decoder with states."""
 
     decoder: ReceivedFrame

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from protogen.model.frame import Base16, Cobs, Escape, Substitution
 from protogen.model.frame_plan import StuffedRegion
@@ -28,16 +29,14 @@ class StuffingKind(Enum):
         return self.name.lower()
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(msgspec.Struct, frozen=True):
     """The sequence for one byte."""
 
     byte: int
     sequence: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Branch:
+class Branch(msgspec.Struct, frozen=True):
     """Effect of a byte behind the beginning of a sequence."""
 
     byte: int
@@ -47,8 +46,7 @@ class Branch:
     """Byte that a complete sequence stands for."""
 
 
-@dataclass(frozen=True, slots=True)
-class Node:
+class Node(msgspec.Struct, frozen=True):
     """A beginning of sequences. Node 0 is the empty one."""
 
     number: int
@@ -60,8 +58,7 @@ class Node:
     """Bytes that never stand for themselves, though no branch takes them."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stuffing:
+class Stuffing(msgspec.Struct, frozen=True):
     """A region's encoding, as the templates print it."""
 
     kind: StuffingKind

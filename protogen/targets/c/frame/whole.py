@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.frame import style
@@ -16,8 +16,7 @@ _MOST_SPECIALS = 5
 """More special bytes take longer to look for than they save."""
 
 
-@dataclass(frozen=True)
-class WholeFrames:
+class WholeFrames(msgspec.Struct, frozen=True, dict=True):
     """View of a decoder that takes a frame at once."""
 
     decoder: ReceivedFrame

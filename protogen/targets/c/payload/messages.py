@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
@@ -34,8 +35,7 @@ _OTHERS = ("frame", "send")
 """Other functions that are called after a message."""
 
 
-@dataclass(frozen=True, slots=True)
-class MessageView:
+class MessageView(msgspec.Struct, frozen=True):
     """One message. The names of functions are set also where there is no such function."""
 
     name: str

@@ -8,7 +8,8 @@ nothing has no member at all.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.payload_plan import (
     AnyStep,
@@ -26,8 +27,7 @@ from protogen.model.types import Float, Text
 from protogen.targets.c.spelling import counting_type, integer_type
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(msgspec.Struct, frozen=True):
     """A member of a struct or a union."""
 
     name: str
@@ -37,8 +37,7 @@ class Member:
     """Elements of an array, and of the arrays in it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Union:
+class Union(msgspec.Struct, frozen=True):
     """The cases of a choice that hold anything, and what holds the bytes of other values."""
 
     selector: str

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.capture.schema import CaptureSchema, TableSchema
 from protogen.model.protocol import Protocol, Sender
@@ -17,8 +18,7 @@ _SMALL = 64
 """Clearing so many bytes costs no more than finding the few between the members."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Table:
+class _Table(msgspec.Struct, frozen=True):
     view: MessageView
     clears: bool
     """Whether the row is cleared before it is filled."""
@@ -33,8 +33,7 @@ class _Table:
         return f"&row->message, event->payload{size}"
 
 
-@dataclass(frozen=True, slots=True)
-class _Spelling:
+class _Spelling(msgspec.Struct, frozen=True):
     """What makes the frame of a message again."""
 
     number: int

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.types import Field, Integer
@@ -15,8 +16,7 @@ from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import bounds, code, hex_number
 
 
-@dataclass(frozen=True, slots=True)
-class Legend:
+class Legend(msgspec.Struct, frozen=True):
     """A table of what the values of a field, or of a named type, mean."""
 
     anchor: str

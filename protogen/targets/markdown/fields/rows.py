@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.payload_plan import (
@@ -29,8 +30,7 @@ _UNNAMED = "value"
 _UNKNOWN = "Unknown: the document does not say what it is."
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class Row(msgspec.Struct, frozen=True, kw_only=True):
     """One row; the texts are Markdown."""
 
     place: Place

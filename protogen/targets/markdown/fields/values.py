@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+
+import msgspec
 
 from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
@@ -24,8 +25,7 @@ _FEW = 4
 """So many names, without anything to add, are listed where they are used."""
 
 
-@dataclass(frozen=True, slots=True)
-class Anchors:
+class Anchors(msgspec.Struct, frozen=True):
     """Anchors of the tables of values: with their message, or once for all that share them."""
 
     prefix: str

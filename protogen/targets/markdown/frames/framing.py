@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.framing import Framing
 from protogen.model.protocol import Protocol, Sender
@@ -31,8 +32,7 @@ _AMBIGUITY = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FrameView:
+class FrameView(msgspec.Struct, frozen=True, kw_only=True):
     """View of the frames of one or several senders."""
 
     title: str

@@ -7,8 +7,9 @@ insert bytes, positions are those of the unstuffed frame.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import accumulate
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import (
@@ -44,8 +45,7 @@ def part_title(part: Part) -> str:
     return part.name if isinstance(part, CodePart) else code(part.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(msgspec.Struct, frozen=True):
     """An offset in a payload. Where `base` is a text, what it counts from varies in place."""
 
     offset: int = 0
@@ -89,8 +89,7 @@ def element(place: Place, stride: int | None, name: str) -> Place:
     return replace(place, strides=(*place.strides, stride))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Slot:
+class Slot(msgspec.Struct, frozen=True, kw_only=True):
     """Place of a part in frames whose payload has certain sizes."""
 
     part: Part

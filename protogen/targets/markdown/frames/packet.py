@@ -7,7 +7,8 @@ fields are drawn shorter than they are; each label begins with the byte's true p
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Message
@@ -36,8 +37,7 @@ packet-beta
 """The older of the two names of this diagram: every version that has it knows this one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
+class Block(msgspec.Struct, frozen=True):
     """A box of the diagram."""
 
     place: str

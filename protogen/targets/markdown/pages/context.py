@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message
@@ -13,8 +14,7 @@ from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.fields.walk import named_fields
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(msgspec.Struct, frozen=True):
     """A protocol, with what is looked up in it again and again."""
 
     protocol: Protocol

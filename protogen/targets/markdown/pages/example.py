@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
@@ -22,8 +22,7 @@ _MOST_LINES = 32
 """Lines of an example's bytes that are printed; the table shows its parts anyway."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExampleView:
+class ExampleView(msgspec.Struct, frozen=True, kw_only=True):
     """An example, annotated."""
 
     anchor: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
+
+import msgspec
 
 from protogen.model.annotate import Row, annotate
 from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
@@ -33,8 +34,7 @@ _MOST_ELEMENTS = 32
 """Elements of an array of structs that get lines of their own."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
+class _Line(msgspec.Struct, frozen=True):
     """A row of the table; it can stand for several rows of the frame."""
 
     rows: Sequence[Row]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.copying import field_names
 from protogen.model.messages import Example, Message
@@ -15,8 +16,7 @@ from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import sentence
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Counts:
+class Counts(msgspec.Struct, frozen=True, kw_only=True):
     """Counts for one protocol or all."""
 
     messages: int
@@ -39,8 +39,7 @@ _TITLES = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FidelityView:
+class FidelityView(msgspec.Struct, frozen=True, kw_only=True):
     """The page of counts, why some have no examples, and the contradictions that it counts."""
 
     documents: Table | None

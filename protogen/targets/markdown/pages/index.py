@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
@@ -12,8 +13,7 @@ from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import code, listed
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IndexView:
+class IndexView(msgspec.Struct, frozen=True, kw_only=True):
     """The protocols, and the dialects of theirs."""
 
     protocols: Table | None

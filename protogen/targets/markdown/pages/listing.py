@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -19,8 +20,7 @@ from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import code, rate, size_text
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ListingView:
+class ListingView(msgspec.Struct, frozen=True, kw_only=True):
     """The messages of one sender, by identity."""
 
     title: str

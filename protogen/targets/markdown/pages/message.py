@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame import Frame
 from protogen.model.framing import MessageFraming
@@ -32,8 +33,7 @@ from protogen.targets.markdown.text.words import (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LayoutView:
+class LayoutView(msgspec.Struct, frozen=True, kw_only=True):
     """A message in the frame of one or several senders."""
 
     caption: str
@@ -41,8 +41,7 @@ class LayoutView:
     diagram: str | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MessageView:
+class MessageView(msgspec.Struct, frozen=True, kw_only=True):
     """A message's section."""
 
     anchor: str

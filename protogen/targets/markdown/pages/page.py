@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.meanings import Enum, Flags
 from protogen.model.protocol import Protocol
@@ -34,8 +35,7 @@ from protogen.targets.markdown.text.table import Table
 from protogen.targets.markdown.text.words import code
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PageView:
+class PageView(msgspec.Struct, frozen=True, kw_only=True):
     """A protocol's page."""
 
     title: str

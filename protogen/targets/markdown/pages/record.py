@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol
@@ -19,8 +20,7 @@ _MOST_BYTES = 24
 """Bytes of an exchange's step that are printed."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExchangeView:
+class ExchangeView(msgspec.Struct, frozen=True, kw_only=True):
     """A sequence of messages."""
 
     title: str
@@ -28,8 +28,7 @@ class ExchangeView:
     table: Table
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DecisionView:
+class DecisionView(msgspec.Struct, frozen=True, kw_only=True):
     """A question that the document leaves open, and what was chosen."""
 
     name: str

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(slots=True)
-class Place:
+class Place(msgspec.Struct):
     """A place in `data`: a variable, where the bytes before vary in size, and a number."""
 
     variable: str = ""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
@@ -85,15 +86,14 @@ def _padding(count: int) -> str:
     return f"{count}x" if count > 1 else "x" * count
 
 
-@dataclass(slots=True)
-class _Run:
+class _Run(msgspec.Struct):
     """Values that one `struct` reads together."""
 
     order: str = ""
     codes: str = ""
     size: int = 0
-    variables: list[str] = field(default_factory=list)
-    after: list[tuple[str, str, AnyStep]] = field(default_factory=list)
+    variables: list[str] = msgspec.field(default_factory=list)
+    after: list[tuple[str, str, AnyStep]] = msgspec.field(default_factory=list)
     """Target, variable and step of each value that is to be converted."""
 
 

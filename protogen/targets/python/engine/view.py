@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+
+import msgspec
 
 from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.messages import Message
@@ -20,8 +21,7 @@ from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import method, wrapped
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
+class Function(msgspec.Struct, frozen=True):
     """A function: its head without the colon, and the lines of its body."""
 
     head: str
@@ -32,8 +32,7 @@ def _function(name: str, parameters: str, gives: str, body: tuple[str, ...]) -> 
     return Function(method(f"def {name}(", parameters, f") -> {gives}", 0, after=1), body)
 
 
-@dataclass(frozen=True, slots=True)
-class FastSender:
+class FastSender(msgspec.Struct, frozen=True):
     """What the fast engine has for one sender."""
 
     name: str
@@ -46,8 +45,7 @@ class FastSender:
     frame: Function | None
 
 
-@dataclass(frozen=True, slots=True)
-class Fast:
+class Fast(msgspec.Struct, frozen=True):
     """Everything that the template prints."""
 
     constants: tuple[str, ...]

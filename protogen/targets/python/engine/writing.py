@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
@@ -70,8 +71,7 @@ def content_writer(
 _CODES = "BYTE_CODES"
 
 
-@dataclass(frozen=True, slots=True)
-class Packed:
+class Packed(msgspec.Struct, frozen=True):
     """A value for `struct`: the order of its bytes, its code, and an expression."""
 
     order: str
@@ -125,15 +125,14 @@ def batched(names: list[str]) -> list[list[str]]:
     return [names[i : i + _TYPES_IN_LINE] for i in range(0, len(names), _TYPES_IN_LINE)]
 
 
-@dataclass(slots=True)
-class _Bytes:
+class _Bytes(msgspec.Struct):
     """Bytes that are being put together: what stands, and values that one `struct` is to write."""
 
-    pieces: list[str] = field(default_factory=list)
+    pieces: list[str] = msgspec.field(default_factory=list)
     order: str = ""
     codes: str = ""
-    values: list[str] = field(default_factory=list)
-    integers: list[str] = field(default_factory=list)
+    values: list[str] = msgspec.field(default_factory=list)
+    integers: list[str] = msgspec.field(default_factory=list)
     """Variables that have to be integers, and that `struct` does not get to see."""
 
 
