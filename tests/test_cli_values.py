@@ -12,8 +12,8 @@ from protogen.cli.wire.values import raw_values, split_assignment, tree_of
 
 
 def raw(message: str, *assignments: str) -> dict[str, Any]:
-    fields = compiled(SINK).message(message).fields
-    return raw_values(fields, tree_of(map(split_assignment, assignments)))
+    steps = compiled(SINK).message(message).plan.steps
+    return raw_values(steps, tree_of(map(split_assignment, assignments)))
 
 
 @pytest.mark.parametrize(
@@ -178,7 +178,7 @@ def test_mistakes(message: str, assignments: list[str], error: str, hint: object
 
 
 def test_values_of_a_wrong_kind_in_json() -> None:
-    fields = compiled(SINK).message("lists").fields
+    steps = compiled(SINK).message("lists").plan.steps
     for written in ({"name": 3}, {"rest": 3}, {"size": [1]}, {"points": 3}, {"points": [3]}):
         with pytest.raises(UsageError):
-            raw_values(fields, written)
+            raw_values(steps, written)

@@ -124,7 +124,7 @@ def test_the_command_line_refuses_it_as_well(
     protocol: Protocol, written: dict[str, str], says: str, hint: str | None
 ) -> None:
     with pytest.raises(UsageError) as caught:
-        raw_values(protocol.message("heading").fields, written)
+        raw_values(protocol.message("heading").plan.steps, written)
     assert says in str(caught.value)
     assert caught.value.hint == hint
 
@@ -135,7 +135,9 @@ def test_the_command_line_refuses_it_as_well(
 def test_raw_values_and_names_still_say_that_there_is_no_reading(
     protocol: Protocol, written: str, value: int
 ) -> None:
-    assert raw_values(protocol.message("heading").fields, {"value": written}) == {"value": value}
+    assert raw_values(protocol.message("heading").plan.steps, {"value": written}) == {
+        "value": value
+    }
 
 
 @pytest.mark.parametrize(

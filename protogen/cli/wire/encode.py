@@ -97,7 +97,7 @@ def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str
     message = find_message(codec.protocol, name)
     by = _sender_of(codec, message, sender)
     given = [split_assignment(text) for text in written]
-    fields = raw_values(message.fields, tree_of(item for item in given if item[0][0] != "@"))
+    fields = raw_values(message.plan.steps, tree_of(item for item in given if item[0][0] != "@"))
     parts = _parts(codec.protocol.sender(by).frame, given)
     try:
         spec = codec.runtime.sender(by)
@@ -105,7 +105,7 @@ def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str
         assert kind is not None
         return Encoder(spec).encode_next(kind.from_dict(fields), strict=True, **parts)
     except EncodeError as error:
-        raise UsageError(str(error), hint_at(message.fields, fields, error.path)) from None
+        raise UsageError(str(error), hint_at(message.plan.steps, fields, error.path)) from None
 
 
 def _sender_of(codec: Codec, message: Message, name: str | None) -> str:

@@ -8,62 +8,68 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.cli.wire.scalars import allowed
-from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
+from protogen.model.payload_plan import (
+    AnyStep,
+    ChooseStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    without_constant,
+)
 
 Scope = ChainMap[str, Any]
 """The values that were given, which choose the cases of switches."""
 
-_STEP = re.compile(r"[^.\[\]]+")
+_NAME_OR_INDEX = re.compile(r"[^.\[\]]+")
 
 
-def hint_at(fields: Sequence[Field], values: Mapping[str, Any], path: str) -> str | None:
+def hint_at(steps: Sequence[AnyStep], values: Mapping[str, Any], path: str) -> str | None:
     """Return what may be written for the field at ``path``; None if nothing is there.
 
     ``values`` are those of all fields, as far as they were given.
     """
-    return _hint_inside(fields, values, _STEP.findall(path), ChainMap(), path)
+    return _hint_inside(steps, values, _NAME_OR_INDEX.findall(path), ChainMap(), path)
 
 
 def _hint_inside(
-    fields: Sequence[Field], values: Any, steps: Sequence[str], around: Scope, path: str
+    steps: Sequence[AnyStep], values: Any, way: Sequence[str], around: Scope, path: str
 ) -> str | None:
     given = values if isinstance(values, Mapping) else {}
     scope = around.new_child(dict(given))
-    for field in fields:
-        if field.name in steps[:1]:
-            return _hint(field, field.type, given.get(field.name), steps[1:], scope, path)
+    for step in steps:
+        if step.name in way[:1]:
+            return _hint(without_constant(step), given.get(step.name), way[1:], scope, path)
     return None
 
 
-def _hint(
-    field: Field, type: Type, value: Any, steps: Sequence[str], scope: Scope, path: str
-) -> str | None:
-    match type:
-        case Switch() if case := _case(type, scope):
-            return _hint(field, case, value, steps, scope, path)
-        case Struct(fields=fields) if steps:
-            return _hint_inside(fields, value, steps, scope, path)
-        case Array(element=element) if steps:
-            chosen = value[int(steps[0])] if isinstance(value, list) else None
-            return _hint(field, element, chosen, steps[1:], scope, path)
-        case Struct(fields=fields) if fields:
-            return f"give {members(fields, path)}"
-        case Integer():
-            return f"`{path}` is {type.label}: {allowed(field, type)}"
+def _hint(step: AnyStep, value: Any, way: Sequence[str], scope: Scope, path: str) -> str | None:
+    match step:
+        case ChooseStep() if case := chosen_case(step, scope):
+            return _hint(case, value, way, scope, path)
+        case RecordStep() if way:
+            return _hint_inside(step.steps, value, way, scope, path)
+        case RepeatStep() if way:
+            chosen = value[int(way[0])] if isinstance(value, list) else None
+            return _hint(step.element, chosen, way[1:], scope, path)
+        case RecordStep() if step.steps:
+            return f"give {members(step, path)}"
+        case IntegerStep():
+            return f"`{path}` is {step.type.label}: {allowed(step)}"
         case _:
-            return f"`{path}` is {type.label}"
+            return f"`{path}` is {step.type.label}"
 
 
-def _case(type: Switch, scope: Scope) -> Type | None:
-    chosen = scope.get(type.selector)
-    return next((case.type for case in type.cases if case.value == chosen), None)
+def chosen_case(step: ChooseStep, scope: Mapping[str, Any]) -> AnyStep | None:
+    """Return the step of the case that the value of the selector chooses, if it has one."""
+    chosen = scope.get(step.selector_name)
+    return next((case.step for case in step.cases if case.value == chosen), None)
 
 
-def members(fields: Sequence[Field], path: str) -> str:
+def members(record: RecordStep, path: str) -> str:
     """Return how the members of a struct are given: each for itself, or as JSON.
 
     An element of a list has no name of its own, so that its members are JSON always.
     """
     if "[" in path:
-        return "JSON: {" + ", ".join(f'"{field.name}": ...' for field in fields) + "}"
-    return " ".join(f"{path}.{field.name}=..." for field in fields)
+        return "JSON: {" + ", ".join(f'"{step.name}": ...' for step in record.steps) + "}"
+    return " ".join(f"{path}.{step.name}=..." for step in record.steps)

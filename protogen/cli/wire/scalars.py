@@ -3,52 +3,55 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
+from functools import reduce
+from operator import or_
 from typing import Any
 
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.hexinput import HexError, parse_hex
+from protogen.model.payload_plan import IntegerStep
 from protogen.model.readings import decimal
-from protogen.model.types import Field, Integer
+from protogen.model.types import Field
 from protogen.problems import did_you_mean, hint_for
 from protogen.runtime.nearest import nearest_reading
 
 
-def integer_value(field: Field, type: Integer, written: Any, path: str) -> int:
+def integer_value(step: IntegerStep, written: Any, path: str) -> int:
     """Return the raw value of an integer. Raises UsageError."""
     if isinstance(written, int):
         return int(written)
     if isinstance(written, Mapping):
-        return _bits(field, type, written, path)
+        return _bits(step, written, path)
     if not isinstance(written, str):
-        raise refusal(path, written, allowed(field, type))
+        raise refusal(path, written, allowed(step))
     if written.lstrip().startswith("{"):
-        return integer_value(field, type, from_json(written, path), path)
+        return integer_value(step, from_json(written, path), path)
     number = _number(written)
     if number is not None:
         return number
-    named = _named(field, type, written.strip())
+    named = _named(step, written.strip())
     if named is not None:
         return named
-    physical = _physical(field, written)
+    physical = _physical(step.field, written)
     if physical is None:
-        raise UsageError(
-            f"{path}: `{written}` is none of: {allowed(field, type)}", _fix(field, type, written)
-        )
-    return _raw(field, type, physical, written, path)
+        raise UsageError(f"{path}: `{written}` is none of: {allowed(step)}", _fix(step, written))
+    return _raw(step, physical, written, path)
 
 
-def _fix(field: Field, type: Integer, written: str) -> str | None:
+def _fix(step: IntegerStep, written: str) -> str | None:
     """Return how to write what was probably meant."""
-    names = _names(field, type)
-    if type.flags is not None and "," in written:
+    names = _names(step)
+    if step.type.flags is not None and "," in written:
         flags = "|".join(_closest(name.strip(), names) for name in written.split(","))
         return f"flags are joined by `|`, in quotes for the shell: '{flags}'"
     number = _exact(written.strip())
-    if number is not None and field.unit is not None:
-        nearest = _nearest(field, type, number)
-        return f"a value in {field.unit} has its unit behind it: {nearest}" if nearest else None
+    if number is not None and step.field.unit is not None:
+        nearest = _nearest(step, number)
+        return (
+            f"a value in {step.field.unit} has its unit behind it: {nearest}" if nearest else None
+        )
     return hint_for(written, names)
 
 
@@ -63,41 +66,34 @@ def _number(text: str) -> int | None:
         return None
 
 
-def _named(field: Field, type: Integer, text: str) -> int | None:
-    names = _names(field, type)
-    if type.flags is not None:
+def _named(step: IntegerStep, text: str) -> int | None:
+    names = _names(step)
+    if step.type.flags is not None:
         bits = [names.get(name.strip(), _number(name)) for name in text.split("|")]
-        return None if None in bits else _joined(bit for bit in bits if bit is not None)
-    if type.role == "char" and len(text) == 3 and text[0] == text[-1] == "'":
+        return None if None in bits else reduce(or_, filter(None, bits), 0)
+    if step.type.role == "char" and len(text) == 3 and text[0] == text[-1] == "'":
         return ord(text[1])
-    if type.role == "char" and len(text) == 1:
+    if step.type.role == "char" and len(text) == 1:
         return ord(text)
     return names.get(text)
 
 
-def _names(field: Field, type: Integer) -> dict[str, int]:
+def _names(step: IntegerStep) -> dict[str, int]:
     """Return every name that stands for a raw value."""
-    names = {item.name: item.value for item in (type.enum.values if type.enum else ())}
-    names |= {item.name: item.value for item in field.special}
-    if type.flags is not None:
-        names |= {flag.name: 1 << flag.bit for flag in type.flags.bits}
-    if type.role == "bool":
+    names = {item.name: item.value for item in (step.type.enum.values if step.type.enum else ())}
+    names |= {item.name: item.value for item in step.field.special}
+    if step.type.flags is not None:
+        names |= {flag.name: 1 << flag.bit for flag in step.type.flags.bits}
+    if step.type.role == "bool":
         names |= {"false": 0, "true": 1}
     return names
 
 
-def _joined(bits: Iterable[int]) -> int:
-    value = 0
-    for bit in bits:
-        value |= bit
-    return value
-
-
-def _bits(field: Field, type: Integer, written: Mapping[str, Any], path: str) -> int:
+def _bits(step: IntegerStep, written: Mapping[str, Any], path: str) -> int:
     """Return an integer of which single flags or runs of bits are given."""
-    value = field.default if isinstance(field.default, int) else 0
-    flags = {flag.name: flag.bit for flag in (type.flags.bits if type.flags else ())}
-    runs = {run.name: run for run in type.bit_fields}
+    value = step.field.default if isinstance(step.field.default, int) else 0
+    flags = {flag.name: flag.bit for flag in (step.type.flags.bits if step.type.flags else ())}
+    runs = {run.name: run for run in step.type.bit_fields}
     for name, item in written.items():
         if name in flags:
             low, mask, names = flags[name], 1 << flags[name], {"false": 0, "true": 1}
@@ -135,13 +131,14 @@ def _exact(text: str) -> Fraction | None:
         return None
 
 
-def _raw(field: Field, type: Integer, physical: Fraction, written: str, path: str) -> int:
+def _raw(step: IntegerStep, physical: Fraction, written: str, path: str) -> int:
+    field = step.field
     raw = (physical - field.offset) / field.scale
-    nearest = _nearest(field, type, physical)
+    nearest = _nearest(step, physical)
     hint = f"the nearest that can be sent is {nearest}" if nearest else None
     if raw.denominator != 1:
-        step = f"{decimal(field.scale)}{field.unit}"
-        raise UsageError(f"{path}: `{written}` is no whole number of steps of {step}", hint)
+        size = f"{decimal(field.scale)}{field.unit}"
+        raise UsageError(f"{path}: `{written}` is no whole number of steps of {size}", hint)
     special = next((item.name for item in field.special if item.value == raw), None)
     if special is not None:
         # As a name it may be given; as a number it is a mistake: nobody will read that number.
@@ -149,19 +146,12 @@ def _raw(field: Field, type: Integer, physical: Fraction, written: str, path: st
     return raw.numerator
 
 
-def _nearest(field: Field, type: Integer, physical: Fraction) -> str | None:
+def _nearest(step: IntegerStep, physical: Fraction) -> str | None:
     """Return the physical value closest to this one that a receiver reads as such, if any."""
-    least, greatest = _bounds(field, type)
+    field = step.field
     special = {item.value for item in field.special}
-    raw = nearest_reading((physical - field.offset) / field.scale, special, least, greatest)
+    raw = nearest_reading((physical - field.offset) / field.scale, special, *step.bounds)
     return None if raw is None else f"{decimal(raw * field.scale + field.offset)}{field.unit}"
-
-
-def _bounds(field: Field, type: Integer) -> tuple[int, int]:
-    """Return the least and the greatest raw value that an encoder allows."""
-    least = type.least if field.least is None else field.least
-    greatest = type.greatest if field.greatest is None else field.greatest
-    return int(least), int(greatest)
 
 
 def float_value(field: Field, written: Any, path: str) -> float:
@@ -198,15 +188,15 @@ def _latin(text: str, path: str) -> bytes:
         raise UsageError(f"{path}: `{text[error.start]}` is not one byte") from None
 
 
-def allowed(field: Field, type: Integer) -> str:
+def allowed(step: IntegerStep) -> str:
     """Return what may be written for an integer, in words."""
-    least, greatest = _bounds(field, type)
+    least, greatest = step.bounds
     kinds = [f"a whole number from {least} to {greatest}"]
-    if field.unit is not None:
-        kinds.append(f"a number with its unit {field.unit}")
-    if type.role == "char":
+    if step.field.unit is not None:
+        kinds.append(f"a number with its unit {step.field.unit}")
+    if step.type.role == "char":
         kinds.append("a character")
-    names = list(_names(field, type))
+    names = list(_names(step))
     return ", ".join((*kinds, *names))
 
 

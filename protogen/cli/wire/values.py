@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from protogen.cli.exits import UsageError
-from protogen.cli.wire.hints import members
+from protogen.cli.wire.hints import chosen_case, members
 from protogen.cli.wire.scalars import (
     float_value,
     from_json,
@@ -21,18 +21,17 @@ from protogen.cli.wire.scalars import (
     octets_value,
     text_value,
 )
-from protogen.model.types import (
-    Array,
-    Case,
-    Field,
-    Float,
-    Integer,
-    Octets,
-    Struct,
-    Switch,
-    Text,
-    Type,
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    without_constant,
 )
+from protogen.model.types import Field, Text
 from protogen.problems import hint_for
 
 Raw = int | float | str | list[Any] | dict[str, Any] | None
@@ -66,45 +65,38 @@ def tree_of(assignments: Iterable[tuple[str, str]]) -> dict[str, Any]:
     return tree
 
 
-def raw_values(fields: Sequence[Field], written: Mapping[str, Any]) -> dict[str, Raw]:
+def raw_values(steps: Sequence[AnyStep], written: Mapping[str, Any]) -> dict[str, Raw]:
     """Return the raw values of fields by name.
 
     Raises UsageError with the path of the field, what is allowed, and what was probably meant.
     Whether a value is in its range is for the encoder to say.
     """
-    return _members(fields, written, "", ChainMap())
+    return _members(steps, written, "", ChainMap())
 
 
 def _members(
-    fields: Sequence[Field], written: Mapping[str, Any], prefix: str, scope: Scope
+    steps: Sequence[AnyStep], written: Mapping[str, Any], prefix: str, scope: Scope
 ) -> dict[str, Raw]:
-    names = [field.name for field in fields]
+    names = [step.name for step in steps]
     for name in written:
         if name not in names:
             hint = hint_for(name, names) or f"there are {', '.join(names) or 'none'}"
             raise UsageError(f"there is no field `{prefix}{name}`", hint)
     values: dict[str, Raw] = {}
-    for field in fields:
-        if field.name in written:
-            value = _value(field, field.type, written[field.name], prefix + field.name, scope)
-            values[field.name] = scope[field.name] = value
-        elif _has_no_bytes(field, scope):
-            values[field.name] = None
+    for step in steps:
+        if step.name in written:
+            value = _value(without_constant(step), written[step.name], prefix + step.name, scope)
+            values[step.name] = scope[step.name] = value
+        elif isinstance(step, ChooseStep) and _is_empty(chosen_case(step, scope)):
+            values[step.name] = None
         else:
-            scope[field.name] = _what_is_sent(field)
+            scope[step.name] = _what_is_sent(step.field)
     return values
 
 
-def _has_no_bytes(field: Field, scope: Scope) -> bool:
-    """True if the field is a switch whose case has nothing to give."""
-    if not isinstance(field.type, Switch):
-        return False
-    chosen = scope.get(field.type.selector)
-    return any(case.value == chosen and _is_empty(case) for case in field.type.cases)
-
-
-def _is_empty(case: Case) -> bool:
-    return isinstance(case.type, Struct) and not case.type.fields
+def _is_empty(case: AnyStep | None) -> bool:
+    """True for a case that has nothing to give."""
+    return isinstance(case, RecordStep) and not case.steps
 
 
 def _what_is_sent(field: Field) -> Raw:
@@ -113,61 +105,48 @@ def _what_is_sent(field: Field) -> Raw:
     return value if isinstance(value, int) else None
 
 
-def _value(field: Field, type: Type, written: Any, path: str, scope: Scope) -> Raw:
-    match type:
-        case Struct(fields=fields):
-            given = _mapping(written, fields, path)
-            return _members(fields, given, f"{path}.", scope.new_child())
-        case Array():
-            return _elements(field, type, written, path, scope)
-        case Switch():
-            return _case(field, type, written, path, scope)
-        case _:
-            return _scalar(field, type, written, path)
-
-
-def _elements(field: Field, type: Array, written: Any, path: str, scope: Scope) -> list[Raw]:
-    return [
-        _value(field, type.element, item, f"{path}[{index}]", scope)
-        for index, item in enumerate(_list(written, path))
-    ]
-
-
-def _scalar(
-    field: Field, type: Integer | Float | Text | Octets, written: Any, path: str
-) -> int | float | str:
-    match type:
-        case Integer():
-            return integer_value(field, type, written, path)
-        case Float():
-            return float_value(field, written, path)
-        case Text():
+def _value(step: AnyStep, written: Any, path: str, scope: Scope) -> Raw:
+    match step:
+        case RecordStep():
+            given = _mapping(written, step, path)
+            return _members(step.steps, given, f"{path}.", scope.new_child())
+        case RepeatStep():
+            return [
+                _value(step.element, item, f"{path}[{index}]", scope)
+                for index, item in enumerate(_list(written, path))
+            ]
+        case ChooseStep():
+            return _case(step, written, path, scope)
+        case IntegerStep():
+            return integer_value(step, written, path)
+        case FloatStep():
+            return float_value(step.field, written, path)
+        case BytesStep(type=Text()):
             return text_value(written, path)
-        case Octets():
+        case _:
             return octets_value(written, path).hex()
 
 
-def _case(field: Field, type: Switch, written: Any, path: str, scope: Scope) -> Raw:
-    chosen = scope.get(type.selector)
-    for case in type.cases:
-        if case.value == chosen:
-            return None if _is_empty(case) else _value(field, case.type, written, path, scope)
-    if chosen is None:
-        raise UsageError(f"{path}: `{type.selector}` says what this is; give it, too")
+def _case(step: ChooseStep, written: Any, path: str, scope: Scope) -> Raw:
+    case = chosen_case(step, scope)
+    if case is not None:
+        return None if _is_empty(case) else _value(case, written, path, scope)
+    if scope.get(step.selector_name) is None:
+        raise UsageError(f"{path}: `{step.selector_name}` says what this is; give it, too")
     return octets_value(written, path).hex()
 
 
 # --- what a list or a struct is written as ------------------------------------------------------
 
 
-def _mapping(written: Any, fields: Sequence[Field], path: str) -> Mapping[str, Any]:
+def _mapping(written: Any, record: RecordStep, path: str) -> Mapping[str, Any]:
     is_json = isinstance(written, str) and written.lstrip().startswith("{")
     value = from_json(written, path) if is_json else written
     if isinstance(value, Mapping):
         return value
-    if len(fields) == 1:
-        return {fields[0].name: value}
-    raise UsageError(f"{path}: `{written}` is no struct", f"give {members(fields, path)}")
+    if len(record.steps) == 1:
+        return {record.steps[0].name: value}
+    raise UsageError(f"{path}: `{written}` is no struct", f"give {members(record, path)}")
 
 
 def _list(written: Any, path: str) -> Sequence[Any]:
