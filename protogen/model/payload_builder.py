@@ -266,9 +266,9 @@ def _number_checks(type_: Integer | Float) -> frozenset[Check]:
     found = set(_seven_bit(type_))
     if type_.bits < type_.byte_bits * type_.size:
         found.add(Check.PADDING)
-    if isinstance(type_, Integer) and type_.role == "bool":
+    if type_.role == "bool":
         found.add(Check.BOOLEAN)
-    if isinstance(type_, Integer) and type_.is_closed:
+    if type_.is_closed:
         found.add(Check.CLOSED)
     return frozenset(found)
 

@@ -123,6 +123,9 @@ class Float(msgspec.Struct, frozen=True, kw_only=True):
     byte_bits: Literal[7, 8] = 8
     byte_order: ByteOrder = "little"
     signed: ClassVar[bool] = False
+    role: ClassVar[IntegerRole] = "number"
+    enum: ClassVar[None] = None
+    is_closed: ClassVar[bool] = False
     extent: ClassVar[None] = None
     holds_values: ClassVar[bool] = True
     needs: ClassVar[frozenset[str]] = _NO_NAMES
@@ -143,8 +146,8 @@ class Float(msgspec.Struct, frozen=True, kw_only=True):
         return f"{self.name} {self.byte_order}"
 
     @property
-    def pattern(self) -> Integer:
-        """The unsigned integer with the same bits."""
+    def unsigned(self) -> Integer:
+        """The unsigned integer in the same bytes."""
         return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
 
     @property

@@ -26,12 +26,9 @@ class Lines:
         self._depth = depth
 
     def add(self, *lines: str) -> None:
-        """Add lines at the current depth."""
-        self._lines += [" " * (INDENT * self._depth) + line for line in lines]
-
-    def directive(self, line: str) -> None:
-        """Add a line of the preprocessor."""
-        self._lines.append(line)
+        """Add lines at the current depth; those of the preprocessor have no indent."""
+        indent = " " * (INDENT * self._depth)
+        self._lines += [line if line.startswith("#") else indent + line for line in lines]
 
     @contextmanager
     def block(self, head: str) -> Iterator[None]:

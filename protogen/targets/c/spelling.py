@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.names import free_name
-from protogen.model.types import Float, Integer, counting_bits, storage_bits
+from protogen.model.types import Float, NumberType, counting_bits, storage_bits
 
 _INT_MAX = 0x7FFF
 """The greatest `int` that every target has."""
@@ -47,11 +47,11 @@ def unsigned_type(bits: int) -> str:
     return f"uint{storage_bits(bits)}_t"
 
 
-def integer_type(type_: Integer) -> str:
+def integer_type(type_: NumberType) -> str:
     """The type of a member that holds such integers."""
     if type_.role == "bool":
         return "bool"
-    return f"{'' if type_.signed else 'u'}int{type_.width}_t"
+    return f"{'' if type_.signed else 'u'}int{storage_bits(type_.bits)}_t"
 
 
 def counting_type(greatest: int) -> str:
@@ -59,15 +59,11 @@ def counting_type(greatest: int) -> str:
     return f"uint{counting_bits(greatest)}_t"
 
 
-def layout_name(type_: Integer | Float) -> str:
+def layout_name(type_: NumberType) -> str:
     """The name of a layout on the wire: `u14le`, `s32be`, `f32le`, `u7`."""
-    if isinstance(type_, Float):
-        return f"f{type_.bits}{_order(type_)}"
-    return f"{'s' if type_.signed else 'u'}{type_.bits}{_order(type_)}"
-
-
-def _order(type_: Integer | Float) -> str:
-    return "" if type_.size == 1 else f"{type_.byte_order[0]}e"
+    order = "" if type_.size == 1 else f"{type_.byte_order[0]}e"
+    kind = "f" if isinstance(type_, Float) else "s" if type_.signed else "u"
+    return f"{kind}{type_.bits}{order}"
 
 
 # --- numbers ------------------------------------------------------------------------------------
@@ -99,6 +95,6 @@ def _suffix(value: int) -> str:
     return "UL" if value <= 0xFFFFFFFF else "ULL"
 
 
-def constant(value: int, type_: Integer) -> str:
+def constant(value: int, type_: NumberType) -> str:
     """A constant to compare with a value of that type."""
     return number(value) if type_.signed else unsigned(value)

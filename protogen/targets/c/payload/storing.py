@@ -11,7 +11,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.types import Float, Integer
+from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
 from protogen.targets.c.payload.placed import PlacedWalk
@@ -19,7 +19,7 @@ from protogen.targets.c.payload.walk import Walk, amount
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
-def byte_of(type_: Integer, expression: str) -> str:
+def byte_of(type_: NumberType, expression: str) -> str:
     """The only byte of a number."""
     if type_.role == "bool":
         return f"(uint8_t){expression}"
@@ -28,7 +28,7 @@ def byte_of(type_: Integer, expression: str) -> str:
     return parted(type_, raw_of(type_, expression))[0]
 
 
-def raw_of(type_: Integer, expression: str) -> str:
+def raw_of(type_: NumberType, expression: str) -> str:
     """The unsigned value of a number."""
     return f"({unsigned_type(type_.bits)}){expression}" if type_.signed else expression
 
@@ -40,10 +40,10 @@ def is_bytes(element: AnyStep) -> bool:
     return is_plain(element.type) and element.type.role != "bool"
 
 
-def _raw(helpers: Helpers, step: NumberStep, place: str) -> tuple[Integer, str]:
+def _raw(helpers: Helpers, step: NumberStep, place: str) -> tuple[NumberType, str]:
     """The integer to write for a number, and its value."""
     if isinstance(step.type, Float):
-        return step.type.pattern, f"{helpers.bits_of_float(step.type)}({place})"
+        return step.type.unsigned, f"{helpers.bits_of_float(step.type)}({place})"
     return step.type, place
 
 

@@ -87,8 +87,7 @@ class Validate(Walk):
                 self._refuse(f"!{self.helpers.known(step.type)}({place})")
 
     def _float(self, step: FloatStep, place: str) -> None:
-        bounds = self.helpers.float_bounds(step.type, step.field.least, step.field.greatest)
-        tests = bounds(place)
+        tests = self.helpers.float_tests(step, place)
         if tests:
             self._refuse(f"!({' && '.join(tests)})")
 
