@@ -55,6 +55,7 @@ def _protocol(
     merged = loaded.merged
     context = Context(
         syntax=loaded.syntax,
+        data=loaded.data,
         find=merged.find,
         find_key=lambda loc: merged.find(loc, key=True),
         problems=problems,

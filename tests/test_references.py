@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from textwrap import dedent
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ from protogen.schema.references import Reference, form_under, references
 from protogen.schema.syntax.forms import Form, keys_of, models_inside
 from protogen.schema.syntax.protocol import SCHEMA
 from protogen.schema.text.document import parse_document
-from protogen.schema.text.nodes import Node
+from protogen.schema.text.nodes import Node, to_data
 
 Key = tuple[str, str]
 """A syntax class and one of its keys."""
@@ -73,6 +74,7 @@ def tree(text: str) -> Node:
 
 
 ROOT = tree(TEXT)
+DATA = to_data(ROOT)
 
 
 def is_marked(form: Form | None) -> bool:
@@ -89,33 +91,33 @@ MARKED = sorted(
 )
 
 
-def key_of(root: Node, found: Reference) -> Key:
+def key_of(data: Any, found: Reference) -> Key:
     """The innermost class and key that a reference stands under."""
     form, key = SCHEMA, ("", "")
     for step in found.spot.place:
         for model in form.models:
             if step in keys_of(model):
                 key = (model.__name__, str(step))
-        form = form_under(root, form, step)
+        form = form_under(data, form, step)
     if form.short is not None and not found.spot.at_key:
         key = (form.models[0].__name__, form.short)
     return key
 
 
-def under(root: Node, key: Key) -> list[Reference]:
-    return [found for found in references(root) if key_of(root, found) == key]
+def under(data: Any, key: Key) -> list[Reference]:
+    return [found for found in references(data) if key_of(data, found) == key]
 
 
 @pytest.mark.parametrize("key", MARKED, ids=".".join)
 def test_a_marked_key_follows_every_rename(key: Key) -> None:
     followed = 0
-    for found in under(ROOT, key):
-        for *place, name in found.declarations(ROOT):
+    for found in under(DATA, key):
+        for *place, name in found.declarations(DATA):
             dialect = f"{{rename: {{{name}: other_name}}}}"
             for step in reversed(place):
                 dialect = f"{{{step}: {dialect}}}"
             renamed = apply_renames(ROOT, tree(dialect), Problems())
-            names = [now.name for now in under(renamed, key) if now.kind is found.kind]
+            names = [now.name for now in under(to_data(renamed), key) if now.kind is found.kind]
             assert "other_name" in names
             followed += 1
     assert followed, "the schema above lacks a reference under this key"
@@ -128,15 +130,15 @@ def test_the_schema_is_one() -> None:
 
 
 def test_a_reference_knows_its_place_in_the_text() -> None:
-    covers = under(ROOT, ("Part", "covers"))
+    covers = under(DATA, ("Part", "covers"))
     assert [(found.name, found.start) for found in covers] == [
         ("length", 0),
         ("number", len("length..")),
         ("payload", 0),
     ]
-    assert covers[0].node.span == covers[1].node.span
-    assert covers[1].declarations(ROOT) == [("frame", "robot", "number")]
-    assert {found.name for found in under(ROOT, ("Reserved", "values"))} == {
+    assert covers[0].spot == covers[1].spot
+    assert covers[1].declarations(DATA) == [("frame", "robot", "number")]
+    assert {found.name for found in under(DATA, ("Reserved", "values"))} == {
         "report",
         "state",
         "kind",
@@ -144,13 +146,15 @@ def test_a_reference_knows_its_place_in_the_text() -> None:
 
 
 def test_a_name_of_nothing_has_no_declaration() -> None:
-    root = tree(
-        dedent("""
-        endpoints: {a: A}
-        messages: {m: {from: b, fields: {n: {type: uint8, count: k}}}}
-        """)
+    data = to_data(
+        tree(
+            dedent("""
+            endpoints: {a: A}
+            messages: {m: {from: b, fields: {n: {type: uint8, count: k}}}}
+            """)
+        )
     )
-    assert [(found.name, found.scopes, found.declarations(root)) for found in references(root)] == [
+    assert [(found.name, found.scopes, found.declarations(data)) for found in references(data)] == [
         ("b", (("endpoints",),), []),
         ("uint8", (("types",),), []),
         ("k", (("messages", "m", "fields"),), []),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import msgspec
 
@@ -40,6 +41,8 @@ class Context(msgspec.Struct, frozen=True):
     """One schema on its way through the passes."""
 
     syntax: ProtocolSyntax
+    data: Any
+    """What the syntax tree was made of."""
     find: Find
     """The place of a value."""
     find_key: Find

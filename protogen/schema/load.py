@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import msgspec
 
@@ -19,6 +20,8 @@ class Loaded(msgspec.Struct, frozen=True):
     """A schema as it was written, and where each of its nodes stands."""
 
     syntax: ProtocolSyntax
+    data: Any
+    """What the syntax tree was made of."""
     merged: Merged
     doubtful: frozenset[Loc] = frozenset()
     """Items of which something could not be read: what seems wrong with them may come of that."""
@@ -54,7 +57,8 @@ def load_syntax(
     # Of two equal keys the first one counts; with that, the rest can still be looked at.
     sound = all(problem.code == "PG006" for problem in problems.errors)
     spoilt = bool(problems.errors)
-    shape = read_shape(to_data(merged.root), merged.find, problems)
+    data = to_data(merged.root)
+    shape = read_shape(data, merged.find, problems)
     if shape is None or not sound:
         return None
-    return Loaded(shape.syntax, merged, shape.doubtful, shape.lost, spoilt or shape.spoilt)
+    return Loaded(shape.syntax, data, merged, shape.doubtful, shape.lost, spoilt or shape.spoilt)

@@ -1,21 +1,20 @@
 """References of a schema: every name that stands for something that is declared elsewhere.
 
-The syntax classes mark which keys hold names, and of what kind. One walk over them and the tree
-finds all references, each with the mappings that may declare it.
+The syntax classes mark which keys hold names, and of what kind. One walk over them and the data
+of a schema finds all references, each with the mappings that may declare it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import msgspec
 
-from protogen.schema.scopes import Place, Scopes
+from protogen.schema.scopes import Place, Scopes, keys_at
 from protogen.schema.syntax.forms import Form
 from protogen.schema.syntax.names import BySender, FieldPath, FieldValues, Kind, Mark, Ref
-from protogen.schema.syntax.protocol import SCHEMA
-from protogen.schema.text.edit import items_of, keys_of
-from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from protogen.schema.syntax.protocol import SCHEMA, is_by_sender
 from protogen.schema.text.scalars import Scalar
 
 _NAMINGS = ("values", "flags", "bits")
@@ -23,7 +22,7 @@ _NAMINGS = ("values", "flags", "bits")
 
 
 class Spot(msgspec.Struct, frozen=True):
-    """Scalar of a tree: a value, or the key of an item."""
+    """Scalar of a schema: a value, or the key of an item."""
 
     place: Place
     at_key: bool = False
@@ -34,124 +33,117 @@ class Reference(msgspec.Struct, frozen=True):
 
     kind: Kind
     spot: Spot
-    node: ScalarNode
-    start: int
-    """Offset of the name in the text of the scalar."""
     name: Scalar
     scopes: tuple[Place, ...]
+    start: int = 0
+    """Offset of the name in the text of the scalar."""
+    missing: str | None = None
+    """Code of the problem that it is where nothing has the name."""
 
-    def declarations(self, root: Node) -> list[Place]:
+    def declarations(self, data: Any) -> list[Place]:
         """Places of what it names: one, or a part for each sender that has one."""
-        found = [scope for scope in self.scopes if self.name in keys_of(root.at(scope))]
+        found = [scope for scope in self.scopes if self.name in keys_at(data, scope)]
         nearest = found if self.kind is Kind.PART else found[:1]
         return [(*scope, self.name) for scope in nearest]
 
 
-def references(root: Node) -> Iterator[Reference]:
+def references(data: Any) -> Iterator[Reference]:
     """Yield all references of a schema, which need not be valid, in the order of its text."""
-    return _Walk(root).inside(root, SCHEMA, ())
+    return _Walk(data).inside(data, SCHEMA, ())
 
 
-def form_under(root: Node, form: Form, key: Scalar) -> Form:
+def form_under(data: Any, form: Form, key: Scalar) -> Form:
     """Form of what stands under a key: stated for each sender, or once for all of them."""
     inner = form.inside(key)
-    if not any(isinstance(mark, BySender) for mark in inner.marks) or inner.items is None:
+    if inner.items is None or not any(isinstance(mark, BySender) for mark in inner.marks):
         return inner
-    return inner if is_by_sender(root, key) else inner.items
-
-
-def is_by_sender(root: Node, key: Scalar) -> bool:
-    """True if what stands under ``key`` is keyed by endpoint."""
-    senders = keys_of(root.child(key))
-    return bool(senders) and senders <= keys_of(root.child("endpoints"))
+    return inner if is_by_sender(data, str(key)) else inner.items
 
 
 class _Walk:
-    """One walk over a tree, along the syntax classes."""
+    """One walk over the data of a schema, along the syntax classes."""
 
-    def __init__(self, root: Node) -> None:
-        self._root = root
-        self._scopes = Scopes(root, is_by_sender(root, "frame"))
+    def __init__(self, data: Any) -> None:
+        self._data = data
+        self._scopes = Scopes(data)
 
-    def inside(self, node: Node, form: Form, place: Place) -> Iterator[Reference]:
-        """Yield the references in a node of this form."""
+    def inside(self, value: Any, form: Form, place: Place) -> Iterator[Reference]:
+        """Yield the references in a value of this form."""
         if not form:
             return
         for mark in form.marks:
-            yield from self._marked(mark, node, place)
-        match node:
-            case MappingNode():
-                yield from self._mapping(node, form, place)
-            case SequenceNode():
-                for index, item in enumerate(node.items):
-                    yield from self.inside(item, form.items or Form(), (*place, index))
-            case ScalarNode():
-                if form.short is not None:
-                    yield from self.inside(node, form.inside(form.short), place)
-                elif form.items is not None and form.names is None:
-                    yield from self.inside(node, form.items, place)
+            yield from self._marked(mark, value, place)
+        if isinstance(value, dict):
+            yield from self._mapping(value, form, place)
+        elif isinstance(value, list):
+            for index, item in enumerate(value):
+                yield from self.inside(item, form.items or Form(), (*place, index))
+        elif form.short is not None:
+            yield from self.inside(value, form.inside(form.short), place)
+        elif form.items is not None and form.names is None:
+            yield from self.inside(value, form.items, place)
 
-    def _mapping(self, node: MappingNode, form: Form, place: Place) -> Iterator[Reference]:
-        for key, value in node.items:
-            at = (*place, key.value)
+    def _mapping(self, mapping: dict[Scalar, Any], form: Form, place: Place) -> Iterator[Reference]:
+        for key, value in mapping.items():
+            inner = (*place, key)
             for mark in form.names.marks if form.names else ():
-                yield from self._named(mark, key, Spot(at, at_key=True))
-            yield from self.inside(value, form_under(self._root, form, key.value), at)
+                yield from self._named(mark, key, Spot(inner, at_key=True))
+            yield from self.inside(value, form_under(self._data, form, key), inner)
 
-    def _marked(self, mark: Mark, node: Node, place: Place) -> Iterator[Reference]:
+    def _marked(self, mark: Mark, value: Any, place: Place) -> Iterator[Reference]:
         if isinstance(mark, FieldValues):
             fields = (*place[:2], "fields")
-            yield from self._values_of_fields(node, (fields,), place)
-        elif isinstance(node, ScalarNode):
-            yield from self._named(mark, node, Spot(place))
+            yield from self._values_of_fields(value, (fields,), place)
+        elif not isinstance(value, dict | list):
+            yield from self._named(mark, value, Spot(place))
 
-    def _named(self, mark: Mark, node: ScalarNode, spot: Spot) -> Iterator[Reference]:
+    def _named(self, mark: Mark, written: Scalar, spot: Spot) -> Iterator[Reference]:
         """Yield what a scalar names, by its mark."""
         match mark:
             case Ref(Kind.PART):
                 scopes = self._scopes.of_parts(spot.place)
                 start = 0
-                for name in node.text.split("..") if isinstance(node.value, str) else ():
-                    yield Reference(Kind.PART, spot, node, start, name, scopes)
+                for name in written.split("..") if isinstance(written, str) else ():
+                    yield Reference(Kind.PART, spot, name, scopes, start)
                     start += len(name) + len("..")
-            case Ref(kind, of):
+            case Ref(kind, of, missing):
                 scopes = self._scopes.of(kind, of, spot.place)
-                yield Reference(kind, spot, node, 0, node.value, scopes)
+                yield Reference(kind, spot, written, scopes, missing=missing)
             case FieldPath():
-                yield from _field_path(node, spot)
+                yield from _field_path(str(written), spot)
 
     def _values_of_fields(
-        self, node: Node, scopes: tuple[Place, ...], place: Place
+        self, values: Any, scopes: tuple[Place, ...], place: Place
     ) -> Iterator[Reference]:
         """Yield what the values of a struct name: fields, and the names of their values."""
-        for key, value in items_of(node):
-            at = (*place, key.value)
-            named = Reference(Kind.FIELD, Spot(at, at_key=True), key, 0, key.value, scopes)
+        for key, value in values.items() if isinstance(values, dict) else ():
+            inner = (*place, key)
+            named = Reference(Kind.FIELD, Spot(inner, at_key=True), key, scopes)
             yield named
-            for field in named.declarations(self._root):
-                yield from self._values_of_field(value, field, at)
+            for field in named.declarations(self._data):
+                yield from self._values_of_field(value, field, inner)
 
-    def _values_of_field(self, node: Node, field: Place, place: Place) -> Iterator[Reference]:
-        if isinstance(node, SequenceNode):
-            for index, item in enumerate(node.items):
+    def _values_of_field(self, value: Any, field: Place, place: Place) -> Iterator[Reference]:
+        if isinstance(value, list):
+            for index, item in enumerate(value):
                 yield from self._values_of_field(item, field, (*place, index))
             return
         namings = self._scopes.inside_field(field, *_NAMINGS)
-        if isinstance(node, ScalarNode):
-            yield Reference(Kind.VALUE, Spot(place), node, 0, node.value, namings)
+        if not isinstance(value, dict):
+            yield Reference(Kind.VALUE, Spot(place), value, namings)
         elif structs := self._scopes.inside_field(field, "fields"):
-            yield from self._values_of_fields(node, structs, place)
+            yield from self._values_of_fields(value, structs, place)
         else:
-            yield from self._values_of_fields(node, namings, place)
+            yield from self._values_of_fields(value, namings, place)
 
 
-def _field_path(node: ScalarNode, spot: Spot) -> Iterator[Reference]:
+def _field_path(path: str, spot: Spot) -> Iterator[Reference]:
     """Yield the message and the field that a dotted path names; without a dot, the type."""
-    message, dot, rest = str(node.value).partition(".")
+    message, dot, rest = path.partition(".")
     if not dot:
-        yield Reference(Kind.TYPE, spot, node, 0, node.value, (("types",),))
+        yield Reference(Kind.TYPE, spot, path, (("types",),))
         return
-    yield Reference(Kind.MESSAGE, spot, node, 0, message, (("messages",),))
+    yield Reference(Kind.MESSAGE, spot, message, (("messages",),))
     fields = ("messages", message, "fields")
     name = rest.partition(".")[0]
-    yield Reference(Kind.FIELD, spot, node, len(message) + 1, name, (fields,))
+    yield Reference(Kind.FIELD, spot, name, (fields,), len(message) + 1)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from protogen.schema.syntax.names import Kind
-from protogen.schema.text.edit import keys_of
-from protogen.schema.text.nodes import Node, ScalarNode, SequenceNode
+from protogen.schema.syntax.protocol import is_by_sender
 from protogen.schema.text.scalars import Scalar
 
 Place = tuple[Scalar, ...]
@@ -21,12 +21,29 @@ _EVERYWHERE = {
 """Keys of the root that declare for the whole schema."""
 
 
-class Scopes:
-    """Scopes of one tree; those of a name come nearest first."""
+def at(data: Any, place: Place) -> Any:
+    """Value at a place of a schema's data; None if there is none."""
+    for step in place:
+        if isinstance(data, dict):
+            data = data.get(step)
+        else:
+            inside = isinstance(data, list) and isinstance(step, int) and 0 <= step < len(data)
+            data = data[step] if inside else None
+    return data
 
-    def __init__(self, root: Node, frame_by_sender: bool) -> None:
-        self._root = root
-        self._frame_by_sender = frame_by_sender
+
+def keys_at(data: Any, place: Place) -> tuple[Scalar, ...]:
+    """Keys of the mapping at a place; anything else has none."""
+    found = at(data, place)
+    return tuple(found) if isinstance(found, dict) else ()
+
+
+class Scopes:
+    """Scopes of one schema's data; those of a name come nearest first."""
+
+    def __init__(self, data: Any) -> None:
+        self._data = data
+        self._frame_by_sender = is_by_sender(data, "frame")
 
     def of(self, kind: Kind, owner: str | None, place: Place) -> tuple[Place, ...]:
         """Scopes of a name at a place, whose owner the key ``owner`` beside it may name."""
@@ -36,7 +53,7 @@ class Scopes:
             case Kind.FIELD:
                 return _of_fields(place)
             case Kind.EXAMPLE:
-                message = self._text((*place[:-1], owner or ""))
+                message = self._name((*place[:-1], owner or ""))
                 return (("messages", message, "examples"),)
             case Kind.VALUE if owner is None:
                 return self.inside_field(place[:-1], "values")
@@ -56,42 +73,41 @@ class Scopes:
             (*place, key)
             for place in self._meanings(field)
             for key in keys
-            if keys_of(self._root.at((*place, key)))
+            if keys_at(self._data, (*place, key))
         )
 
     def _of_cases(self, field: Place, switch: str) -> tuple[Place, ...]:
         """Values of the field that chooses between the cases of another one."""
-        chosen = self._text((*field, switch))
+        chosen = self._name((*field, switch))
         for fields in _of_fields((*field, switch)):
-            if chosen in keys_of(self._root.at(fields)):
+            if chosen in keys_at(self._data, fields):
                 return self.inside_field((*fields, chosen), "values")
         return ()
 
     def _senders(self, place: Place) -> list[Scalar]:
         """Senders of the nearest mapping that says so; else all of them."""
-        frames = keys_of(self._root.child("frame"))
+        frames = keys_at(self._data, ("frame",))
         if place[0] in ("frame", "transparency") and place[1] in frames:
             return [place[1]]
         for steps in range(len(place) - 1, 1, -1):
-            match self._root.at((*place[:steps], "from")):
-                case ScalarNode() as sender:
-                    return [sender.value]
-                case SequenceNode(items=senders):
-                    return [item.value for item in senders if isinstance(item, ScalarNode)]
+            senders = at(self._data, (*place[:steps], "from"))
+            if senders is not None:
+                listed = senders if isinstance(senders, list) else [senders]
+                return [sender for sender in listed if isinstance(sender, str)]
         return list(frames)
 
     def _meanings(self, field: Place) -> Iterator[Place]:
         """Yield a field's place and those of its declared type, of that one's type, and so on."""
         seen: set[Place] = set()
-        while field not in seen and (written := self._root.at(field)) is not None:
+        while field not in seen and (written := at(self._data, field)) is not None:
             yield field
             seen.add(field)
-            named = written if isinstance(written, ScalarNode) else written.child("type")
-            field = ("types", named.value) if isinstance(named, ScalarNode) else field
+            named = written.get("type") if isinstance(written, dict) else written
+            field = ("types", named) if isinstance(named, str) else field
 
-    def _text(self, place: Place) -> Scalar:
-        written = self._root.at(place)
-        return written.value if isinstance(written, ScalarNode) else None
+    def _name(self, place: Place) -> str | None:
+        written = at(self._data, place)
+        return written if isinstance(written, str) else None
 
 
 def _of_fields(place: Place) -> tuple[Place, ...]:

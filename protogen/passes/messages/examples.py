@@ -1,4 +1,4 @@
-"""Examples and exchanges: examples must say enough to be verified, and exchanges name messages.
+"""Examples, which must say enough to be verified, and exchanges.
 
 Whether an example decodes to its values is asked later, by the Python target's own output.
 """
@@ -15,7 +15,6 @@ from protogen.passes.messages.example_values import with_byte_strings
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
 from protogen.schema.syntax.messages import Exchange as ExchangeSyntax
-from protogen.schema.syntax.messages import Step as StepSyntax
 
 
 def attach_examples(context: Context, draft: Draft) -> None:
@@ -130,15 +129,13 @@ def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | Non
 
 
 def resolve_exchanges(context: Context, draft: Draft) -> None:
-    """The exchanges, whose steps name messages and examples."""
+    """The exchanges."""
     draft.exchanges = tuple(
-        _exchange(context, draft, name, item) for name, item in context.syntax.exchanges.items()
+        _exchange(name, item) for name, item in context.syntax.exchanges.items()
     )
 
 
-def _exchange(context: Context, draft: Draft, name: str, item: ExchangeSyntax) -> Exchange:
-    for index, step in enumerate(item.steps):
-        _step_known(context, draft, step, ("exchanges", name, "steps", index))
+def _exchange(name: str, item: ExchangeSyntax) -> Exchange:
     steps = tuple(
         Step(message=step.message, example=step.example, about=about(step.doc, step.source))
         for step in item.steps
@@ -146,14 +143,3 @@ def _exchange(context: Context, draft: Draft, name: str, item: ExchangeSyntax) -
     return Exchange(
         name=name, title=item.title or name, steps=steps, about=about(item.doc, item.source)
     )
-
-
-def _step_known(context: Context, draft: Draft, step: StepSyntax, loc: Loc) -> None:
-    written = context.syntax.messages.get(step.message)
-    if written is None:
-        hint = hint_for(step.message, context.syntax.messages)
-        context.error("PG164", (*loc, "message"), f"there is no message `{step.message}`", hint)
-    elif step.example is not None and step.example not in (written.examples or {}):
-        hint = hint_for(step.example, written.examples or {})
-        text = f"`{step.message}` has no example `{step.example}`"
-        context.error("PG164", (*loc, "example"), text, hint)

@@ -9,7 +9,6 @@ from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Overload
 
 
@@ -22,18 +21,14 @@ class Overloads:
         self._asked: set[str] = set()
         self._listing: dict[str, list[str]] = defaultdict(list)
         for name, overload in self._written.items():
-            self._messages_known(name, overload)
+            self._messages_differ(name, overload)
             for message in dict.fromkeys(overload.messages):
                 self._listing[message].append(name)
 
-    def _messages_known(self, name: str, overload: Overload) -> None:
-        known = self._context.syntax.messages
+    def _messages_differ(self, name: str, overload: Overload) -> None:
         for index, message in enumerate(overload.messages):
-            loc: Loc = ("overloads", name, "messages", index)
-            if message not in known:
-                text = f"there is no message `{message}`"
-                self._context.error("PG154", loc, text, hint_for(message, known))
-            elif message in overload.messages[:index]:
+            if message in self._context.syntax.messages and message in overload.messages[:index]:
+                loc: Loc = ("overloads", name, "messages", index)
                 self._context.error("PG154", loc, f"`{message}` stands here twice")
 
     def resolve(self, sender: str, messages: Sequence[Message]) -> OverloadModel | None:

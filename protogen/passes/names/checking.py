@@ -1,4 +1,4 @@
-"""Check that every target can use the names, and that each endpoint named exists."""
+"""Check that every target can use the names, and that everything named exists."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
+from protogen.passes.names.references import check_references
 from protogen.passes.names.reserved_words import (
     AS_CLASSES,
     OWN_ARGUMENTS,
@@ -13,18 +14,17 @@ from protogen.passes.names.reserved_words import (
     languages_reserving,
 )
 from protogen.passes.types.type_names import is_builtin
-from protogen.problems import hint_for
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.protocol import Frame
 
 _NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
 _VALUE_KEYS = ("values", "flags", "bits", "special")
-_BY_SENDER = ("byte_order", "frame", "transparency")
 
 
 def check_names(context: Context, draft: Draft) -> None:
-    """Reserved words and unknown endpoints; finds the senders."""
+    """Reserved words and unknown names; finds the senders."""
     syntax = context.syntax
+    check_references(context)
     _usable(context, syntax.protocol, ("protocol",), at_value=True)
     for key in _NAMED_KEYS:
         for name in getattr(syntax, key):
@@ -40,8 +40,8 @@ def check_names(context: Context, draft: Draft) -> None:
             _fields(context, message.fields, ("messages", name, "fields"))
     if not syntax.messages:
         context.error("PG157", ("messages",), "the protocol has no messages")
-    draft.senders = _senders(context)
-    _keys_are_endpoints(context)
+    sending = {sender for message in syntax.messages.values() for sender in message.from_}
+    draft.senders = tuple(name for name in syntax.endpoints if name in sending)
 
 
 def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) -> None:
@@ -84,32 +84,3 @@ def _inside_field(context: Context, item: FieldSyntax, loc: Loc) -> None:
     _fields(context, item.fields or {}, (*loc, "fields"))
     for key, case in (item.cases or {}).items():
         _inside_field(context, case, (*loc, "cases", key))
-
-
-def _senders(context: Context) -> tuple[str, ...]:
-    """The endpoints that send something, in the order of the schema."""
-    endpoints = context.syntax.endpoints
-    sending: set[str] = set()
-    for name, message in context.syntax.messages.items():
-        for index, sender in enumerate(message.from_):
-            sending.add(sender)
-            check_endpoint(context, sender, ("messages", name, "from", index))
-    return tuple(name for name in endpoints if name in sending)
-
-
-def check_endpoint(context: Context, name: str, loc: Loc) -> bool:
-    """True if there is such an endpoint; reports a problem at `loc` if not."""
-    endpoints = context.syntax.endpoints
-    if name not in endpoints and not context.is_lost("endpoints", name):
-        text = f"there is no endpoint `{name}`"
-        context.error("PG108", loc, text, hint_for(name, endpoints))
-    return name in endpoints
-
-
-def _keys_are_endpoints(context: Context) -> None:
-    endpoints = context.syntax.endpoints
-    for key in _BY_SENDER:
-        for sender in getattr(context.syntax, key):
-            if sender and sender not in endpoints and not context.is_lost("endpoints", sender):
-                text = f"there is no endpoint `{sender}`"
-                context.error_at_key("PG108", (key, sender), text, hint_for(sender, endpoints))

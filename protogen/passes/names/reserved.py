@@ -6,7 +6,6 @@ from protogen.model.reserved import Reserved, ReservedIdentity, ReservedNames, R
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.messages.identity import IdentityReader
-from protogen.passes.names.checking import check_endpoint
 from protogen.schema.syntax.protocol import ReservedIdentity as IdentitySyntax
 
 
@@ -35,7 +34,7 @@ def resolve_reserved(context: Context, draft: Draft) -> None:
 def _identity(
     context: Context, draft: Draft, loc: Loc, entry: IdentitySyntax
 ) -> ReservedIdentity | None:
-    if not check_endpoint(context, entry.from_, (*loc, "from")) or entry.from_ not in draft.frames:
+    if entry.from_ not in draft.frames:
         return None
     reader = IdentityReader(context, loc, "the reserved identity")
     identity = reader.read(entry.id, draft.frames[entry.from_])

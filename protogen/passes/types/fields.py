@@ -32,10 +32,7 @@ from protogen.passes.types.switches import SwitchBuilder
 from protogen.passes.types.type_names import (
     UNKNOWN_TYPE,
     float_type,
-    has_width,
     integer,
-    integer_width,
-    type_hint,
 )
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
@@ -114,7 +111,7 @@ class FieldBuilder:
         name, layout = item.syntax.type or "", setting.layout
         found = integer(name, layout) or float_type(name, layout)
         if found is None:
-            self._unknown_type(name, item.at("type"))
+            self._context.tally.errors += 1  # Reported where names are checked.
             return UNKNOWN_TYPE
         if found.size > 1 and layout.byte_order is None:
             self._no_byte_order(item.at("type"))
@@ -166,16 +163,6 @@ class FieldBuilder:
         return extent
 
     # -- problems -----------------------------------------------------------------------------
-
-    def _unknown_type(self, name: str, loc: Loc) -> None:
-        if not has_width(name):
-            text = f"integers are 1 to 64 bits wide, not {integer_width(name)}"
-            self._context.error("PG105", loc, text)
-            return
-        if self._context.is_lost("types", name):
-            return
-        hint = type_hint(name, self._context.syntax.types)
-        self._context.error("PG104", loc, f"there is no type `{name}`", hint)
 
     def _no_byte_order(self, loc: Loc) -> None:
         self._context.error(

@@ -8,9 +8,9 @@ from __future__ import annotations
 from functools import partial
 
 from protogen.schema.dialects.directives import read_directives
-from protogen.schema.references import is_by_sender
+from protogen.schema.syntax.protocol import is_by_sender
 from protogen.schema.text.edit import edit_at, items_of, keys_of
-from protogen.schema.text.nodes import MappingNode, Node
+from protogen.schema.text.nodes import MappingNode, Node, to_data
 from protogen.schema.text.scalars import Scalar
 
 _SHARED = ("frame", "transparency")
@@ -21,7 +21,7 @@ def spread_shared(base: Node, dialect: Node) -> Node:
     endpoints = base.child("endpoints")
     known = keys_of(endpoints) | _renamed(dialect.child("endpoints"))
     for key in _SHARED:
-        if _keyed_by_endpoint(dialect.child(key), known) and not is_by_sender(base, key):
+        if _keyed_by_endpoint(dialect.child(key), known) and not is_by_sender(to_data(base), key):
             base = edit_at(base, key, partial(_for_each, endpoints))
     return base
 

@@ -11,7 +11,14 @@ from protogen.schema.dialects.directives import Rename, read_directives
 from protogen.schema.dialects.merge import report_unknown
 from protogen.schema.references import Spot, references
 from protogen.schema.scopes import Place
-from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
+from protogen.schema.text.nodes import (
+    Item,
+    MappingNode,
+    Node,
+    ScalarNode,
+    SequenceNode,
+    to_data,
+)
 from protogen.schema.text.scalars import Scalar
 
 _Names = dict[Scalar, ScalarNode]
@@ -48,9 +55,10 @@ def _edits(root: Node, path: Place, names: _Names) -> _Edits:
     edits: dict[Spot, dict[int, tuple[str, ScalarNode]]] = defaultdict(dict)
     for old, new in names.items():
         edits[Spot((*path, old), at_key=True)][0] = (str(old), new)
-    for found in references(root):
+    data = to_data(root)
+    for found in references(data):
         # What serves several senders keeps a name until none of them has it any more.
-        if found.name in names and found.declarations(root) == [(*path, found.name)]:
+        if found.name in names and found.declarations(data) == [(*path, found.name)]:
             edits[found.spot][found.start] = (str(found.name), names[found.name])
     return edits
 

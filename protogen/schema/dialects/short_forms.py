@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from protogen.schema.references import form_under
 from protogen.schema.syntax.forms import Form
 from protogen.schema.syntax.protocol import SCHEMA
 from protogen.schema.text.edit import edit_at, items_of
-from protogen.schema.text.nodes import MappingNode, Node, ScalarNode
+from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, to_data
 
 _OTHER_KINDS = ("fields", "switch")
 """Keys of a field that make it something else, so that the base's type is not meant."""
@@ -19,17 +20,17 @@ _OTHER_KINDS = ("fields", "switch")
 
 def expand_short_forms(base: Node, dialect: Node) -> Node:
     """Return the base with a mapping for each short form that a mapping of the dialect meets."""
-    return _expanded(SCHEMA, dialect, base, base)
+    return _expanded(SCHEMA, dialect, to_data(base), base)
 
 
-def _expanded(form: Form, stated: Node, root: Node, node: Node) -> Node:
+def _expanded(form: Form, stated: Node, data: Any, node: Node) -> Node:
     if not isinstance(stated, MappingNode):
         return node
     if isinstance(node, ScalarNode):
         is_meant = form.short and not (form.short == "type" and _is_other(stated))
         return _long(form.short or "", node) if is_meant else node
     for key, value in items_of(stated):
-        expand = partial(_expanded, form_under(root, form, key.value), value, root)
+        expand = partial(_expanded, form_under(data, form, key.value), value, data)
         node = edit_at(node, key.value, expand)
     return node
 

@@ -17,11 +17,9 @@ from protogen.schema.syntax.base import (
 )
 from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.names import (
-    DecisionName,
     EndpointName,
     ExampleName,
     Kind,
-    MessageName,
     PartName,
     Ref,
     ValuesByField,
@@ -58,7 +56,7 @@ class Example(Syntax):
         None, description="What a document prints without delimiters and checksum."
     )
     covers: PartRun | None = Field(None, description="The parts that `content` holds.")
-    sender: EndpointName | None = Field(
+    sender: Annotated[Name, Ref(Kind.ENDPOINT)] | None = Field(
         None, description="Who sends it, where the message has several senders."
     )
     values: ValuesByField | None = Field(
@@ -139,16 +137,18 @@ class MessageSyntax(Syntax):
 class Overload(Syntax):
     """Messages of one sender that share an identity."""
 
-    messages: tuple[MessageName, ...] = Field(
+    messages: tuple[Annotated[Name, Ref(Kind.MESSAGE, missing="PG154")], ...] = Field(
         strict=False, description="The messages that share it."
     )
     by: Literal["size", "undecidable"] = Field(
         description="How a receiver tells them apart: by payload size, or not at all."
     )
-    yields: MessageName | None = Field(
+    yields: Annotated[Name, Ref(Kind.MESSAGE)] | None = Field(
         None, description="If undecidable, the message that a decoder yields."
     )
-    decision: DecisionName | None = Field(None, description="The decision that accepts it.")
+    decision: Annotated[Name, Ref(Kind.DECISION, missing="PG165")] | None = Field(
+        None, description="The decision that accepts it."
+    )
     doc: Text | None = Field(None, description="What a reader should know.")
     source: SourceRef | None = Field(None, description="Where it is written down.")
 
@@ -156,7 +156,7 @@ class Overload(Syntax):
 class Step(Syntax):
     """One message of an exchange."""
 
-    message: MessageName = Field(description="The message.")
+    message: Annotated[Name, Ref(Kind.MESSAGE, missing="PG164")] = Field(description="The message.")
     example: ExampleName | None = Field(None, description="Which of its examples is sent.")
     doc: Text | None = Field(None, description="What happens here.")
     source: SourceRef | None = Field(None, description="Where it is printed.")

@@ -33,6 +33,8 @@ class Ref(msgspec.Struct, frozen=True):
     kind: Kind
     of: str | None = None
     """Key beside it that names the owner: the message of an example, the switch of a case."""
+    missing: str | None = None
+    """Code of the problem where nothing has the name; None: the passes ask for more than that."""
 
 
 class FieldPath(msgspec.Struct, frozen=True):
@@ -49,29 +51,23 @@ class BySender(msgspec.Struct, frozen=True):
 
 Mark = Ref | FieldPath | FieldValues | BySender
 
-EndpointName = Annotated[Name, Ref(Kind.ENDPOINT)]
+EndpointName = Annotated[Name, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint."""
 
-SenderKey = Annotated[str, Ref(Kind.ENDPOINT)]
+SenderKey = Annotated[str, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint, as the key of what is stated for each sender."""
 
 PartName = Annotated[str, Ref(Kind.PART)]
 """A part of the frame, or a run `first..last` of them."""
 
-TypeName = Annotated[Text, Ref(Kind.TYPE)]
+TypeName = Annotated[Text, Ref(Kind.TYPE, missing="PG104")]
 """A built-in type, or one declared under `types`."""
 
 FieldName = Annotated[Name, Ref(Kind.FIELD)]
 """A field beside this one, or around it."""
 
-MessageName = Annotated[Name, Ref(Kind.MESSAGE)]
-"""A message."""
-
-ExampleName = Annotated[Name, Ref(Kind.EXAMPLE, of="message")]
+ExampleName = Annotated[Name, Ref(Kind.EXAMPLE, of="message", missing="PG164")]
 """An example of the message that the key beside it names."""
-
-DecisionName = Annotated[Name, Ref(Kind.DECISION)]
-"""A decision."""
 
 CaseKey = Annotated[Any, Ref(Kind.VALUE, of="switch")]
 """A value of the field that the key beside it names."""

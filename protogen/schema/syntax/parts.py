@@ -11,6 +11,7 @@ from protogen.schema.syntax.base import (
     ByteNumber,
     Count,
     Int,
+    Name,
     RawNumber,
     ShortForm,
     SourceRef,
@@ -18,7 +19,7 @@ from protogen.schema.syntax.base import (
     Text,
     pair_of,
 )
-from protogen.schema.syntax.names import DecisionName, Kind, PartName, Ref, TypeName
+from protogen.schema.syntax.names import Kind, PartName, Ref
 from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 
 ByteOrder = Literal["little", "big"]
@@ -77,11 +78,11 @@ class Part(Syntax):
     literal: Annotated[Octets, at_most(64)] | None = Field(
         None, description="Fixed bytes that open, close or mark."
     )
-    unprotected: DecisionName | None = Field(
+    unprotected: Annotated[Name, Ref(Kind.DECISION, missing="PG143")] | None = Field(
         None,
         description="The decision that accepts that this literal can also occur inside a frame.",
     )
-    type: TypeName | None = Field(
+    type: Annotated[Text, Ref(Kind.TYPE)] | None = Field(
         None, description="Type of the part: uint8, uint16, char, byte ..."
     )
     id: Literal[True] | None = Field(None, description="The part tells which message this is.")

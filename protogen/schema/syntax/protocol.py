@@ -26,7 +26,8 @@ from protogen.schema.syntax.names import (
     BySender,
     EndpointName,
     FieldPathKey,
-    MessageName,
+    Kind,
+    Ref,
     SenderKey,
 )
 from protogen.schema.syntax.parts import (
@@ -92,7 +93,9 @@ class Reserved(Syntax):
     identities: tuple[ReservedIdentity, ...] = Field(
         (), strict=False, description="Identities of deleted messages."
     )
-    fields: dict[MessageName, Annotated[tuple[Name, ...], Field(strict=False)]] = Field(
+    fields: dict[
+        Annotated[Name, Ref(Kind.MESSAGE)], Annotated[tuple[Name, ...], Field(strict=False)]
+    ] = Field(
         default_factory=dict,
         description="Message to the field names it may not use again.",
     )
@@ -124,15 +127,15 @@ _MARKS: dict[str, frozenset[str]] = {
 """Keys by which a frame or a transparency shows what it is, also under a misspelled endpoint."""
 
 
-def _by_sender(key: str, value: Any, endpoints: Any) -> Any:
-    """Return a value keyed by endpoints; one that is not so keyed holds for all of them."""
-    return value if _is_by_sender(value, _MARKS[key], _keys(endpoints)) else {ALL_SENDERS: value}
-
-
-def _is_by_sender(value: Any, marks: Set[str], endpoints: Set[Any]) -> bool:
+def is_by_sender(schema: Any, key: str) -> bool:
+    """True if what the data of a schema have under a key is keyed by endpoints."""
+    value, endpoints = schema.get(key), _keys(schema.get("endpoints"))
     keys = _keys(value)
-    if not keys or keys <= endpoints or keys & marks:
-        return bool(keys) and keys <= endpoints
+    if key not in _MARKS or not keys:
+        return bool(keys)
+    marks = _MARKS[key]
+    if keys <= endpoints or keys & marks:
+        return keys <= endpoints
     named = bool(keys & endpoints)
     return any(_keys(item) & marks or (named and isinstance(item, str)) for item in value.values())
 
@@ -211,11 +214,10 @@ class ProtocolSyntax(Syntax):
     def _split_by_sender(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             return data
-        written = {key: data[key] for key in _MARKS if data.get(key) is not None}
-        split = {
-            key: _by_sender(key, value, data.get("endpoints")) for key, value in written.items()
-        }
-        return {**data, **split}
+        shared = (
+            key for key in _MARKS if data.get(key) is not None and not is_by_sender(data, key)
+        )
+        return {**data, **{key: {ALL_SENDERS: data[key]} for key in shared}}
 
 
 SCHEMA = Form(models=[ProtocolSyntax])

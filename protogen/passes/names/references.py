@@ -1,0 +1,44 @@
+"""Check that everything exists that a schema names.
+
+Where a name has to fit as well (a part its frame, a value its field), the pass that knows asks.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+from protogen.passes.context import Context, Loc
+from protogen.passes.types.type_names import GREATEST_WIDTH, integer_width, is_builtin, type_hint
+from protogen.problems import hint_for
+from protogen.schema.references import Reference, references
+from protogen.schema.scopes import keys_at
+from protogen.schema.syntax.names import Kind
+
+
+def check_references(context: Context) -> None:
+    """Report each name of nothing that the schema declares, and the one that may be meant."""
+    for found in references(context.data):
+        if found.missing is not None and not found.declarations(context.data):
+            _check(context, found, found.missing)
+
+
+def _check(context: Context, found: Reference, code: str) -> None:
+    scope, name = found.scopes[0], getattr(found.name, "text", str(found.name))
+    declared = [str(key) for key in keys_at(context.data, scope)]
+    text, hint = f"there is no {found.kind.value} `{name}`", hint_for(name, declared)
+    match found.kind:
+        case Kind.TYPE if is_builtin(name):
+            width = integer_width(name)
+            if width is None or 1 <= width <= GREATEST_WIDTH:
+                return
+            code, text, hint = "PG105", f"integers are 1 to 64 bits wide, not {width}", None
+        case Kind.TYPE:
+            hint = type_hint(name, declared)
+        case Kind.EXAMPLE:
+            message = str(scope[1])
+            if message not in context.syntax.messages:
+                return
+            text = f"`{message}` has no example `{name}`"
+    if not context.is_lost(str(scope[0]), name):
+        report = context.error_at_key if found.spot.at_key else context.error
+        report(code, cast(Loc, found.spot.place), text, hint)
