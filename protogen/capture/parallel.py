@@ -21,7 +21,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from itertools import pairwise
 from threading import Lock, get_ident
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -29,6 +29,9 @@ from protogen.capture.cuts import Frame, behind, frames_of, renumbered, until
 from protogen.capture.errors import CaptureError
 from protogen.capture.source import forget
 from protogen.capture.tables import Tables
+
+if TYPE_CHECKING:
+    from protogen.capture.native import NativeEngine
 
 ROWS = 6 << 20
 """Bytes of rows that a part should have: many for what a part costs by itself, and few for what all
@@ -49,74 +52,28 @@ _SAMPLE = 1 << 16
 """Bytes that tell how many rows there will be."""
 
 
-class Engine(Protocol):
-    """A decoder that can begin anywhere."""
-
-    def start(self, offset: int, sequence: int = 0) -> None:
-        """Begin a stream at this byte of the capture; the first event has this number."""
-
-    def renumber(self, more: int) -> None:
-        """The numbers of the next events are greater by so many."""
-
-    @property
-    def place(self) -> tuple[int, int]:
-        """The offset of the first byte that no event covers yet, and the next event's number."""
-
-    @property
-    def is_full(self) -> bool:
-        """Whether `run` could have taken more bytes, had there been room for rows."""
-
-    def run(self, data: memoryview, part: int, end: int) -> int:
-        """Take the bytes of a part, and those behind it until a frame is complete: how many.
-
-        `part` bytes lead to the offset `end`. What comes of them is held until `take`.
-        """
-
-    def join(self, front: Any) -> bool:
-        """Let what is held count from where the part in front ran on to, and number it on.
-
-        False: there is no frame that both have, as far as is known.
-        """
-
-    def tell(self, front: Any) -> None:
-        """Say where the part in front ran on to: `run`, which may be at work, can join it then."""
-
-    @property
-    def is_joined(self) -> bool:
-        """Whether that was done."""
-
-    def take(self) -> Tables:
-        """What was held."""
-
-    def step(self, data: memoryview) -> tuple[int, Tables]:
-        """Take some of the next bytes: how many, and what came of them."""
-
-    def flush(self) -> Iterator[Tables]:
-        """Take the end of the capture."""
-
-
 class _Run(msgspec.Struct):
     """A part of the capture: its decoder, and what that found."""
 
-    engine: Engine
+    engine: NativeEngine
     start: int
     end: int
     beyond: int
-    """How far its decoder may come before the next part is decoded."""
+    """Byte up to which its decoder may come before the next part is decoded."""
     position: int
-    """How far the decoder has come."""
+    """First byte that the decoder has not read yet."""
     found: deque[Tables] = msgspec.field(default_factory=deque)
-    """What is not delivered yet."""
+    """Tables that are not delivered yet."""
     is_held: bool = False
-    """Whether its decoder holds that still."""
+    """True if its decoder holds that still."""
     is_decoded: bool = False
     """As far as that is possible ahead."""
     is_placed: bool = False
-    """Whether all that was found counts, under the right numbers."""
+    """True if all that was found counts, under the right numbers."""
     is_whole: bool = False
-    """Whether the next part goes on where what was found ends."""
+    """True if the next part goes on where what was found ends."""
     is_stuck: bool = False
-    """Whether it has to be decoded on to find that place."""
+    """True if it has to be decoded on to find that place."""
 
 
 class _Known(msgspec.Struct, frozen=True):
@@ -146,7 +103,7 @@ class Parts:
     def __init__(
         self,
         data: memoryview,
-        engines: Sequence[Engine],
+        engines: Sequence[NativeEngine],
         part: int | None = None,
         room: int = ROOM,
     ) -> None:
@@ -203,7 +160,7 @@ class Parts:
 
     @property
     def _is_at_home(self) -> bool:
-        """Whether this is the process in which the threads are, and none that was forked off."""
+        """True if this is the process in which the threads are, and none that was forked off."""
         return os.getpid() == self._process
 
     def _sample(self) -> None:
@@ -236,7 +193,7 @@ class Parts:
             self._join()
 
     def _is_due(self) -> bool:
-        """Whether the first part can be delivered: all that was found, at least."""
+        """True if the first part can be delivered: all that was found, at least."""
         run = self._runs[0] if self._runs else None
         return (
             run is not None
@@ -267,7 +224,7 @@ class Parts:
                 self._error = None  # It leads to what it was raised in, as to the capture.
 
     def _has_come(self, awaited: Callable[[], bool]) -> bool:
-        """Whether it is so, or will never be, as something went wrong."""
+        """True if it is so, or never will be, as something went wrong."""
         with self._lock:
             return self._error is not None or awaited()
 
@@ -390,7 +347,7 @@ class Parts:
                 size += run.found[-1].nbytes
 
     def _take(self, run: _Run) -> Tables:
-        """What its decoder holds."""
+        """Tables that its decoder holds."""
         run.is_held = False
         found = run.engine.take()
         run.found.append(found)
@@ -448,7 +405,7 @@ class Parts:
         return True
 
     def _met(self, run: _Run, other: _Run) -> _Meeting | None:
-        """Where two parts agree, if the first was decoded so far."""
+        """Frame at which two parts agree, if the first was decoded so far."""
         tail = [tables for tables in run.found if tables.offset + tables.size > run.end]
         stop = run.end + self._window()
         while run.position > run.end:
@@ -505,7 +462,7 @@ def _meeting(
 
 
 def _until(found: Iterable[Tables], met: _Meeting) -> deque[Tables]:
-    """What was found up to the frame."""
+    """Tables that were found, up to the frame."""
     kept: deque[Tables] = deque()
     for tables in found:
         if tables.offset + tables.size <= met.end:

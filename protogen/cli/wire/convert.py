@@ -14,6 +14,7 @@ import typer
 from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
+from protogen.cli.wire.complaints import Complaints
 from protogen.convert.formats import InputKind, OutputFormat
 
 if TYPE_CHECKING:
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
 
 OUTPUT = Path("converted")
-
-_MOST_COMPLAINTS = 20
-"""So many lines of all captures are complained of one by one."""
 
 
 def convert(  # noqa: PLR0913 - each option is one argument
@@ -89,7 +87,7 @@ def convert(  # noqa: PLR0913 - each option is one argument
     name = codec.sender_of_bytes(sender)
     sent = codec.protocol.sender(name)
     job = Job(codec.protocol, codec.runtime, sent, to, output, input, force)
-    complaints = _Complaints()
+    complaints = Complaints()
     fleet = _fleet(to, dask, workers, part_size)
     results = _run(job, captures, fleet, complaints)
     if not quiet:
@@ -97,23 +95,6 @@ def convert(  # noqa: PLR0913 - each option is one argument
             _print_result(result, output)
     complaints.report()
     return FINDINGS if any(result.lost_lines for result in results) else CLEAN
-
-
-class _Complaints:
-    """Prints what can't be used, up to a number of lines."""
-
-    def __init__(self) -> None:
-        self._count = 0
-
-    def add(self, problem: str) -> None:
-        self._count += 1
-        if self._count <= _MOST_COMPLAINTS:
-            typer.echo(f"warning: {problem}", err=True)
-
-    def report(self) -> None:
-        silent = self._count - _MOST_COMPLAINTS
-        if silent > 0:
-            typer.echo(f"warning: {silent} more lines can't be used", err=True)
 
 
 LOCAL = "local"
@@ -152,7 +133,7 @@ def _fleet(
 
 
 def _run(
-    job: Job, captures: Sequence[str], fleet: Fleet | None, complaints: _Complaints
+    job: Job, captures: Sequence[str], fleet: Fleet | None, complaints: Complaints
 ) -> list[Result]:
     from protogen.capture.errors import CaptureError
     from protogen.cli.progress import progress

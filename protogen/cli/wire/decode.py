@@ -21,7 +21,8 @@ from protogen.cli.wire.capture import (
     opened,
     raw_pieces,
 )
-from protogen.cli.wire.tagged import Piece, tagged_pieces
+from protogen.cli.wire.complaints import Complaints
+from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
@@ -76,50 +77,17 @@ def decode(  # noqa: PLR0913 - each option is one argument
     codec = open_codec(schema)
     both_ways = kind is InputFormat.TAGGED and sender is None
     senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
-    faults = Faults()
+    complaints = Complaints()
+    has_invalid = False
     show = _printer(codec, format, show_sender=both_ways)
-    with _capture(file, hex, kind, codec, senders[0], faults) as pieces:
+    with _capture(file, hex, kind, codec, senders[0], complaints.add) as pieces:
         for events in _batches(codec, senders, pieces):
             for event in events:
-                faults.see(event)
+                has_invalid = has_invalid or event.kind == "invalid"
                 show(event)
             sys.stdout.flush()
-    faults.report()
-    return FINDINGS if faults.lost or (strict and faults.any) else CLEAN
-
-
-class Faults:
-    """Faults of a capture."""
-
-    _MOST_LINES = 20
-    """So many lines of a log are complained of one by one."""
-
-    def __init__(self) -> None:
-        self._lines = 0
-        self.any = False
-        """True if some bytes belong to no valid frame."""
-
-    @property
-    def lost(self) -> bool:
-        """True if there were lines whose bytes nobody gets to see."""
-        return self._lines > 0
-
-    def see(self, event: Any) -> None:
-        """Take note of an event."""
-        if event.kind == "invalid":
-            self.any = True
-
-    def complain(self, problem: str) -> None:
-        """Take note of a line that can't be used."""
-        self._lines += 1
-        if self._lines <= self._MOST_LINES:
-            typer.echo(f"warning: {problem}", err=True)
-
-    def report(self) -> None:
-        """Say how many lines were left out without a word."""
-        silent = self._lines - self._MOST_LINES
-        if silent > 0:
-            typer.echo(f"warning: {silent} more lines can't be used", err=True)
+    complaints.report()
+    return FINDINGS if complaints.count or (strict and has_invalid) else CLEAN
 
 
 # --- in -------------------------------------------------------------------------------------------
@@ -137,7 +105,7 @@ def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputF
 
 @contextmanager
 def _capture(
-    file: Path, text: str | None, kind: InputFormat, codec: Codec, sender: str, faults: Faults
+    file: Path, text: str | None, kind: InputFormat, codec: Codec, sender: str, complain: Complain
 ) -> Iterator[Iterable[Piece]]:
     """Open what is to be decoded. It is from `sender`, unless its lines are tagged."""
     if text is not None and file != STANDARD_INPUT:
@@ -152,7 +120,7 @@ def _capture(
             case InputFormat.HEX:
                 yield hex_pieces(pieces, sender)
             case InputFormat.TAGGED:
-                yield tagged_pieces(pieces, codec.senders, faults.complain)
+                yield tagged_pieces(pieces, codec.senders, complain)
 
 
 def _batches(
