@@ -221,13 +221,13 @@ def _choice(step: ChooseStep) -> Choice:
 
 
 def _rest(step: RestStep) -> Column:
-    size = Column(name="size", role="count", source="bytes", shape=_counting(step.greatest))
+    size = Column(name="size", role="count", source="bytes", shape=_counting(step.count.greatest))
     held = Column(
         name="bytes",
         role="field",
         source="bytes",
         shape=_BYTE,
-        dimensions=(Dimension(max(1, step.greatest), "size"),),
+        dimensions=(Dimension(max(1, step.count.greatest), "size"),),
     )
     return Column(
         name=step.name,

@@ -115,9 +115,9 @@ class _Pack(_Walk):
                 return b"" if value is None else self._bytes(chosen, value)
             case RestStep():
                 data = bytes.fromhex(value)
-                if len(data) > step.greatest:
+                if len(data) > step.count.greatest:
                     raise Unfit
-                return _counted(len(data), step.greatest) + data
+                return _counted(len(data), step.count.greatest) + data
             case _:
                 return b""
 
@@ -193,7 +193,7 @@ class _Unpack(_Walk):
                 is_empty = isinstance(chosen, RecordStep) and not chosen.steps
                 return None if is_empty else self._value(chosen)
             case RestStep():
-                return self._answers.take(self._filled(step.greatest)).hex()
+                return self._answers.take(self._filled(step.count.greatest)).hex()
             case _:
                 raise AssertionError("a decoder takes no value without a case")
 

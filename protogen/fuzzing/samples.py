@@ -193,6 +193,6 @@ class _Sampler:
         if isinstance(chosen, RecordStep) and not chosen.steps:
             return None
         if chosen is None or isinstance(chosen, RestStep):
-            greatest = 0 if chosen is None else chosen.greatest
+            greatest = 0 if chosen is None else chosen.count.greatest
             return inside.choose(bytes_choices(0, greatest, SEVEN_BITS))
         return self._value(chosen, inside)

@@ -246,12 +246,11 @@ def _rest(field: Field, type_: Switch, greatest: int, is_last: bool) -> RestStep
         name=type_.rest_name,
         field=field,
         sizes=SizeSet.between(0, greatest),
-        checks=frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING,
+        checks=_seven_bit(type_),
         is_refusable=True,
         is_last=is_last,
         type=type_,
-        greatest=greatest,
-        seven_bit=type_.byte_bits == 7,
+        count=Count(member="size", fills=True, least=0, greatest=greatest, stated=False),
     )
 
 
@@ -273,7 +272,7 @@ def _number_checks(type_: Integer | Float) -> frozenset[Check]:
     return frozenset(found)
 
 
-def _seven_bit(type_: Integer | Float | Text | Octets) -> frozenset[Check]:
+def _seven_bit(type_: Integer | Float | Text | Octets | Switch) -> frozenset[Check]:
     return frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING
 
 

@@ -192,8 +192,12 @@ class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """The bytes that are left of the payload, where no case has the value of the selector."""
 
-    greatest: int
-    seven_bit: bool
+    count: Count
+
+    @property
+    def fills(self) -> bool:
+        """True, as it takes all bytes that are left of the payload."""
+        return True
 
 
 class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):

@@ -47,17 +47,16 @@ class _Exchange(Walk):
         """A number."""
         self._scalar(place)
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
         self.lines.add(f"octets({place}, (size_t){count});")
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
         if step.element.holds_values:
-            with self.loop(count) as index:
-                self.step(step.element, f"{place}[{index}]")
+            self.elements(step, place, count)
 
     def rest(self, step: RestStep, place: str) -> None:
         """The bytes of a value without a case."""
-        self._scalar(f"{place}.size")
-        self.lines.add(f"octets({place}.bytes, (size_t){place}.size);")
+        self._scalar(f"{place}.{step.count.member}")
+        super().rest(step, place)

@@ -27,8 +27,8 @@ from protogen.model.payload_plan import (
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
-from protogen.targets.c.payload.placed import times
 from protogen.targets.c.payload.secured import SecuredWalk
+from protogen.targets.c.payload.walk import out_of_bounds, times
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
 
 _RESERVED = frozenset(
@@ -38,7 +38,7 @@ _RESERVED = frozenset(
 """Names that a local variable may not have."""
 
 
-def _carried(step: NumberStep) -> int:
+def _carried(step: BytesStep | NumberStep) -> int:
     """Bits that a byte may have set before anything else is asked of it; a boolean is 0 or 1."""
     return 8 if Check.BOOLEAN in step.checks else step.type.byte_bits
 
@@ -93,13 +93,9 @@ class Checker(SecuredWalk):
     def _bounded(self, count: Count, by: Reference) -> None:
         """Refuse numbers of elements that a struct has no room for."""
         self._flush()
-        number, tests = self.referred(by), []
-        if count.least > 0:
-            tests.append(f"{number} < {unsigned(count.least)}")
-        if by.type is not None and count.greatest < by.type.greatest:
-            tests.append(f"{number} > {unsigned(count.greatest)}")
-        if tests:
-            self._refuse(" || ".join(tests), "SIZE")
+        most = count.greatest if by.type is None else by.type.greatest
+        test = out_of_bounds(self.referred(by), count.least, count.greatest, most)
+        self._refuse(test, "SIZE")
 
     # --- numbers ----------------------------------------------------------------------------------
 
@@ -142,24 +138,22 @@ class Checker(SecuredWalk):
         match value:
             case RepeatStep():
                 self._constant_elements(value, data)
-            case BytesStep():
-                self._right_count(value.count, len(data), 1)
-                self._begin(value.type.byte_bits)
-                self._require(len(data))
-                if Check.SEVEN_BIT in value.checks and data:
-                    self._seven_bit(len(data))
-                self._offset += len(data)
-                self._same(data)
-            case NumberStep():
-                self._begin(_carried(value))
-                self._require(len(data))
-                if _carried(value) == 7:
-                    self._seven_bit(len(data))
-                self._offset += len(data)
+            case BytesStep() | NumberStep():
+                self._constant_value(value, data)
                 if step.field.const == 0 and isinstance(value, FloatStep):
                     self._zero(value)
                 else:
                     self._same(data)
+
+    def _constant_value(self, step: BytesStep | NumberStep, data: bytes) -> None:
+        if isinstance(step, BytesStep):
+            self._right_count(step.count, len(data), 1)
+        carried = _carried(step)
+        self._begin(carried)
+        self._require(len(data))
+        if carried == 7:
+            self._seven_bit(len(data))
+        self._offset += len(data)
 
     def _constant_elements(self, step: RepeatStep, data: bytes) -> None:
         element, size = step.element, step.element.sizes.least
@@ -207,13 +201,13 @@ class Checker(SecuredWalk):
 
     # --- bytes ------------------------------------------------------------------------------------
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
         seven = Check.SEVEN_BIT in step.checks
-        if step.count.fills:
+        if step.fills:
             self._filled(step.count.greatest, seven=seven)
             return
-        self._begin(step.type.byte_bits)
+        self._begin(7 if seven else 8)
         if isinstance(count, int):
             if seven:
                 self._require(count)
@@ -225,10 +219,6 @@ class Checker(SecuredWalk):
         if seven:
             self._refuse(f"!{self.helpers.seven_bit()}(payload + at, {count})", "ENCODING")
         self._move(count)
-
-    def rest(self, step: RestStep, place: str) -> None:
-        """The bytes of a value without a case."""
-        self._filled(step.greatest, seven=step.seven_bit)
 
     def _filled(self, greatest: int, *, seven: bool) -> None:
         """All bytes that are left; where the size is always the same there are none."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from protogen.model.payload_plan import (
     BytesStep,
     ConstantStep,
-    Count,
     IntegerStep,
     NumberStep,
     PayloadPlan,
@@ -15,9 +14,9 @@ from protogen.model.payload_plan import (
 from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
-from protogen.targets.c.payload.placed import PlacedWalk, times
+from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
-from protogen.targets.c.payload.walk import amount
+from protogen.targets.c.payload.walk import amount, times
 from protogen.targets.c.spelling import counting_type, integer_type
 
 
@@ -42,70 +41,65 @@ class Load(PlacedWalk):
 
     def pointed(self, plan: PayloadPlan, base: str) -> None:
         """Take a record that lies where there is an `at` already; what counts is in it."""
-        self._place.settled()
+        self.settled()
         self.record(plan.steps, base)
 
     def constant(self, step: ConstantStep) -> None:
         """It was checked, and nothing keeps it."""
-        self._place.skip(len(step.data))
+        self.skip(len(step.data))
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
-        value = loaded(self.helpers, step.type, self._place.byte(), self._place.address())
+        value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
-        self._place.skip(step.type.size)
+        self.skip(step.type.size)
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
-        if step.count.fills:
+        if step.fills:
             self._rest(place, str(count), step.count.greatest)
         else:
             self._copy(place, count)
-
-    def rest(self, step: RestStep, place: str) -> None:
-        """The bytes of a value without a case."""
-        self._rest(f"{place}.bytes", f"{place}.size", step.greatest)
 
     def _rest(self, place: str, count: str, greatest: int) -> None:
         """Take all bytes that are left."""
         if greatest == 0:
             self.lines.add(f"{count} = 0U;")
             return
-        name, offset = self._place.passed
-        left = "size" if name == "payload" else "(size_t)(payload + size - at)"
-        left = f"{left} - {offset}U" if offset else left
+        self.catch_up()
+        left = "size" if self._name == "payload" else "(size_t)(payload + size - at)"
+        left = f"{left} - {self._offset}U" if self._offset else left
         self.lines.add(f"{count} = ({counting_type(greatest)})({left});")
         self._copy(place, count)
 
     def _copy(self, place: str, count: int | str) -> None:
-        copy = self.helpers.copy()
-        self.lines.add(f"{copy}({place}, {self._place.address()}, {amount(count)});")
-        self._place.skip(count)
+        self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {amount(count)});")
+        self.skip(count)
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
         element, size = step.element, step.element.sizes.fixed
         if step.count.fills:
-            self._filling(step, place, str(count), step.count)
+            self._filling(step, place, str(count))
         elif is_bytes(element):
             self._copy(place, count)
         elif size is not None and not element.holds_values:
-            self._place.skip(times(count, size))
+            self.skip(times(count, size))
         elif isinstance(element, IntegerStep) and self.helpers.loads_runs(element.type):
             run = self.helpers.load_run(element.type)
-            self.lines.add(f"{run}({place}, {self._place.address()}, {amount(count)});")
-            self._place.skip(times(count, element.type.size))
+            self.lines.add(f"{run}({place}, {self.address()}, {amount(count)});")
+            self.skip(times(count, element.type.size))
         else:
             self.elements(step, place, count)
 
-    def _filling(self, step: RepeatStep, place: str, member: str, count: Count) -> None:
-        if is_bytes(step.element) or count.greatest == 0:
-            self._rest(place, member, count.greatest)
+    def _filling(self, step: RepeatStep, place: str, member: str) -> None:
+        if is_bytes(step.element) or step.count.greatest == 0:
+            self._rest(place, member, step.count.greatest)
             return
-        self._place.settle()
+        self.settle()
         self.lines.add(f"{member} = 0U;")
         with self.lines.block("while (at < payload + size)"):
             index = member if step.element.holds_values else "0"
             self.step(step.element, f"{place}[{index}]")
-            self._place.settle()
+            self.settle()
             self.lines.add(f"{member}++;")

@@ -12,8 +12,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.placed import times
-from protogen.targets.c.payload.walk import Walk
+from protogen.targets.c.payload.walk import Walk, times
 
 
 class Measure(Walk):
@@ -47,7 +46,7 @@ class Measure(Walk):
         """A constant."""
         self._add(len(step.data))
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
         self._add(count)
 
@@ -75,7 +74,3 @@ class Measure(Walk):
     def end_case(self, step: ChooseStep) -> None:
         """Add what the case has."""
         self._settle()
-
-    def rest(self, step: RestStep, place: str) -> None:
-        """The bytes of a value without a case."""
-        self._add(f"{place}.size")

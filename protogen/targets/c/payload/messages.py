@@ -27,6 +27,7 @@ from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.payload.storing import Put, Store
 from protogen.targets.c.payload.validating import Validate, can_be_refused
+from protogen.targets.c.payload.walk import out_of_bounds
 from protogen.targets.c.spelling import Names, hexadecimal
 
 _PARAMETERS = ("message", "payload", "size", "need", "writer", "put", "user")
@@ -265,14 +266,11 @@ class _Codec:
         return self._static("validate", f"enum {self._prefix}_result", [self._message], lines)
 
     def _validate_size(self, lines: Lines) -> None:
-        least, greatest = _bounds(self._item)
-        if not (least or greatest):
-            return
-        lines.add(f"const size_t size = {self._names['measure']}(message);")
-        tests = [f"size < {least}U"] if least else []
-        tests += [f"size > {greatest}U"] if greatest else []
-        with lines.block(f"if ({' || '.join(tests)})"):
-            lines.add(f"return {self._upper}_ERROR_RANGE;")
+        unfit = _unfit(self._item)
+        if unfit:
+            lines.add(f"const size_t size = {self._names['measure']}(message);")
+            with lines.block(f"if ({unfit})"):
+                lines.add(f"return {self._upper}_ERROR_RANGE;")
 
     def _store(self) -> str:
         lines = Lines()
@@ -329,7 +327,7 @@ class _Codec:
             needs=self.needs,
         )
         check.message(self._item.plan)
-        check.finish(*_bounds(self._item))
+        check.finish(_unfit(self._item))
         lines.add(f"return {self._upper}_OK;")
         arguments = ["const uint8_t *payload", "size_t size", "size_t *need"]
         return self._static("check", f"enum {self._prefix}_result", arguments, lines)
@@ -377,11 +375,11 @@ class _Codec:
         return tuple(prototype(*head) for head in heads)
 
 
-def _bounds(item: Message) -> tuple[int, int]:
-    """Bounds of the payload's size that its fields do not keep by themselves; 0: they do."""
+def _unfit(item: Message) -> str:
+    """The condition that a payload's `size`, which its fields allow, is unfit for a frame."""
     sizes, fields = item.sizes, item.plan.sizes
     least = sizes.least if fields.least < sizes.least else 0
-    return least, sizes.greatest if fields.greatest > sizes.greatest else 0
+    return out_of_bounds("size", least, sizes.greatest, fields.greatest)
 
 
 def _with_unused(lines: Lines, names: Sequence[str], arguments: Sequence[str]) -> Lines:

@@ -1,4 +1,8 @@
-"""Walks over payloads in memory, which go by a place that moves on."""
+"""Walks over payloads in memory, which go by the place of the next value.
+
+As long as all sizes are known the place is the payload's own pointer and an offset. Where they are
+not, a second pointer `at` is moved, but only if something follows.
+"""
 
 from __future__ import annotations
 
@@ -8,64 +12,103 @@ from contextlib import contextmanager
 from protogen.model.payload_plan import ChooseStep, NumberStep, RepeatStep
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.places import Place
-from protogen.targets.c.payload.walk import Walk
-from protogen.targets.c.spelling import unsigned
-
-
-def times(count: int | str, size: int) -> int | str:
-    """The bytes of so many elements."""
-    if isinstance(count, int):
-        return count * size
-    return f"(size_t){unsigned(size)} * {count}" if size > 1 else count
+from protogen.targets.c.payload.walk import Walk, times
 
 
 class PlacedWalk(Walk):
     """A walk that goes by the place in memory of the next byte."""
 
     def __init__(self, helpers: Helpers, lines: Lines, pointer: str) -> None:
-        """Begin at `payload`; `pointer` is the type of what points there, with the star."""
+        """Begin at `payload`; `pointer` is the type of `at`, as `uint8_t *`."""
         super().__init__(helpers, lines)
-        self._place = Place(lines, pointer)
+        self._pointer = pointer
+        self._name = "payload"
+        self._offset = 0
+        self._index = ""  # What an index adds, as `2 * i`.
+        self._pending = ""  # What has to be added before anything else is done.
+
+    def byte(self) -> str:
+        """The byte that lies there."""
+        self.catch_up()
+        return f"{self._name}[{self._sum('') or '0'}]"
+
+    def address(self) -> str:
+        """The address of what lies there."""
+        self.catch_up()
+        return self._sum(self._name)
+
+    def skip(self, size: int | str) -> None:
+        """Go on behind so many bytes."""
+        if not size:
+            return
+        self.catch_up()
+        if isinstance(size, int):
+            self._offset += size
+        else:
+            self._pending = size
+
+    def settle(self) -> None:
+        """Have `at` point to the place itself."""
+        if self._name == "payload":
+            self.lines.add(f"{self._pointer}at = {self._sum('payload')};")
+        elif self._offset or self._pending:
+            self.lines.add(f"at += {self._sum('')};")
+        self.settled()
+
+    def settled(self) -> None:
+        """Every branch has left `at` at the place itself."""
+        self._name, self._offset, self._pending = "at", 0, ""
+
+    def catch_up(self) -> None:
+        """Leave nothing to be added that varies, before there are several ways on."""
+        if self._pending:
+            self.settle()
+
+    def _sum(self, start: str) -> str:
+        terms = [start, str(self._offset or ""), self._index, self._pending]
+        return " + ".join(term for term in terms if term)
+
+    # --- elements and cases -----------------------------------------------------------------------
 
     def elements(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Walk over elements one by one."""
         element, size = step.element, step.element.sizes.fixed
         if size is None:
-            self._place.settle()
+            self.settle()
             with self.loop(count) as index:
                 self.step(element, f"{place}[{index}]")
-                self._place.settle()
+                self.settle()
             return
-        several = not isinstance(element, NumberStep)
-        self._place.catch_up()
-        with self.loop(count) as index, self._place.element(size, index, several=several):
+        self.catch_up()
+        with self.loop(count) as index, self.branch():
+            self._index = f"{size} * {index}" if size > 1 else index
+            if not isinstance(element, NumberStep):  # Several values have a pointer of their own.
+                self.lines.add(f"{self._pointer}at_{index} = {self.address()};")
+                self._name, self._offset, self._index = f"at_{index}", 0, ""
             self.step(element, f"{place}[{index}]")
-        self._place.skip(times(count, size))
+        self.skip(times(count, size))
 
     def choose(self, step: ChooseStep, place: str) -> None:
         """One of several cases; behind it, `at` stands where the case has ended."""
-        if step.is_last or isinstance(step.selector, int):
-            self._place.catch_up()
-            super().choose(step, place)
-            return
         size = step.sizes.fixed
-        if size is None:
-            self._place.settle()
-        self._place.catch_up()
+        joins = not step.is_last and not isinstance(step.selector, int)
+        if joins and size is None:
+            self.settle()
+        self.catch_up()
         super().choose(step, place)
-        if size is None:
-            self._place.settled()
-        else:
-            self._place.skip(size)
+        if joins and size is None:
+            self.settled()
+        elif joins:
+            self.skip(size or 0)
 
     @contextmanager
     def branch(self) -> Iterator[None]:
-        """Every case begins where the choice does."""
-        with self._place.branch():
-            yield
+        """One of several ways on from here."""
+        before = self._name, self._offset, self._index, self._pending
+        yield
+        self._name, self._offset, self._index, self._pending = before
 
     def end_case(self, step: ChooseStep) -> None:
         """Settle where the case has ended, if something follows."""
         if not step.is_last and step.sizes.fixed is None:
-            self._place.settle()
+            self.settle()

@@ -82,18 +82,15 @@ class SecuredWalk(Walk):
         self._secured = max(0, self._secured - passed) if isinstance(distance, int) else 0
         self._offset = 0
 
-    def finish(self, least: int, greatest: int) -> None:
-        """Say what is left to say at the end of the payload; 0 where a bound says nothing."""
+    def finish(self, unfit: str) -> None:
+        """Say what is left to say at the end of the payload, and refuse sizes that are unfit."""
         self._flush()
         if self._fixed:
             return
         self._require(0)
         if not self._ended:
             self._refuse(f"size != {self._sum(self._offset)}", "SIZE")
-        tests = [f"size < {unsigned(least)}"] if least else []
-        tests += [f"size > {unsigned(greatest)}"] if greatest else []
-        if tests:
-            self._refuse(" || ".join(tests), "SIZE")
+        self._refuse(unfit, "SIZE")
 
     # --- most significant bits ------------------------------------------------------------------
 
@@ -122,5 +119,6 @@ class SecuredWalk(Walk):
         self._refuse(f"!{check}({self._address(start)}, {end - start})", "ENCODING")
 
     def _refuse(self, condition: str, reason: str) -> None:
-        with self.lines.block(f"if ({condition})"):
-            self.lines.add(f"{self._error}{reason};")
+        if condition:
+            with self.lines.block(f"if ({condition})"):
+                self.lines.add(f"{self._error}{reason};")

@@ -98,5 +98,5 @@ def _union(step: ChooseStep) -> Union:
 
 
 def _rest(step: RestStep) -> Member:
-    size = Member("size", counting_type(step.greatest))
-    return Member(step.name, (size, Member("bytes", "uint8_t", (max(1, step.greatest),))))
+    size = Member("size", counting_type(step.count.greatest))
+    return Member(step.name, (size, Member("bytes", "uint8_t", (_places(step.count),))))

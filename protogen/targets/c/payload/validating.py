@@ -12,7 +12,6 @@ from protogen.model.payload_plan import (
     IntegerStep,
     NumberStep,
     PayloadPlan,
-    Reference,
     RepeatStep,
     RestStep,
 )
@@ -20,7 +19,7 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.walk import Walk, amount
+from protogen.targets.c.payload.walk import Walk, amount, out_of_bounds
 from protogen.targets.c.spelling import constant, unsigned
 
 
@@ -67,8 +66,9 @@ class Validate(Walk):
         self._error = f"return {prefix.upper()}_ERROR_RANGE;"
 
     def _refuse(self, condition: str) -> None:
-        with self.lines.block(f"if ({condition})"):
-            self.lines.add(self._error)
+        if condition:
+            with self.lines.block(f"if ({condition})"):
+                self.lines.add(self._error)
 
     def step(self, step: AnyStep, place: str) -> None:
         """A step of any kind; nothing is said of values that can't be wrong."""
@@ -80,9 +80,7 @@ class Validate(Walk):
         if isinstance(step, FloatStep):
             self._float(step, place)
         elif isinstance(step, IntegerStep):
-            outside = _outside(step, place)
-            if outside:
-                self._refuse(outside)
+            self._refuse(_outside(step, place))
             if Check.CLOSED in step.checks:
                 self._refuse(f"!{self.helpers.known(step.type)}({place})")
 
@@ -100,32 +98,22 @@ class Validate(Walk):
         size = len(const) if isinstance(const, str | bytes | tuple) else 0
         self._refuse(f"{self.referred(value.count.by)} != {unsigned(size)}")
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
-        if isinstance(step.type, Text) or step.type.byte_bits == 7:
+        if isinstance(step.type, Text) or Check.SEVEN_BIT in step.checks:
             self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
 
     def count(self, count: Count) -> int | str:
         """Number of elements or bytes, which a struct has to have room for."""
         if count.fills:
-            self._fitting(self.filled(count), count.greatest)
+            self._bounded(self.filled(count), count, counting_bits(count.greatest))
         elif count.by is not None:
-            self._counted(count, count.by)
+            assert count.by.type is not None
+            self._bounded(self.referred(count.by), count, count.by.type.width)
         return super().count(count)
 
-    def _fitting(self, count: str, greatest: int) -> None:
-        if greatest < (1 << counting_bits(greatest)) - 1:
-            self._refuse(f"{count} > {unsigned(greatest)}")
-
-    def _counted(self, count: Count, by: Reference) -> None:
-        assert by.type is not None
-        number, tests = self.referred(by), []
-        if count.least > 0:
-            tests.append(f"{number} < {unsigned(count.least)}")
-        if count.greatest < (1 << by.type.width) - 1:
-            tests.append(f"{number} > {unsigned(count.greatest)}")
-        if tests:
-            self._refuse(" || ".join(tests))
+    def _bounded(self, number: str, count: Count, bits: int) -> None:
+        self._refuse(out_of_bounds(number, count.least, count.greatest, (1 << bits) - 1))
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
@@ -134,14 +122,13 @@ class Validate(Walk):
             found = f"{self.helpers.all_bits(element.type)}({place}, {amount(count)})"
             self._refuse(_outside(element, found))
         elif element.is_refusable:
-            with self.loop(count) as index:
-                self.step(element, f"{place}[{index}]")
+            self.elements(step, place, count)
 
     def rest(self, step: RestStep, place: str) -> None:
         """The bytes of a value without a case."""
-        self._fitting(f"{place}.size", step.greatest)
-        if step.seven_bit:
-            self._refuse(f"!{self.helpers.seven_bit()}({place}.bytes, {place}.size)")
+        size = f"{place}.{step.count.member}"
+        self._bounded(size, step.count, counting_bits(step.count.greatest))
+        super().rest(step, place)
 
     def no_case(self) -> None:
         """A value without a case."""

@@ -30,6 +30,20 @@ def amount(count: int | str) -> str:
     return unsigned(count) if isinstance(count, int) else count
 
 
+def times(count: int | str, size: int) -> int | str:
+    """The bytes of so many elements."""
+    if isinstance(count, int):
+        return count * size
+    return f"(size_t){unsigned(size)} * {count}" if size > 1 else count
+
+
+def out_of_bounds(number: str, least: int, greatest: int, most: int) -> str:
+    """The condition that a number of at most `most` is out of bounds; empty where none is."""
+    tests = [f"{number} < {unsigned(least)}"] if least > 0 else []
+    tests += [f"{number} > {unsigned(greatest)}"] if greatest < most else []
+    return " || ".join(tests)
+
+
 class Walk:
     """Order of the steps. A subclass says what is printed for each kind of step.
 
@@ -103,8 +117,8 @@ class Walk:
         """Print a number."""
         raise NotImplementedError
 
-    def bytes(self, step: BytesStep, place: str, count: int | str) -> None:
-        """Print a text, or bytes."""
+    def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
+        """Print a text, or bytes; those of a rest are at `place` as well."""
         raise NotImplementedError
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
@@ -113,7 +127,12 @@ class Walk:
 
     def rest(self, step: RestStep, place: str) -> None:
         """Print the bytes of a value without a case; `place` has a `size` and `bytes`."""
-        raise NotImplementedError
+        self.bytes(step, f"{place}.bytes", f"{place}.{step.count.member}")
+
+    def elements(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Print elements one by one."""
+        with self.loop(count) as index:
+            self.step(step.element, f"{place}[{index}]")
 
     def no_case(self) -> None:
         """Print what follows from a value without a case that is invalid."""

@@ -95,7 +95,7 @@ def _choice_rows(step: ChooseStep, place: Place, path: Path, anchors: Anchors) -
         yield from _case_rows(step, case, place, path, anchors)
     otherwise, rest = "invalid", SizeSet.exactly(0)
     if step.rest is not None:
-        most = plural(step.rest.greatest, "byte")
+        most = plural(step.rest.count.greatest, "byte")
         otherwise, rest = f"raw bytes to the end, at most {most}", step.rest.sizes
     yield Row(place=place, sizes=rest, type=otherwise, name=f"{code(path.shown)} otherwise")
 

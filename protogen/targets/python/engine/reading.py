@@ -316,8 +316,8 @@ class _Reader(Converter):
             self.lines.add("raise _fast.NeedsReference")
             return
         self.lines.add(f"{target} = data[{self.place.text} :]")
-        self.lines.refuse_if(f"len({target}) > {rest.greatest}")
-        if rest.seven_bit:
+        self.lines.refuse_if(f"len({target}) > {rest.count.greatest}")
+        if rest.can_be_wrong:
             self.lines.refuse_if(f"not {target}.isascii()")
         self._move_to("len(data)")
 

@@ -336,8 +336,8 @@ class _Writer:
 
     def _rest(self, value: str, rest: RestStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
-        self.lines.refuse_if(f"len({value}) > {rest.greatest}")
-        if rest.seven_bit:
+        self.lines.refuse_if(f"len({value}) > {rest.count.greatest}")
+        if rest.can_be_wrong:
             self.lines.refuse_if(f"not {value}.isascii()")
 
     def _counted(self, value: str, count: Count) -> None:
