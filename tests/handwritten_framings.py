@@ -12,8 +12,7 @@ import handwritten_rn1
 from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
 from protogen.runtime.checksum import Crc, Sum8, Xor8
-from protogen.runtime.transparency import Base16Upper, Cobs, Escape, Substitution, hdlc, slip
-from protogen.runtime.values import replace
+from protogen.runtime.transparency import Base16Upper, Cobs, Escape, Substitution
 
 CRC16 = Crc(16, poly=0x1021, init=0xFFFF)
 BYTE = rt.Number(8)
@@ -159,7 +158,7 @@ def self_delimiting() -> tuple[type[rt.Message], ...]:
 
 
 def rflex() -> Framing:
-    checksum = replace(XOR, covers=("payload",))
+    checksum = XOR._replace(covers=("payload",))
     names = ("class_id", "number", "subclass", "length", "payload", "checksum")
     spec = rt.FrameSpec(
         parts=(
@@ -212,7 +211,7 @@ def rn1_host() -> Framing:
         blob(0x82, seven_bit=True),
         tally(0x83, seven_bit=True),
     )
-    return rt.SenderSpec("a", replace(spec, parts=parts, greatest=12), Id, messages)
+    return rt.SenderSpec("a", spec._replace(parts=parts, greatest=12), Id, messages)
 
 
 def rn1_brain() -> Framing:
@@ -220,12 +219,12 @@ def rn1_brain() -> Framing:
     spec = handwritten_rn1.BRAIN_FRAME
     parts = (rt.IdentityPart("id", BYTE), *spec.parts[1:])
     messages = (empty(0x80), pair(0x81, seven_bit=True), tally(0x83, seven_bit=True))
-    return rt.SenderSpec("a", replace(spec, parts=parts, greatest=12), Id, messages)
+    return rt.SenderSpec("a", spec._replace(parts=parts, greatest=12), Id, messages)
 
 
 def dagny() -> Framing:
     return framing(
-        (ID, PAYLOAD, replace(XOR, when_payload=True), literal(b"\n", "end")),
+        (ID, PAYLOAD, XOR._replace(when_payload=True), literal(b"\n", "end")),
         12,
         *every_message(),
         start=rt.AfterEnd(),
@@ -237,7 +236,7 @@ def dagny() -> Framing:
 def dagny_crlf() -> Framing:
     """The same with an end of two bytes."""
     return framing(
-        (ID, PAYLOAD, replace(XOR, when_payload=True), literal(b"\r\n", "end")),
+        (ID, PAYLOAD, XOR._replace(when_payload=True), literal(b"\r\n", "end")),
         13,
         *every_message(),
         start=rt.AfterEnd(),
@@ -289,7 +288,7 @@ def slip_both_ends() -> Framing:
         *every_message(),
         start=rt.StartLiteral(b"\xc0", protected=True),
         end=rt.End(b"\xc0", protected=True),
-        transparency=slip(),
+        transparency=Substitution({0xC0: b"\xdb\xdc", 0xDB: b"\xdb\xdd"}),
         stuffed=("id", "payload", "checksum"),
     )
 
@@ -301,7 +300,7 @@ def hdlc_end_only() -> Framing:
         *every_message(),
         start=rt.AfterEnd(),
         end=rt.End(b"\x7e", protected=True),
-        transparency=hdlc(),
+        transparency=Escape(0x7D, frozenset((0x7D, 0x7E)), 0x20),
         stuffed=("id", "payload", "crc"),
     )
 
@@ -309,7 +308,7 @@ def hdlc_end_only() -> Framing:
 def ubx() -> Framing:
     """Sync, 16-bit length and CRC without stuffing."""
     size = rt.LengthPart("length", WORD, counts=("payload",), least=0, greatest=65535)
-    crc = replace(CRC, covers=("id", "length", "payload"))
+    crc = CRC._replace(covers=("id", "length", "payload"))
     return framing(
         (literal(b"\xb5\x62"), ID, size, PAYLOAD, crc),
         16,
@@ -447,7 +446,7 @@ def only_one_message() -> Framing:
 
 
 def anywhere_length() -> Framing:
-    crc = replace(CRC, covers=("length", "id", "payload"))
+    crc = CRC._replace(covers=("length", "id", "payload"))
     return framing((length("payload"), ID, PAYLOAD, crc), 13, *every_message(), start=rt.Anywhere())
 
 

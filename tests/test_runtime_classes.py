@@ -155,10 +155,15 @@ def test_declarations_are_values() -> None:
         assert item == copy.copy(item) == copy.deepcopy(item) == pickle.loads(pickle.dumps(item))
         assert hash(item) == hash(copy.copy(item))
         assert item != other
-        with pytest.raises(AttributeError, match="cannot assign"):
-            item.name = 1
-        with pytest.raises(AttributeError, match="cannot delete"):
-            del item.name
+    for item, name in (
+        (Number(7), "bits"),
+        (rn1.HOST_SENDER.frame, "start"),
+        (matty.PC_SENDER.frame.parts[0], "name"),
+    ):
+        with pytest.raises(AttributeError, match=r"can't set|cannot assign"):
+            setattr(item, name, 1)
+        with pytest.raises(AttributeError, match=r"can't delete|cannot delete"):
+            delattr(item, name)
     assert repr(Number(7)) == "Number(bits=7, signed=False, order='little', seven_bit=False)"
     with pytest.raises(ValueError, match="does not fit"):
         replace(Crc(8, poly=7), poly=256)

@@ -15,7 +15,6 @@ from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
 from protogen.runtime.checksum import Sum8
 from protogen.runtime.transparency import Escape
-from protogen.runtime.values import replace
 
 
 def encode_error(action: Any, *arguments: Any, **named: Any) -> rt.EncodeError:
@@ -76,7 +75,7 @@ def test_a_part_without_a_value_says_how_to_give_it() -> None:
     assert "encode(..., counter=0)" in error.problem
     assert "Encoder" in error.problem
     plain = rt.ValuePart("number", framings.BYTE, least=1, greatest=9)
-    spec = replace(framings.rflex().frame, parts=(plain, framings.PAYLOAD))
+    spec = framings.rflex().frame._replace(parts=(plain, framings.PAYLOAD))
     sender: Any = rt.SenderSpec("a", spec, dict, (framings.empty(),))
     error = encode_error(rt.Protocol("p", sender).encode, sender.messages[0]())
     assert error.problem == "the value is missing; give it as in encode(..., number=1)"
@@ -197,7 +196,7 @@ def test_an_encoder_without_counters_only_encodes() -> None:
 
 def test_counters_start_at_their_default_and_wrap_to_their_least() -> None:
     counter = rt.CounterPart("counter", framings.BYTE, least=3, greatest=5, default=4)
-    spec = replace(matty.FRAME, parts=(*matty.FRAME.parts[:2], counter, *matty.FRAME.parts[3:]))
+    spec = matty.FRAME._replace(parts=(*matty.FRAME.parts[:2], counter, *matty.FRAME.parts[3:]))
     encoder = rt.Encoder(rt.SenderSpec("pc", spec, matty.Parts, (matty.Stop,)))
     assert [encoder.encode_next(matty.Stop())[2] for _ in range(4)] == [4, 5, 3, 4]
 
@@ -282,18 +281,18 @@ def test_no_frame_is_unknown_where_none_has_an_identity() -> None:
     parts = tuple(p for p in sender.frame.parts if not isinstance(p, rt.IdentityPart))
     length = next(p for p in parts if isinstance(p, rt.LengthPart))
     counted = tuple(name for name in length.counts if name != "type")
-    parts = tuple(replace(p, counts=counted) if p is length else p for p in parts)
+    parts = tuple(p._replace(counts=counted) if p is length else p for p in parts)
     message = type("Alone", (sender.messages[0],), {"IDENTITY": (), "__slots__": ()})
     stuffed = tuple(name for name in sender.frame.stuffed if name != "type")
-    frame = replace(sender.frame, parts=parts, stuffed=stuffed)
+    frame = sender.frame._replace(parts=parts, stuffed=stuffed)
     alone = changed(sender, frame=frame, messages=(message,))
     error = encode_error(rt.Protocol("p", alone).encode_unknown, sender.name, {}, b"")
     assert "have no identity" in error.problem
 
 
 def test_a_length_out_of_range_is_refused() -> None:
-    short = replace(framings.uherobot().frame, parts=tuple(
-        replace(part, least=4) if isinstance(part, rt.LengthPart) else part
+    short = framings.uherobot().frame._replace(parts=tuple(
+        part._replace(least=4) if isinstance(part, rt.LengthPart) else part
         for part in framings.uherobot().frame.parts
     ))  # fmt: skip
     sender: Any = changed(framings.uherobot(), frame=short)
@@ -338,7 +337,7 @@ def test_lines_are_in_the_order_of_the_design() -> None:
 
 def lenient_matty() -> Any:
     stuffing = Escape(0x56, frozenset(b"\x55\x56"), "invert", lenient=True)
-    return changed(matty.ESP_SENDER, frame=replace(matty.FRAME, transparency=stuffing))
+    return changed(matty.ESP_SENDER, frame=matty.FRAME._replace(transparency=stuffing))
 
 
 @pytest.mark.parametrize(
@@ -381,7 +380,7 @@ class Level(rt.Message):
 def test_the_payload_of_a_nan_is_kept_as_raw_bytes(bits: int, shown: Any, has_raw: bool) -> None:
     sender: Any = changed(framings.ubx(), messages=(Level,))
     frame = framings.ubx().frame
-    sender = changed(sender, frame=replace(frame, greatest_payload=8))
+    sender = changed(sender, frame=frame._replace(greatest_payload=8))
     payload = struct.pack("<Q", bits)
     content = b"\x01\x08\x00" + payload
     wire = b"\xb5\x62" + content + framings.CRC16.compute(content).to_bytes(2, "little")

@@ -12,12 +12,9 @@ from protogen.runtime.transparency import (
     Base16Upper,
     Cobs,
     Escape,
-    Identity,
     Substitution,
     Transparency,
     TransparencyError,
-    hdlc,
-    slip,
 )
 from protogen.runtime.values import replace
 
@@ -36,6 +33,16 @@ def matty(*, lenient: bool = False) -> Escape:
     return Escape(0x56, MATTY_MEMBERS, "invert", lenient)
 
 
+def slip() -> Substitution:
+    """SLIP (RFC 1055) without its delimiter."""
+    return Substitution({0xC0: b"\xdb\xdc", 0xDB: b"\xdb\xdd"})
+
+
+def hdlc(*, lenient: bool = False) -> Escape:
+    """Asynchronous HDLC (RFC 1662)."""
+    return Escape(0x7D, frozenset((0x7D, 0x7E)), 0x20, lenient)
+
+
 def plain_escape(*, lenient: bool = False) -> Escape:
     """DLE stuffing: 10 is doubled, 02 and 03 get a 10 in front."""
     return Escape(0x10, frozenset((0x02, 0x03, 0x10)), "none", lenient)
@@ -47,7 +54,6 @@ def as_lenient(kind: Any) -> Transparency:
 
 
 STRICT: list[Transparency] = [
-    Identity(),
     rflex(),
     slip(),
     # A swap: codewords of one byte. A long sequence, and one that starts with what another holds.
@@ -141,7 +147,6 @@ def failing_byte(kind: Transparency, region: str) -> int | None:
         (plain_escape(), "10 02 41", "1010 1002 41"),
         # UHERobot: length 06, type 03, in ASCII.
         (Base16Upper(), "06 03 AF", "30 36  30 33  41 46"),
-        (Identity(), "00 1B FF", "00 1B FF"),
         (Substitution({0x41: b"B", 0x42: b"A"}), "41 42 43", "42 41 43"),
     ],
 )
@@ -317,7 +322,6 @@ def test_what_was_encoded_decodes_to_itself(kind: Transparency, data: st.DataObj
     region = kind.encode(sent)
     assert kind.decode(region) == sent
     assert pushed(kind, region) == sent
-    assert len(region) <= kind.max_encoded(len(sent))
 
 
 @pytest.mark.parametrize("kind", STRICT, ids=repr)
@@ -341,8 +345,6 @@ def test_a_strict_decoder_accepts_only_what_the_encoder_makes(
 def test_a_whole_region_decodes_as_it_does_byte_by_byte(kind: Transparency, region: bytes) -> None:
     whole = outcome(kind.decode, region)
     assert whole == outcome(lambda region: pushed(kind, region), region)
-    if isinstance(whole, bytes):
-        assert len(region) <= kind.max_encoded(len(whole))
 
 
 @pytest.mark.parametrize("kind", EVERY, ids=repr)
@@ -356,17 +358,6 @@ def test_a_damaged_region_decodes_as_it_does_byte_by_byte(
         region[place : place + data.draw(st.integers(0, 2))] = data.draw(telling_bytes(2))
     whole = outcome(kind.decode, bytes(region))
     assert whole == outcome(lambda region: pushed(kind, region), bytes(region))
-
-
-@pytest.mark.parametrize("kind", EVERY, ids=repr)
-def test_the_greatest_region_is_no_greater_than_it_must_be(kind: Transparency) -> None:
-    # Data of the worst byte alone fills the bound; for COBS any byte but zero is the worst.
-    for size in (0, 1, 2, 253, 254, 255, 508, 509):
-        regions = [kind.encode(bytes((byte,)) * size) for byte in TELLING]
-        if kind == Cobs(lenient=True) and size and size % 254 == 0:
-            regions.append(Cobs().encode(b"\x01" * size) + b"\x01")
-            assert kind.decode(regions[-1]) == b"\x01" * size
-        assert max(map(len, regions)) == kind.max_encoded(size)
 
 
 @given(any_bytes())
@@ -411,9 +402,8 @@ def test_strict_cobs_accepts_what_the_cobs_package_encodes(region: bytes) -> Non
 
 
 def test_kinds_compare_and_hash_by_their_parameters() -> None:
-    assert slip() == Substitution({0xC0: b"\xdb\xdc", 0xDB: b"\xdb\xdd"})
-    assert slip() != slip(lenient=True)
-    assert hdlc() == Escape(0x7D, frozenset((0x7D, 0x7E)), 0x20)
+    assert slip() == slip() != as_lenient(slip())
+    assert hdlc() == hdlc() != hdlc(lenient=True)
     assert len({*map(hash, EVERY)}) > 1
     assert (
         repr(matty())

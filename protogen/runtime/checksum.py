@@ -22,12 +22,8 @@ GREATEST_WIDTH = 64
 class Checksum(Protocol):
     """A checksum algorithm."""
 
-    @property
-    def width(self) -> int:
-        """Size of the checksum in bits."""
-
     def compute(self, data: bytes) -> int:
-        """Return the checksum of `data`, 0 .. 2**width - 1."""
+        """Return the checksum of `data`, an integer of as many bits as the algorithm has."""
 
 
 _LONG = 256
@@ -107,11 +103,6 @@ class Xor8(Frozen):
     def __init__(self, init: int = 0) -> None:
         self._set(init)
 
-    @property
-    def width(self) -> int:
-        """Always 8 bits."""
-        return 8
-
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0..255."""
         return xor_of(data) ^ self.init
@@ -127,11 +118,6 @@ class Sum8(Frozen):
 
     def __init__(self, init: int = 0, negated: bool = False) -> None:
         self._set(init, negated)
-
-    @property
-    def width(self) -> int:
-        """Always 8 bits."""
-        return 8
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0..255."""
@@ -153,11 +139,6 @@ class Fletcher16(Frozen):
 
     def __init__(self, modulus: int = 255) -> None:
         self._set(modulus)
-
-    @property
-    def width(self) -> int:
-        """Always 16 bits."""
-        return 16
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`; both of its bytes are below `modulus`."""

@@ -19,14 +19,13 @@ from __future__ import annotations
 import copyreg
 import io
 from collections.abc import Iterable, Mapping
-from typing import Any, BinaryIO, Literal, Protocol
+from typing import Any, BinaryIO, Literal, NamedTuple, Protocol
 
 import construct  # type: ignore[import-untyped,unused-ignore]
 from construct import Construct, Container, Pass, Renamed
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
 from protogen.runtime.number import ByteOrder, Number
-from protogen.runtime.values import Frozen
 
 __all__ = [
     "Cases",
@@ -57,17 +56,12 @@ __all__ = [
 ]
 
 
-class Count(Frozen):
+class Count(NamedTuple):
     """The earlier field that gives a number of bytes or elements, from `least` to `greatest`."""
-
-    __slots__ = ("field", "greatest", "least")
 
     field: str
     least: int
     greatest: int
-
-    def __init__(self, field: str, least: int, greatest: int) -> None:
-        self._set(field, least, greatest)
 
 
 Extent = int | str | Count

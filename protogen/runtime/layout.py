@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from protogen.runtime.frame import (
     AfterEnd,
@@ -17,7 +18,6 @@ from protogen.runtime.frame import (
     StartSet,
     ValuePart,
 )
-from protogen.runtime.values import Frozen
 
 
 def is_optional(part: Part) -> bool:
@@ -25,17 +25,12 @@ def is_optional(part: Part) -> bool:
     return isinstance(part, ChecksumPart) and part.when_payload
 
 
-class Slice(Frozen):
+class Slice(NamedTuple):
     """Where a part lies in a frame's content: its bytes before stuffing, without the end."""
-
-    __slots__ = ("end", "part", "start")
 
     part: Part
     start: int
     end: int
-
-    def __init__(self, part: Part, start: int, end: int) -> None:
-        self._set(part, start, end)
 
 
 class Layout:

@@ -6,7 +6,7 @@ nothing but them, so that it does not matter how they arrive.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from protogen.runtime.content import Content, Rejected
 from protogen.runtime.errors import Reason
@@ -14,33 +14,22 @@ from protogen.runtime.frame import AfterEnd, Anywhere, ChecksumPart, StartLitera
 from protogen.runtime.layout import Slice
 from protogen.runtime.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
-from protogen.runtime.values import Frozen
 
 
-class Cut(Frozen):
+class Cut(NamedTuple):
     """A complete frame whose length and checksums are right: the values of parts, the payload."""
-
-    __slots__ = ("numbers", "payload", "size")
 
     size: int
     numbers: dict[str, int]
     payload: bytes
 
-    def __init__(self, size: int, numbers: dict[str, int], payload: bytes) -> None:
-        self._set(size, numbers, payload)
 
-
-class Failure(Frozen):
+class Failure(NamedTuple):
     """The first `size` bytes of a candidate, which are no frame."""
-
-    __slots__ = ("problem", "reason", "size")
 
     size: int
     reason: Reason
     problem: str
-
-    def __init__(self, size: int, reason: Reason, problem: str) -> None:
-        self._set(size, reason, problem)
 
 
 class Candidate:

@@ -10,7 +10,6 @@ from functools import lru_cache
 
 from protogen.runtime.errors import NeedsReference
 from protogen.runtime.number import ByteOrder, Number
-from protogen.runtime.values import Frozen
 
 
 class Pairs(dict[int, int]):
@@ -70,17 +69,13 @@ def _exchanged(data: bytes) -> bytes:
     return bytes(exchanged)
 
 
-class PairLists(Frozen):
+class PairLists:
     """Lists of such integers, all of them at once: each has 16 bits of one great integer."""
 
-    __slots__ = ("bits", "order", "signed")
-
-    bits: int
-    signed: bool
-    order: ByteOrder
-
     def __init__(self, bits: int, signed: bool, order: ByteOrder) -> None:
-        self._set(bits, signed, order)
+        self.bits = bits
+        self.signed = signed
+        self.order = order
 
     def decode(self, data: bytes) -> list[int]:
         """The integers of an even number of bytes. Raises NeedsReference."""

@@ -9,7 +9,6 @@ from typing import Any, Generic, TypeVar
 from protogen.runtime.frame import FrameSpec
 from protogen.runtime.layout import Layout
 from protogen.runtime.message import Message
-from protogen.runtime.values import Frozen
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
@@ -25,23 +24,16 @@ Waiter = Callable[[bytes, int], bool]
 rest of the data is the beginning of a frame, on which there can be no verdict as yet."""
 
 
-class IdentityGroup(Frozen, Generic[MessageT_co]):
+class IdentityGroup(Generic[MessageT_co]):
     """The messages that a receiver may find behind one identity: one, or more told by size."""
 
-    __slots__ = ("fixed", "greatest", "messages")
-
-    messages: tuple[type[MessageT_co], ...]
-    fixed: int | None
-    """The payload's size, where no message has another one."""
-    greatest: int
-    """The greatest payload of these messages."""
-
     def __init__(self, messages: tuple[type[MessageT_co], ...]) -> None:
-        self._set(messages)
+        self.messages = messages
         sizes = {message.SIZES.fixed for message in messages}
-        object.__setattr__(self, "fixed", sizes.pop() if len(sizes) == 1 else None)
-        greatest = max(message.SIZES.greatest for message in messages)
-        object.__setattr__(self, "greatest", greatest)
+        self.fixed = sizes.pop() if len(sizes) == 1 else None
+        """The payload's size, where no message has another one."""
+        self.greatest = max(message.SIZES.greatest for message in messages)
+        """The greatest payload of these messages."""
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""

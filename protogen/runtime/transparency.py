@@ -4,9 +4,10 @@ Each kind is an immutable value. `encode` and `decode` work on a whole region; `
 machine that takes the region byte by byte, as a stream decoder needs it. Both decode alike: the
 same bytes, or the same error.
 
-    >>> slip().encode(bytes.fromhex("01 C0 02")).hex(" ")
+    >>> slip = Substitution({0xC0: bytes((0xDB, 0xDC)), 0xDB: bytes((0xDB, 0xDD))})
+    >>> slip.encode(bytes.fromhex("01 C0 02")).hex(" ")
     '01 db dc 02'
-    >>> slip().decode(bytes.fromhex("01 DB DC 02")).hex(" ")
+    >>> slip.decode(bytes.fromhex("01 DB DC 02")).hex(" ")
     '01 c0 02'
 
 A strict decoder accepts exactly what the encoder makes: a region decodes only if encoding the
@@ -70,9 +71,6 @@ class Transparency(Protocol):
     def decoder(self) -> Unstuffer:
         """Return a new decoder at the start of a region."""
 
-    def max_encoded(self, size: int) -> int:
-        """Return the greatest size of a region that stands for `size` bytes."""
-
 
 _ONE_BYTE = tuple(bytes((byte,)) for byte in range(256))
 
@@ -89,46 +87,6 @@ def _hex(data: bytes) -> str:
 
 def _cut_sequence(held: bytes) -> TransparencyError:
     return TransparencyError("stuffing", f"the region ends inside a sequence, behind {_hex(held)}")
-
-
-# --- none ---------------------------------------------------------------------------------------
-
-
-class Identity(Frozen):
-    """No transparency: the region is the data."""
-
-    __slots__ = ("lenient",)
-
-    lenient: bool
-
-    def __init__(self, lenient: bool = False) -> None:
-        self._set(lenient)
-
-    def encode(self, data: bytes) -> bytes:
-        """Return the data itself."""
-        return data
-
-    def decode(self, region: bytes) -> bytes:
-        """Return the region itself."""
-        return region
-
-    def decoder(self) -> Unstuffer:
-        """Return a new decoder at the start of a region."""
-        return _IdentityUnstuffer()
-
-    def max_encoded(self, size: int) -> int:
-        """Return the size itself."""
-        return size
-
-
-class _IdentityUnstuffer:
-    __slots__ = ()
-
-    def push(self, byte: int) -> bytes:
-        return _ONE_BYTE[byte]
-
-    def finish(self) -> bytes:
-        return b""
 
 
 # --- substitution -------------------------------------------------------------------------------
@@ -174,10 +132,6 @@ class Substitution(Frozen):
         if self.lenient:
             return _LenientSubstitutionUnstuffer(self._book)
         return _SubstitutionUnstuffer(self._book)
-
-    def max_encoded(self, size: int) -> int:
-        """Return the size when all data is the byte with the longest sequence."""
-        return size * max(map(len, (*self.table.values(), b"-")))
 
 
 class _CodeBook:
@@ -312,11 +266,6 @@ class _LenientSubstitutionUnstuffer:
         return held[:1]
 
 
-def slip(*, lenient: bool = False) -> Substitution:
-    """Return SLIP (RFC 1055) without its delimiter: C0 becomes DB DC, DB becomes DB DD."""
-    return Substitution({0xC0: b"\xdb\xdc", 0xDB: b"\xdb\xdd"}, lenient)
-
-
 # --- escape -------------------------------------------------------------------------------------
 
 
@@ -367,10 +316,6 @@ class Escape(Frozen):
             return _LenientEscapeUnstuffer(self.byte, self._mask())
         return self._strict.decoder()
 
-    def max_encoded(self, size: int) -> int:
-        """Return the size when every byte is escaped."""
-        return 2 * size
-
     def _mask(self) -> int:
         """Return what the byte behind the escape byte is exclusive-ored with, either way."""
         if isinstance(self.transform, int):
@@ -413,11 +358,6 @@ class _LenientEscapeUnstuffer:
         return b""
 
 
-def hdlc(*, lenient: bool = False) -> Escape:
-    """Return asynchronous HDLC (RFC 1662): 7E becomes 7D 5E, 7D becomes 7D 5D."""
-    return Escape(0x7D, frozenset((0x7D, 0x7E)), 0x20, lenient)
-
-
 # --- base 16 ------------------------------------------------------------------------------------
 
 _UPPER_DIGITS = b"0123456789ABCDEF"
@@ -452,10 +392,6 @@ class Base16Upper(Frozen):
     def decoder(self) -> Unstuffer:
         """Return a new decoder at the start of a region."""
         return _Base16Unstuffer(self._digits())
-
-    def max_encoded(self, size: int) -> int:
-        """Return the size of two digits for every byte."""
-        return 2 * size
 
     def _digits(self) -> bytes:
         return _ALL_DIGITS if self.lenient else _UPPER_DIGITS
@@ -527,12 +463,6 @@ class Cobs(Frozen):
     def decoder(self) -> Unstuffer:
         """Return a new decoder at the start of a region."""
         return _CobsUnstuffer(self.lenient)
-
-    def max_encoded(self, size: int) -> int:
-        """Return the size with a code for every 254 bytes; lenient: also with a needless 01."""
-        if self.lenient:
-            return size + 1 + size // _FULL_GROUP
-        return size + max(1, -(-size // _FULL_GROUP))
 
 
 def _groups(run: bytes) -> Iterator[bytes]:
