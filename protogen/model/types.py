@@ -37,24 +37,41 @@ def counting_bits(greatest: int) -> int:
     return storage_bits(max(1, greatest.bit_length()))
 
 
-class Integer(msgspec.Struct, frozen=True, kw_only=True):
-    """An integer of `bits` bits in `size` wire bytes of `byte_bits` bits each.
-
-    Bits above `bits` are zero, also for signed integers, which are two's complement in `bits` bits.
-    """
+class _Number(msgspec.Struct, frozen=True, kw_only=True):
+    """A number of `bits` bits in `size` wire bytes of `byte_bits` bits each."""
 
     bits: int
-    signed: bool = False
     byte_bits: Literal[7, 8] = 8
     byte_order: ByteOrder = "little"
     """Meaningless, and always `little`, where `size` is 1."""
+    extent: ClassVar[None] = None
+    holds_values: ClassVar[bool] = True
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def unsigned(self) -> Integer:
+        """The unsigned integer in the same bytes."""
+        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
+
+    @property
+    def size(self) -> int:
+        """Wire bytes."""
+        return -(-self.bits // self.byte_bits)
+
+    @property
+    def sizes(self) -> SizeSet:
+        """Wire bytes, as a set."""
+        return SizeSet.exactly(self.size)
+
+
+class Integer(_Number, frozen=True, kw_only=True):
+    """An integer. Bits above its own are zero; signed ones are two's complement in these bits."""
+
+    signed: bool = False
     role: IntegerRole = "number"
     enum: Enum | None = None
     flags: Flags | None = None
     bit_fields: tuple[BitField, ...] = ()
-    extent: ClassVar[None] = None
-    holds_values: ClassVar[bool] = True
-    needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property
     def name(self) -> str:
@@ -73,11 +90,6 @@ class Integer(msgspec.Struct, frozen=True, kw_only=True):
         return storage_bits(self.bits)
 
     @property
-    def unsigned(self) -> Integer:
-        """The unsigned integer in the same bytes."""
-        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
-
-    @property
     def is_named(self) -> bool:
         """True if its values or its bits have names of their own type."""
         return self.enum is not None or self.flags is not None
@@ -90,16 +102,6 @@ class Integer(msgspec.Struct, frozen=True, kw_only=True):
     def is_closed(self) -> bool:
         """True if only the values of a closed enum are valid."""
         return self.enum is not None and self.enum.closed
-
-    @property
-    def size(self) -> int:
-        """Wire bytes."""
-        return -(-self.bits // self.byte_bits)
-
-    @property
-    def sizes(self) -> SizeSet:
-        """Wire bytes, as a set."""
-        return SizeSet.exactly(self.size)
 
     @property
     def least(self) -> int:
@@ -116,19 +118,14 @@ class Integer(msgspec.Struct, frozen=True, kw_only=True):
         return self.least <= value <= self.greatest
 
 
-class Float(msgspec.Struct, frozen=True, kw_only=True):
+class Float(_Number, frozen=True, kw_only=True):
     """IEEE 754 binary32 or binary64."""
 
     bits: Literal[32, 64]
-    byte_bits: Literal[7, 8] = 8
-    byte_order: ByteOrder = "little"
     signed: ClassVar[bool] = False
     role: ClassVar[IntegerRole] = "number"
     enum: ClassVar[None] = None
     is_closed: ClassVar[bool] = False
-    extent: ClassVar[None] = None
-    holds_values: ClassVar[bool] = True
-    needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     def raw(self, value: float) -> int:
         """The number whose bits lie on the wire."""
@@ -145,32 +142,12 @@ class Float(msgspec.Struct, frozen=True, kw_only=True):
         """The type in the words of the schema language."""
         return f"{self.name} {self.byte_order}"
 
-    @property
-    def unsigned(self) -> Integer:
-        """The unsigned integer in the same bytes."""
-        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
-
-    @property
-    def size(self) -> int:
-        """Wire bytes."""
-        return -(-self.bits // self.byte_bits)
-
-    @property
-    def sizes(self) -> SizeSet:
-        """Wire bytes, as a set."""
-        return SizeSet.exactly(self.size)
-
 
 class Fixed(msgspec.Struct, frozen=True, kw_only=True):
     """A number of elements (or bytes) that never changes."""
 
     count: int
     needs: ClassVar[frozenset[str]] = _NO_NAMES
-
-    @property
-    def room(self) -> int:
-        """The greatest number of elements or bytes."""
-        return self.count
 
     @property
     def label(self) -> str:
@@ -193,11 +170,6 @@ class Counted:
     stated: bool = dataclass_field(default=False, compare=False)
     """True if the schema bounds the number; else `greatest` is what the field or frame can take,
     in a declared type wherever it has the most room."""
-
-    @property
-    def room(self) -> int:
-        """The greatest number of elements or bytes."""
-        return self.greatest
 
     @property
     def needs(self) -> frozenset[str]:
@@ -226,11 +198,6 @@ class Fill:
     needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property
-    def room(self) -> int:
-        """The greatest number of elements or bytes."""
-        return self.greatest
-
-    @property
     def label(self) -> str:
         """The number in the words of the schema language."""
         return "fill"
@@ -244,50 +211,40 @@ class Fill:
 Extent = Fixed | Counted | Fill
 
 
-class Text(msgspec.Struct, frozen=True, kw_only=True):
+class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
+    """So many bytes."""
+
+    extent: Extent
+    byte_bits: Literal[7, 8] = 8
+    holds_values: ClassVar[bool] = True
+    word: ClassVar[str]
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The name of the field that counts, if one does."""
+        return self.extent.needs
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"{self.word}[{self.extent.label}]"
+
+    @property
+    def sizes(self) -> SizeSet:
+        """Wire bytes."""
+        return self.extent.counts
+
+
+class Text(_Bytes, frozen=True, kw_only=True):
     """ASCII text of so many bytes. A fixed size is padded with NUL bytes at the end."""
 
-    extent: Extent
-    byte_bits: Literal[7, 8] = 8
-    holds_values: ClassVar[bool] = True
-
-    @property
-    def needs(self) -> frozenset[str]:
-        """The name of the field that counts, if one does."""
-        return self.extent.needs
-
-    @property
-    def label(self) -> str:
-        """The type in the words of the schema language."""
-        return f"ascii[{self.extent.label}]"
-
-    @property
-    def sizes(self) -> SizeSet:
-        """Wire bytes."""
-        return self.extent.counts
+    word: ClassVar[str] = "ascii"
 
 
-class Octets(msgspec.Struct, frozen=True, kw_only=True):
+class Octets(_Bytes, frozen=True, kw_only=True):
     """Bytes that nobody interprets; in a 7-bit payload each is at most 0x7F."""
 
-    extent: Extent
-    byte_bits: Literal[7, 8] = 8
-    holds_values: ClassVar[bool] = True
-
-    @property
-    def needs(self) -> frozenset[str]:
-        """The name of the field that counts, if one does."""
-        return self.extent.needs
-
-    @property
-    def label(self) -> str:
-        """The type in the words of the schema language."""
-        return f"bytes[{self.extent.label}]"
-
-    @property
-    def sizes(self) -> SizeSet:
-        """Wire bytes."""
-        return self.extent.counts
+    word: ClassVar[str] = "bytes"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
