@@ -264,7 +264,7 @@ def _text(step: BytesStep, row: Row) -> Row:
 
 
 def _meaning(step: IntegerStep, value: int) -> str:
-    text = integer_reading(step.field, step.type, value, gap=" ")
+    text = integer_reading(step, value, gap=" ")
     if text != str(value):
         return text
     return "a value without a name" if step.type.enum is not None else ""

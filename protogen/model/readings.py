@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from protogen.model.meanings import Flags
+from protogen.model.meanings import BitField, Flags
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -19,7 +19,7 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
 )
-from protogen.model.types import Field, Integer, Text
+from protogen.model.types import Field, NumberType, Text
 
 _MOST_ELEMENTS = 16
 """Elements of a list that are shown."""
@@ -81,7 +81,7 @@ def _reading(step: AnyStep, value: Any, records: _Records) -> str:
         case ChooseStep():
             return _case(step, value, records)
         case IntegerStep():
-            return integer_reading(step.field, step.type, value)
+            return integer_reading(step, value)
         case FloatStep():
             return physical(step.field, float(value))
         case BytesStep():
@@ -110,18 +110,17 @@ def quoted(text: str) -> str:
     return json.dumps(text)
 
 
-def flag_names(flags: Flags, value: int) -> str:
+def _flag_names(flags: Flags, value: int) -> str:
     """The names of the bits that are set, and the bits without a name as a number."""
     names = [flag.name for flag in flags.bits if value >> flag.bit & 1]
     unnamed = value & ~sum(1 << flag.bit for flag in flags.bits)
     return "|".join([*names, f"{unnamed:#x}"] if unnamed else names) or "0"
 
 
-def bit_field_readings(type: Integer, value: int) -> str:
+def _run_values(named: Sequence[BitField], unnamed: int, value: int) -> str:
     """Each named run of bits with its value, and the bits without a name as a number."""
     runs = []
-    unnamed = value & ((1 << type.bits) - 1)
-    for run in type.bit_fields:
+    for run in named:
         number = (value & run.mask) >> run.low
         names = {} if run.enum is None else {item.value: item.name for item in run.enum.values}
         runs.append(f"{run.name}={names.get(number, number)}")
@@ -129,24 +128,25 @@ def bit_field_readings(type: Integer, value: int) -> str:
     return "{" + ", ".join([*runs, f"{unnamed:#x}"] if unnamed else runs) + "}"
 
 
-def value_name(field: Field, type: Integer, value: int) -> str | None:
+def value_name(field: Field, type: NumberType, value: int) -> str | None:
     """The name of a raw value: a special value's, or the enum's; None where it has none."""
     named = (*field.special, *(type.enum.values if type.enum is not None else ()))
     return next((item.name for item in named if item.value == value), None)
 
 
-def integer_reading(field: Field, type: Integer, value: int, gap: str = "") -> str:
+def integer_reading(step: IntegerStep, value: int, gap: str = "") -> str:
     """The name of an integer, what its bits mean, or its physical value."""
-    name = value_name(field, type, value)
+    type = step.type
+    name = value_name(step.field, type, value)
     if name is not None:
         return name
     if type.flags is not None:
-        return flag_names(type.flags, value)
+        return _flag_names(type.flags, value)
     if type.bit_fields:
-        return bit_field_readings(type, value)
+        return _run_values(type.bit_fields, value & type.unsigned.greatest, value)
     if type.role == "bool":
         return "true" if value else "false"
-    return character(value) if type.role == "char" else physical(field, value, gap)
+    return character(value) if type.role == "char" else physical(step.field, value, gap)
 
 
 def character(value: int) -> str:

@@ -94,6 +94,12 @@ class Integer(_Number, frozen=True, kw_only=True):
         """True if its values or its bits have names of their own type."""
         return self.enum is not None or self.flags is not None
 
+    @property
+    def named_types(self) -> tuple[Enum | Flags, ...]:
+        """The enums and flags that have names of their own."""
+        found = (self.enum, self.flags, *(field.enum for field in self.bit_fields))
+        return tuple(item for item in found if item is not None)
+
     def raw(self, value: float) -> int:
         """The number whose bits lie on the wire."""
         return int(value)
@@ -125,6 +131,7 @@ class Float(_Number, frozen=True, kw_only=True):
     signed: ClassVar[bool] = False
     role: ClassVar[IntegerRole] = "number"
     enum: ClassVar[None] = None
+    named_types: ClassVar[tuple[()]] = ()
     is_closed: ClassVar[bool] = False
 
     def raw(self, value: float) -> int:

@@ -34,6 +34,7 @@ from protogen.passes.types.type_names import (
     float_type,
     integer,
 )
+from protogen.passes.types.value_names import with_names
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
@@ -115,7 +116,10 @@ class FieldBuilder:
             return UNKNOWN_TYPE
         if found.size > 1 and layout.byte_order is None:
             self._no_byte_order(item.at("type"))
-        return self._named.dress(found, item)
+        dressed = with_names(self._context, found, item)
+        for named in dressed.named_types:
+            self._named.register(named, item.chain[0][1])
+        return dressed
 
     def _struct(
         self, item: Effective, fields: Mapping[str, FieldSyntax], setting: Setting

@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from protogen.model.meanings import NamedValue
-from protogen.model.types import Array, Constant, Field, Float, Integer, Type
+from protogen.model.nesting import is_integer
+from protogen.model.types import Array, Constant, Field, NumberType, Type
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
@@ -52,15 +53,12 @@ class _Check:
 
     def keys_fit(self) -> None:
         """Keys about numbers stand only on numbers, `closed` only on enums."""
-        number = isinstance(self._element, Integer | Float) and not self._is_bool()
+        number = isinstance(self._element, NumberType) and self._element.role != "bool"
         for key in _NUMERIC_KEYS:
             if getattr(self._item, key) is not None and not number:
                 self._error("PG110", key, f"`{key}` is for numbers, and `{self._name}` is none")
         if self._item.closed and self._item.values is None:
             self._error("PG110", "closed", "`closed` is for a field that has `values`")
-
-    def _is_bool(self) -> bool:
-        return isinstance(self._element, Integer) and self._element.role == "bool"
 
     def constants_agree(self, const: Constant | None, default: Constant | None) -> None:
         """Nothing but the constant can be the default."""
@@ -69,21 +67,20 @@ class _Check:
 
     def bounds(self) -> tuple[Fraction | None, Fraction | None]:
         """The raw bounds: the range, else what the type can hold (None for floats)."""
-        if isinstance(self._element, Integer):
-            return self._integer_bounds(self._element)
-        if isinstance(self._element, Float) and self._item.range is not None:
-            return self._ordered(*self._item.range)
-        return None, None
-
-    def _integer_bounds(self, type_: Integer) -> tuple[Fraction, Fraction]:
-        if self._item.range is None:
-            return Fraction(type_.least), Fraction(type_.greatest)
-        low, high = self._ordered(*self._item.range)
+        type_, written = self._element, self._item.range
+        if not is_integer(type_):
+            if written is None or not isinstance(type_, NumberType):
+                return None, None
+            return self._ordered(*written)
+        least, greatest = Fraction(type_.least), Fraction(type_.greatest)
+        if written is None:
+            return least, greatest
+        low, high = self._ordered(*written)
         for end in (low, high):
-            if end.denominator != 1 or not type_.holds(int(end)):
-                text = f"{end} is not a raw value of {self._item.type}"
-                self._error("PG114", "range", f"{text}: {type_.least} to {type_.greatest}")
-                return Fraction(type_.least), Fraction(type_.greatest)
+            if end.denominator != 1 or not least <= end <= greatest:
+                text = f"{end} is not a raw value of {self._item.type}: {least} to {greatest}"
+                self._error("PG114", "range", text)
+                return least, greatest
         return low, high
 
     def _ordered(self, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
@@ -101,7 +98,7 @@ class _Check:
 
     def special(self) -> tuple[NamedValue, ...]:
         """The raw values that mean that there is no reading."""
-        if self._item.special is None or not isinstance(self._element, Integer):
+        if self._item.special is None or not is_integer(self._element):
             return ()
         values: dict[int, NamedValue] = {}
         for name, entry in self._item.special.items():
@@ -118,6 +115,3 @@ class _Check:
 
     def _error(self, code: str, key: str, text: str) -> None:
         self._context.error(code, self._field.at(key), text)
-
-
-__all__ = ["attach"]

@@ -9,12 +9,10 @@ from __future__ import annotations
 from protogen.copying import replace
 from protogen.model.meanings import Enum, Flags
 from protogen.model.nesting import inner_types, is_composite, with_structs
-from protogen.model.types import Field, Float, Integer, Struct, Type
+from protogen.model.types import Field, Struct, Type
 from protogen.passes.context import Context, Loc
-from protogen.passes.types.declared import VALUE_NAMES, Effective
 from protogen.passes.types.joining import joined_struct
 from protogen.passes.types.positions import placed
-from protogen.passes.types.value_names import bit_fields_of, enum_of, flags_of
 
 Named = Enum | Flags | Struct
 
@@ -62,39 +60,6 @@ class NamedTypes:
             "rename the field or the declared type; if it is one struct with two byte orders, "
             "state the byte order in the type",
         )
-
-    def dress(self, type_: Integer | Float, item: Effective) -> Integer | Float:
-        """Give an integer its enum, flags and bit ranges, as the field says."""
-        kinds = [key for key in VALUE_NAMES if getattr(item.syntax, key) is not None]
-        if not kinds:
-            return type_
-        if not isinstance(type_, Integer) or type_.role == "bool":
-            text = f"{kinds[0]} are for integers, not for {item.syntax.type}"
-            self._context.error_at_key("PG110", item.at(kinds[0]), text)
-            return type_
-        if len(kinds) > 1:
-            text = f"an integer has only one of these: {', '.join(kinds)}"
-            self._context.error_at_key("PG110", item.at(kinds[1]), text)
-        if type_.signed and kinds[0] != "values":
-            text = f"{kinds[0]} name bits of an unsigned integer; {item.syntax.type} is signed"
-            self._context.error_at_key("PG110", item.at(kinds[0]), text)
-        return self._dressed(kinds[0], type_, item)
-
-    def _dressed(self, kind: str, type_: Integer, item: Effective) -> Integer:
-        loc = item.chain[0][1]
-        if kind == "values":
-            enum = enum_of(self._context, type_, item)
-            self.register(enum, loc)
-            return replace(type_, enum=enum)
-        if kind == "flags":
-            flags = flags_of(self._context, type_, item)
-            self.register(flags, loc)
-            return replace(type_, flags=flags)
-        fields = bit_fields_of(self._context, type_, item)
-        for field in fields:
-            if field.enum is not None:
-                self.register(field.enum, loc)
-        return replace(type_, bit_fields=fields)
 
     # -- settling -----------------------------------------------------------------------------
 

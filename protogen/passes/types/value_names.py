@@ -4,28 +4,56 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from protogen.copying import replace
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
-from protogen.model.types import Integer
+from protogen.model.nesting import is_integer
+from protogen.model.types import NumberType
 from protogen.passes.context import Context, Loc, about
-from protogen.passes.types.declared import Effective
+from protogen.passes.types.declared import VALUE_NAMES, Effective
 from protogen.schema.syntax.fields import NamedBits
 from protogen.schema.syntax.fields import NamedValue as NamedValueSyntax
 
+_Bounds = tuple[int, int]
+"""The least and the greatest raw value."""
 
-def enum_of(context: Context, type_: Integer, item: Effective) -> Enum:
-    """The enum that `values` make of an integer."""
-    values = _values(context, type_, item.syntax.values or {}, item.at("values"))
+
+def with_names(context: Context, type_: NumberType, item: Effective) -> NumberType:
+    """The number with the enum, flags or bit ranges that the field gives it."""
+    kinds = [key for key in VALUE_NAMES if getattr(item.syntax, key) is not None]
+    if not kinds:
+        return type_
+    kind = kinds[0]
+    if not is_integer(type_) or type_.role == "bool":
+        text = f"{kind} are for integers, not for {item.syntax.type}"
+        context.error_at_key("PG110", item.at(kind), text)
+        return type_
+    if len(kinds) > 1:
+        text = f"an integer has only one of these: {', '.join(kinds)}"
+        context.error_at_key("PG110", item.at(kinds[1]), text)
+    if type_.signed and kind != "values":
+        text = f"{kind} name bits of an unsigned integer; {item.syntax.type} is signed"
+        context.error_at_key("PG110", item.at(kind), text)
+    if kind == "values":
+        return replace(type_, enum=_enum(context, (type_.least, type_.greatest), item))
+    if kind == "flags":
+        return replace(type_, flags=_flags(context, type_.bits, item))
+    return replace(type_, bit_fields=_bit_fields(context, type_.bits, item))
+
+
+def _enum(context: Context, bounds: _Bounds, item: Effective) -> Enum:
+    values = _values(context, bounds, item.syntax.values or {}, item.at("values"))
     doc = about(item.origin.doc, item.origin.source)
     return Enum(name=item.owner, values=values, closed=item.syntax.closed, about=doc)
 
 
 def _values(
-    context: Context, type_: Integer, entries: Mapping[str, NamedValueSyntax], loc: Loc
+    context: Context, bounds: _Bounds, entries: Mapping[str, NamedValueSyntax], loc: Loc
 ) -> tuple[NamedValue, ...]:
+    least, greatest = bounds
     values: dict[int, NamedValue] = {}
     for name, entry in entries.items():
-        if not type_.holds(entry.value):
-            words = f"{name} = {entry.value} does not fit: {type_.least} to {type_.greatest}"
+        if not least <= entry.value <= greatest:
+            words = f"{name} = {entry.value} does not fit: {least} to {greatest}"
             context.error("PG114", (*loc, name), words)
         if entry.value in values:
             words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
@@ -37,13 +65,12 @@ def _values(
     return tuple(values.values())
 
 
-def flags_of(context: Context, type_: Integer, item: Effective) -> Flags:
-    """The flags of an integer."""
+def _flags(context: Context, width: int, item: Effective) -> Flags:
     bits: dict[int, NamedBit] = {}
     for name, entry in (item.syntax.flags or {}).items():
         here = (*item.at("flags"), name)
-        if entry.bit >= type_.bits:
-            words = f"bit {entry.bit} is beyond the {type_.bits} bits of {item.syntax.type}"
+        if entry.bit >= width:
+            words = f"bit {entry.bit} is beyond the {width} bits of {item.syntax.type}"
             context.error("PG113", here, words)
         if entry.bit in bits:
             words = f"`{name}` and `{bits[entry.bit].name}` are both bit {entry.bit}"
@@ -55,12 +82,12 @@ def flags_of(context: Context, type_: Integer, item: Effective) -> Flags:
     return Flags(name=item.owner, bits=tuple(bits.values()), about=doc)
 
 
-def bit_fields_of(context: Context, type_: Integer, item: Effective) -> tuple[BitField, ...]:
+def _bit_fields(context: Context, width: int, item: Effective) -> tuple[BitField, ...]:
     """The bit ranges of an integer; those that it does not have are left out."""
     ranges: list[BitField] = []
     for name, entry in (item.syntax.bits or {}).items():
         here = (*item.at("bits"), name)
-        if not _is_run(context, type_, entry, here):
+        if not _is_run(context, width, entry, here):
             continue
         found = _bit_field(context, f"{item.owner}_{name}", name, entry, here)
         for other in ranges:
@@ -71,12 +98,12 @@ def bit_fields_of(context: Context, type_: Integer, item: Effective) -> tuple[Bi
     return tuple(ranges)
 
 
-def _is_run(context: Context, type_: Integer, entry: NamedBits, loc: Loc) -> bool:
+def _is_run(context: Context, width: int, entry: NamedBits, loc: Loc) -> bool:
     low, high = entry.bits
-    if low <= high < type_.bits:
+    if low <= high < width:
         return True
-    text = f"bits {low}..{high} are not a run within the {type_.bits} bits of the integer"
-    context.error("PG113", loc, text, f"bits go from 0 to {type_.bits - 1}")
+    text = f"bits {low}..{high} are not a run within the {width} bits of the integer"
+    context.error("PG113", loc, text, f"bits go from 0 to {width - 1}")
     return False
 
 
@@ -85,6 +112,7 @@ def _bit_field(context: Context, type_name: str, name: str, entry: NamedBits, lo
     text = about(entry.doc, entry.source, context.find_key(loc))
     enum = None
     if entry.values is not None:
-        values = _values(context, Integer(bits=high - low + 1), entry.values, (*loc, "values"))
+        bounds = (0, (1 << high - low + 1) - 1)
+        values = _values(context, bounds, entry.values, (*loc, "values"))
         enum = Enum(name=type_name, values=values, about=text)
     return BitField(name=name, low=low, high=high, enum=enum, about=text)
