@@ -30,6 +30,10 @@ class Lines:
         indent = " " * (INDENT * self._depth)
         self._lines += [line if line.startswith("#") else indent + line for line in lines]
 
+    def put_first(self, *lines: str) -> None:
+        """Put lines in front of all others."""
+        self._lines[:0] = [" " * (INDENT * self._depth) + line for line in lines]
+
     @contextmanager
     def block(self, head: str) -> Iterator[None]:
         """Lines between braces."""

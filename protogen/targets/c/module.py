@@ -15,31 +15,18 @@ from protogen.model.types import Struct
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.named import (
-    BitsView,
     EnumView,
-    Macro,
-    bits_views,
     enum_view,
     flags_view,
-    meaning,
     string,
 )
 from protogen.targets.c.options import COptions
 from protogen.targets.c.own_names import claim_own_names
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.messages import MessagePrinter, MessageView
-from protogen.targets.c.payload.records import Records
+from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.writers import writer_argument, writer_parameter
-
-
-class StructView(msgspec.Struct, frozen=True):
-    """A struct, the macros of its fields, and what reads its bits."""
-
-    heading: str
-    definition: str
-    constants: tuple[Macro, ...]
-    bits: tuple[BitsView, ...]
 
 
 class Module(msgspec.Struct, frozen=True):
@@ -57,9 +44,9 @@ class Module(msgspec.Struct, frozen=True):
     helpers: tuple[str, ...]
     """Functions that the codecs share."""
     public_helpers: tuple[str, ...]
+    """Those of them that inline functions of the header call."""
     has_vectors: bool
     """True if some of these have a way for SSE2."""
-    """Those of them that inline functions of the header call."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""
     floats: frozenset[int]
@@ -84,9 +71,18 @@ def view(protocol: Protocol, options: COptions) -> Module:
     flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used)
     structs = [item for item in protocol.structs if item.name in used and item.holds_values]
     tags = {item.name: names.claim(item.name) for item in structs}
-    records = Records(tags, helpers)
+    records = Records(tags, names, helpers)
     printer = MessagePrinter(protocol, names, helpers, sinks, records)
-    struct_views = tuple(_struct(item, tags[item.name], records, names) for item in structs)
+    struct_views = tuple(
+        records.view(
+            item.name,
+            tags[item.name],
+            descriptions.of_named(item.name, item.about),
+            item.fields,
+            plan_of(item.fields).steps,
+        )
+        for item in structs
+    )
     messages = tuple(printer.view(item) for item in chosen)
     return Module(
         name=protocol.name,
@@ -103,17 +99,6 @@ def view(protocol: Protocol, options: COptions) -> Module:
         has_vectors=helpers.has_vectors,
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
-    )
-
-
-def _struct(item: Struct, tag: str, records: Records, names: Names) -> StructView:
-    return StructView(
-        item.name,
-        records.definition(
-            tag, descriptions.of_named(item.name, item.about), plan_of(item.fields).steps
-        ),
-        meaning(item.name, item.fields, names),
-        tuple(bits for field in item.fields for bits in bits_views(item.name, field, names)),
     )
 
 

@@ -11,6 +11,7 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
 )
+from protogen.model.types import NumberType
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
@@ -30,52 +31,42 @@ def is_readable(step: AnyStep) -> bool:
     return isinstance(element, NumberStep)
 
 
-class Accessors:
-    """Writes these functions."""
-
-    def __init__(self, names: Names, helpers: Helpers, records: Records) -> None:
-        self._names = names
-        self._helpers = helpers
-        self._records = records
-
-    def of(self, record: str, step: AnyStep) -> tuple[str, ...]:
-        """The function that reads an element, where it `is_readable` and has anything to read."""
-        if not isinstance(step, RepeatStep) or not is_readable(step):
-            return ()
-        field, element = step.field, step.element
-        body = Lines()
-        start = f"payload + {field.position}" if field.position else "payload"
-        size = element.sizes.greatest
-        distance = f"{size} * index" if size > 1 else "index"
-        place = f"const uint8_t *at = {start} + {distance};"
-        body.add(place)
-        arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
+def accessor(
+    record: str, step: AnyStep, names: Names, helpers: Helpers, records: Records
+) -> str | None:
+    """The function that reads an element, where it `is_readable` and has anything to read."""
+    if not isinstance(step, RepeatStep) or not is_readable(step):
+        return None
+    field, element = step.field, step.element
+    body = Lines()
+    start = f"payload + {field.position}" if field.position else "payload"
+    size = element.sizes.greatest
+    place = f"const uint8_t *at = {start} + {f'{size} * index' if size > 1 else 'index'};"
+    body.add(place)
+    arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
+    with helpers.public():
         match element:
             case IntegerStep():
                 type_ = integer_type(element.type)
-                _read(element, body)
+                _read(element.type, body)
             case FloatStep():
-                type_ = self._helpers.float_type(element.type)
-                with self._helpers.public():
-                    body.add(f"return {self._helpers.load(element.type)}(at);")
+                type_ = helpers.float_type(element.type)
+                body.add(f"return {helpers.load(element.type)}(at);")
             case RecordStep():
                 type_ = "void"
-                arguments = (*arguments, f"{self._records.spelled(element.type)} *out")
-                with self._helpers.public():
-                    Load(self._helpers, body).pointed(plan_of(element.type.fields), "out->")
+                arguments = (*arguments, f"{records.spelled(element.type)} *out")
+                Load(helpers, body).pointed(plan_of(element.type.fields), "out->")
             case _:
                 raise AssertionError(element)
-        body.drop_unused_places()
-        if place not in map(str.strip, body.lines):
-            return ()
-        name = self._names.claim(record, field.name, "at")
-        doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
-        text = function(f"static inline {type_} {name}", arguments, body)
-        return ("\n".join([*doc, text]),)
+    body.drop_unused_places()
+    if place not in map(str.strip, body.lines):
+        return None
+    name = names.claim(record, field.name, "at")
+    doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
+    return "\n".join([*doc, function(f"static inline {type_} {name}", arguments, body)])
 
 
-def _read(step: IntegerStep, body: Lines) -> None:
-    type_ = step.type
+def _read(type_: NumberType, body: Lines) -> None:
     if type_.role == "bool":
         body.add("return at[0] != 0U;")
     elif is_plain(type_):

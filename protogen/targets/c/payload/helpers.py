@@ -6,9 +6,10 @@ import struct
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from ctypes import c_float
-from dataclasses import dataclass
 from fractions import Fraction
 from math import copysign, inf, isfinite, nextafter
+
+import msgspec
 
 from protogen.copying import replace
 from protogen.model.payload_plan import FloatStep
@@ -93,8 +94,7 @@ return {upper}_ERROR_SIZE;
 """
 
 
-@dataclass(slots=True)
-class _Helper:
+class _Helper(msgspec.Struct):
     """A function that was asked for."""
 
     name: str

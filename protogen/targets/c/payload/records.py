@@ -2,28 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+
+import msgspec
 
 from protogen.model.payload_plan import AnyStep, RecordStep, RepeatStep
-from protogen.model.types import Float, Struct
+from protogen.model.types import Field, Float, Struct
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT, Lines
+from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.struct_members import UNUSED, Member, Union, counter_of, value_of
+from protogen.targets.c.spelling import Names
+
+
+class StructView(msgspec.Struct, frozen=True):
+    """A struct, the macros of its fields, and what reads its bits."""
+
+    heading: str
+    definition: str
+    constants: tuple[Macro, ...]
+    bits: tuple[BitsView, ...]
 
 
 class Records:
     """Writes structs; `tags` are the names of those for structs of the schema."""
 
-    def __init__(self, tags: dict[str, str], helpers: Helpers) -> None:
+    def __init__(self, tags: dict[str, str], names: Names, helpers: Helpers) -> None:
         self._tags = tags
+        self._names = names
         self._helpers = helpers
+
+    def view(
+        self,
+        name: str,
+        tag: str,
+        doc: list[str],
+        fields: Sequence[Field],
+        steps: Sequence[AnyStep],
+        macros: Iterable[Macro] = (),
+    ) -> StructView:
+        """The view of a struct or message; further macros go in front of those of its fields."""
+        return StructView(
+            heading=name,
+            definition=self._definition(tag, doc, steps),
+            constants=(*macros, *meaning(name, fields, self._names)),
+            bits=tuple(bits for f in fields for bits in bits_views(name, f, self._names)),
+        )
 
     def spelled(self, type_: Struct) -> str:
         """A struct of the schema, as `struct rn1_point`."""
         return f"struct {self._tags[type_.name]}"
 
-    def definition(self, tag: str, doc: list[str], steps: Sequence[AnyStep]) -> str:
+    def _definition(self, tag: str, doc: list[str], steps: Sequence[AnyStep]) -> str:
         """The definition of a struct for the values of these steps."""
         lines = Lines(0)
         lines.add(*comments.comment(doc))
