@@ -22,11 +22,10 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.messages import Message
-from protogen.model.numbers import codec
+from protogen.model.numbers import checksum_of, codec
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character
 from protogen.model.wire import FULL_GROUP, Unit, Wire, unstuff
-from protogen.runtime import checksum as sums
 from protogen.runtime.errors import ByteError
 
 __all__ = ["Row", "annotate"]
@@ -176,7 +175,7 @@ class _Frame:
             return row
         pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
-        due = codec(part.type).encode(_checksum_of(part).compute(covered))
+        due = codec(part.type).encode(checksum_of(part.algorithm).compute(covered))
         if row.bytes == due:
             return row
         # In the words of a decoder: bytes in wire order, which are not always the number's digits.
@@ -270,16 +269,3 @@ def _outside(part: NumberPart) -> str:
 
 def _hex(data: bytes) -> str:
     return data.hex(" ").upper()
-
-
-def _checksum_of(part: ChecksumPart) -> sums.Checksum:
-    spec = part.algorithm
-    match spec.kind:
-        case "xor":
-            return sums.Xor8(spec.init)
-        case "sum":
-            return sums.Sum8(spec.init, spec.negated)
-        case "fletcher":
-            return sums.Fletcher16(spec.modulus)
-        case "crc":
-            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

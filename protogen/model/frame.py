@@ -160,6 +160,35 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         raise KeyError(name)
 
     @property
+    def payload(self) -> PayloadPart:
+        """The payload."""
+        return next(part for part in self.parts if isinstance(part, PayloadPart))
+
+    @property
+    def head(self) -> tuple[Part, ...]:
+        """The parts in front of the payload."""
+        return self.parts[: self.parts.index(self.payload)]
+
+    @property
+    def tail(self) -> tuple[Part, ...]:
+        """The parts behind the payload, the end literal included."""
+        return self.parts[self.parts.index(self.payload) + 1 :]
+
+    @property
+    def encoding(self) -> Encoding | None:
+        """Encoding of the stuffed parts; None where nothing is stuffed."""
+        return None if self.transparency is None else self.transparency.encoding
+
+    @property
+    def stuffed(self) -> frozenset[str]:
+        """Names of the parts under transparency."""
+        if self.transparency is None:
+            return frozenset()
+        names = [part.name for part in self.parts]
+        first, last = map(names.index, (self.transparency.first, self.transparency.last))
+        return frozenset(names[first : last + 1])
+
+    @property
     def identity(self) -> tuple[IdentityPart, ...]:
         """The identity parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, IdentityPart))

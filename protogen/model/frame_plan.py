@@ -335,7 +335,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def payload_part(self) -> PayloadPart:
         """The payload."""
-        return next(part for part in self.frame.parts if isinstance(part, PayloadPart))
+        return self.frame.payload
 
     @property
     def identity(self) -> tuple[IdentityPart, ...]:

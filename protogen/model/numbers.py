@@ -1,14 +1,32 @@
-"""Raw values as the bytes that lie on the wire."""
+"""Numbers as the bytes that lie on the wire: raw values, constants, checksums."""
 
 from __future__ import annotations
 
+from functools import cache
+
+from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import Constant, Field, Fixed, NumberType, Text, Type
+from protogen.runtime import checksum as sums
 from protogen.runtime.number import Number
 
 
 def codec(type_: NumberType) -> Number:
     """Codec of a number's raw value; of a float it is that of its bits."""
     return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
+
+
+@cache
+def checksum_of(spec: ChecksumSpec) -> sums.Checksum:
+    """Implementation of a checksum algorithm."""
+    match spec.kind:
+        case "xor":
+            return sums.Xor8(spec.init)
+        case "sum":
+            return sums.Sum8(spec.init, spec.negated)
+        case "fletcher":
+            return sums.Fletcher16(spec.modulus)
+        case "crc":
+            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)
 
 
 def number_bytes(type_: NumberType, value: int) -> bytes:

@@ -8,10 +8,11 @@ from typing import Any
 import msgspec
 
 from protogen.model.origin import NOTHING, About, Source
+from protogen.model.types import ByteOrder
 from protogen.problems import Problem, Problems, Span
 from protogen.problems.problem import Note
 from protogen.schema.syntax.base import Source as SourceSyntax
-from protogen.schema.syntax.protocol import ProtocolSyntax
+from protogen.schema.syntax.protocol import ALL_SENDERS, ProtocolSyntax
 
 Loc = tuple[str | int, ...]
 """Place in the schema: keys and indexes from the root."""
@@ -99,6 +100,15 @@ class Context(msgspec.Struct, frozen=True):
         """
         names = (_letters(str(loc[1])) for loc in self.lost if loc[0] == key and len(loc) > 1)
         return (key,) in self.lost or _letters(name) in names
+
+    def frame_key(self, sender: str) -> str:
+        """Key of the frame of a sender: its own, or that of all senders."""
+        return sender if sender in self.syntax.frame else ALL_SENDERS
+
+    def byte_order(self, sender: str) -> ByteOrder | None:
+        """Byte order that the protocol states for a sender."""
+        orders = self.syntax.byte_order
+        return orders.get(sender, orders.get(ALL_SENDERS))
 
     @property
     def failed(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.frame import Cobs, Frame, PayloadPart
+from protogen.model.frame import Cobs, Frame
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -38,11 +38,9 @@ from protogen.passes.proofs.wire_code import (
     EVERY_BYTE,
     SEVEN_BITS,
     ByteSet,
-    covered_parts,
     part_bytes,
     wire_bytes,
 )
-from protogen.schema.syntax.protocol import ALL_SENDERS
 
 
 def analyse_framing(context: Context, draft: Draft) -> None:
@@ -60,7 +58,7 @@ class _Analysis:
 
     def __init__(self, context: Context, draft: Draft, sender: str, frame: Frame) -> None:
         self._context = context
-        self._key = sender if sender in context.syntax.frame else ALL_SENDERS
+        self._key = context.frame_key(sender)
         self._messages = draft.sent_by(sender)
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
@@ -118,7 +116,7 @@ class _Analysis:
         """
         first = self.frame.parts[0]
         item = self._context.syntax.frame[self._key][first.name]
-        if item.range is None or first.name in covered_parts(self.frame):
+        if item.range is None or first.name in self.frame.stuffed:
             return None
         values = part_bytes(first, self._payload)[0]
         used = (used for part, used in wire_bytes(self.frame, self._payload) if part != first)
@@ -135,7 +133,7 @@ class _Analysis:
         """True if the frame, or each message, says where it ends."""
         if self.frame.length is not None or end is not None:
             return True
-        if not self._identity_first():
+        if not set(self.frame.identity) <= set(self.frame.head):
             text = "the identity comes behind the payload, and nothing else tells where it ends"
             self._context.error_at_key("PG145", ("frame", self._key), text)
             return False
@@ -167,10 +165,9 @@ class _Analysis:
     def _only_end(self) -> None:
         """A frame that holds nothing is no frame to a receiver, but a line that is idle."""
         head, tail = self.delimiters.head, self.delimiters.tail
-        transparency = self.frame.transparency
         if tail is None or (head is not None and head.bytes != tail.bytes):
             return
-        if transparency is not None and isinstance(transparency.encoding, Cobs):
+        if isinstance(self.frame.encoding, Cobs):
             return  # It makes a byte of nothing.
         names = {part.name for part in (*(head.parts if head else ()), *tail.parts)}
         others = (part for part in self.frame.parts if part.name not in names)
@@ -181,11 +178,6 @@ class _Analysis:
                 text = f"a frame of `{message.name}` can be its end alone, which says nothing"
                 hint = "give the frame an identity or another part, or the message a field"
                 self._context.error_at_key("PG146", ("messages", message.name), text, hint)
-
-    def _identity_first(self) -> bool:
-        names = [part.name for part in self.frame.parts]
-        payload = next(p.name for p in self.frame.parts if isinstance(p, PayloadPart))
-        return all(names.index(p.name) < names.index(payload) for p in self.frame.identity)
 
     def _region_unclear(self) -> bool:
         """Raw parts between a stuffed region and the end need a length to be found."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from protogen.model.frame import Frame, LengthPart, LiteralPart, Part
 from protogen.model.sizes import SizeSet
 
@@ -42,30 +44,22 @@ def stated_range(frame: Frame, length: LengthPart) -> SizeSet | None:
 
 def tail_literals(frame: Frame) -> tuple[LiteralPart, ...]:
     """The literals that close the frame, outside the transparency."""
-    found: list[LiteralPart] = []
-    for part in reversed(frame.parts):
-        if not isinstance(part, LiteralPart) or _is_last_covered(frame, part):
-            break
-        found.insert(0, part)
-    return tuple(found)
+    stuffed = frame.transparency.last if frame.transparency else None
+    return tuple(_literals(reversed(frame.parts), stuffed))[::-1]
 
 
 def head_literals(frame: Frame) -> tuple[LiteralPart, ...]:
     """The literals that open the frame, outside the transparency."""
-    found: list[LiteralPart] = []
-    for part in frame.parts:
-        if not isinstance(part, LiteralPart) or _is_first_covered(frame, part):
-            break
-        found.append(part)
-    return tuple(found)
+    stuffed = frame.transparency.first if frame.transparency else None
+    return tuple(_literals(frame.parts, stuffed))
 
 
-def _is_last_covered(frame: Frame, part: Part) -> bool:
-    return frame.transparency is not None and frame.transparency.last == part.name
-
-
-def _is_first_covered(frame: Frame, part: Part) -> bool:
-    return frame.transparency is not None and frame.transparency.first == part.name
+def _literals(parts: Iterable[Part], stuffed: str | None) -> Iterator[LiteralPart]:
+    """Yield the literals that come first, up to a stuffed part."""
+    for part in parts:
+        if not isinstance(part, LiteralPart) or part.name == stuffed:
+            return
+        yield part
 
 
 def is_delimited(frame: Frame) -> bool:

@@ -6,7 +6,6 @@ from protogen.model.checksums import ChecksumSpec, algorithm_names, find_algorit
 from protogen.model.frame import ChecksumPart, Cobs, Frame, PartType
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.part_runs import Runs
-from protogen.passes.proofs.wire_code import covered_parts
 from protogen.problems import hint_for
 from protogen.schema.syntax.parts import CrcParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
@@ -112,5 +111,4 @@ def _circle(frame: Frame, name: str) -> list[str]:
 
 
 def _holds_cobs(frame: Frame, part: ChecksumPart) -> bool:
-    encoding = frame.transparency.encoding if frame.transparency else None
-    return isinstance(encoding, Cobs) and not covered_parts(frame).isdisjoint(part.covers)
+    return isinstance(frame.encoding, Cobs) and not frame.stuffed.isdisjoint(part.covers)

@@ -12,7 +12,6 @@ from protogen.passes.context import Context, Loc
 from protogen.passes.framing.capacity import head_literals, tail_literals
 from protogen.passes.proofs.codewords import occurs
 from protogen.passes.proofs.wire_code import ByteSet, segments
-from protogen.schema.syntax.protocol import ALL_SENDERS
 
 
 class Delimiter(msgspec.Struct, frozen=True):
@@ -56,7 +55,7 @@ def judge_delimiters(context: Context, senders: Iterable[tuple[str, Frame, Delim
     """Report what is not protected and not accepted; senders of one frame are judged together."""
     alike: dict[Loc, list[Delimiter]] = defaultdict(list)
     for sender, frame, found in senders:
-        loc: Loc = ("frame", sender if sender in context.syntax.frame else ALL_SENDERS)
+        loc: Loc = ("frame", context.frame_key(sender))
         for delimiter in filter(None, (found.head, found.tail)):
             alike[(*loc, delimiter.parts[0].name)].append(delimiter)
         _needless_inside(context, frame, found, loc)

@@ -25,7 +25,6 @@ from protogen.passes.framing.capacity import counted_size, stated_range
 from protogen.passes.framing.checksum_parts import PAYLOAD, ChecksumReader, check_checksums
 from protogen.passes.framing.part_runs import Runs
 from protogen.passes.framing.transparencies import transparency_of
-from protogen.passes.messages.byte_orders import byte_order_of
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
 from protogen.schema.syntax.parts import Part as PartSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS
@@ -73,13 +72,12 @@ class FrameBuilder:
     def __init__(self, context: Context, sender: str) -> None:
         self._context = context
         self._sender = sender
-        key = sender if sender in context.syntax.frame else ALL_SENDERS
+        key = context.frame_key(sender)
         self._loc: Loc = ("frame", key)
         self._syntax: Mapping[str, PartSyntax] = context.syntax.frame[key]
         self._runs = Runs(context, self._syntax)
         self._checksums = ChecksumReader(context, self._loc, self._runs)
-        order = byte_order_of(context, sender)
-        self._layout = Layout(byte_bits=context.syntax.byte_bits, byte_order=order)
+        self._layout = Layout(context.syntax.byte_bits, context.byte_order(sender))
         self._replaced = 0
         """Errors of checksums that another one stands for."""
 
@@ -244,6 +242,3 @@ class FrameBuilder:
         for part in lengths[1:]:
             text = f"the frame already has a length: `{lengths[0].name}`"
             self._context.error_at_key("PG133", (*self._loc, part.name), text)
-
-
-__all__ = ["FrameBuilder", "resolve_frames"]

@@ -12,7 +12,6 @@ from protogen.model.types import ByteOrder, Field, Fill, Octets, total
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import GREATEST_FRAME, amount, is_delimited, payload_range
-from protogen.passes.messages.byte_orders import byte_order_of
 from protogen.passes.messages.identity import Identity, IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.types.fields import FieldBuilder
@@ -114,7 +113,7 @@ class _Resolution:
     def _byte_order(self) -> ByteOrder | None:
         if self._syntax.byte_order is not None:
             return self._syntax.byte_order
-        orders = {byte_order_of(self._context, sender) for sender in self._syntax.from_}
+        orders = {self._context.byte_order(sender) for sender in self._syntax.from_}
         if len(orders) > 1:
             text = f"the senders of `{self._name}` use different byte orders"
             self._context.error_at_key("PG109", self._loc, text, "set `byte_order` on the message")

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
 
 import msgspec
 
-from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
-from protogen.model.numbers import constant_bytes, number_bytes
+from protogen.model.numbers import checksum_of, constant_bytes, number_bytes
 from protogen.model.types import Field
-from protogen.passes.proofs.wire_code import ByteSet, code_of, covered_parts, part_bytes
-from protogen.runtime import checksum as sums
+from protogen.passes.proofs.wire_code import ByteSet, code_of, part_bytes
 
 
 class Stretch(msgspec.Struct, frozen=True):
@@ -111,25 +108,12 @@ def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes])
     covered = b"".join(
         _on_wire(frame, name, plain[name]) if part.over_wire else plain[name] for name in present
     )
-    return number_bytes(part.type, _algorithm(part.algorithm).compute(covered))
+    return number_bytes(part.type, checksum_of(part.algorithm).compute(covered))
 
 
 def _on_wire(frame: Frame, name: str, plain: bytes) -> bytes:
     """The bytes of one part as an encoder stuffs them; COBS was refused for such checksums."""
-    code = code_of(frame.transparency.encoding) if frame.transparency else None
-    if code is None or name not in covered_parts(frame):
+    code = code_of(frame.encoding)
+    if code is None or name not in frame.stuffed:
         return plain
     return b"".join(code[byte] for byte in plain)
-
-
-@cache
-def _algorithm(spec: ChecksumSpec) -> sums.Checksum:
-    match spec.kind:
-        case "xor":
-            return sums.Xor8(spec.init)
-        case "sum":
-            return sums.Sum8(spec.init, spec.negated)
-        case "fletcher":
-            return sums.Fletcher16(spec.modulus)
-        case "crc":
-            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

@@ -47,12 +47,11 @@ def joined_frames(
 
 def _may_join(frame: Frame, start: Start, messages: list[Message]) -> bool:
     """True if nothing but the end, and the checksum, tells two frames from one."""
-    encoding = frame.transparency.encoding if frame.transparency else None
-    if frame.length is not None or isinstance(encoding, Base16):
+    if frame.length is not None or isinstance(frame.encoding, Base16):
         return False
     if isinstance(start, StartLiteral | StartSet) and start.protected:
         return False
-    if encoding is not None and any(part.over_wire for part in frame.checksums):
+    if frame.encoding is not None and any(part.over_wire for part in frame.checksums):
         return False
     return _sizes_join(frame, messages)
 
@@ -75,12 +74,11 @@ def _sizes_join(frame: Frame, messages: list[Message]) -> bool:
 
 def _wrong_ends(frame: Frame, end: End, payload: ByteSet) -> Iterator[tuple[bytes, bytes]]:
     """Each end with one wrong byte that can be data, and what it is read as."""
-    encoding = frame.transparency.encoding if frame.transparency else None
-    if isinstance(encoding, Cobs):
+    if isinstance(frame.encoding, Cobs):
         # The code byte of an empty block; the one in front of it was the last of its frame.
         yield from [(b"\x01", b"\0\0")] if end.bytes == b"\0" else []
         return
-    code = code_of(encoding) or {}
+    code = code_of(frame.encoding) or {}
     plain = frozenset(byte for byte in payload if code[byte] == bytes((byte,)))
     for place, right in enumerate(end.bytes):
         rest = end.bytes[:place] + end.bytes[place + 1 :]
@@ -106,13 +104,10 @@ def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
 
 def _checks(frame: Frame, one: dict[str, bytes], between: bytes, other: dict[str, bytes]) -> bool:
     """True if two frames are one: what is between their payloads is payload then."""
-    names = [part.name for part in frame.parts]
-    payload = next(part.name for part in frame.parts if isinstance(part, PayloadPart))
-    index = names.index(payload)
-    ends = [part.name for part in tail_literals(frame)]
-    tail = b"".join(one[name] for name in names[index + 1 :] if name not in ends)
-    head = b"".join(other[name] for name in names[:index])
-    joined = one | {name: other[name] for name in names[index + 1 :]}
+    payload, ends = frame.payload.name, tail_literals(frame)
+    tail = b"".join(one[part.name] for part in frame.tail if part not in ends)
+    head = b"".join(other[part.name] for part in frame.head)
+    joined = one | {part.name: other[part.name] for part in frame.tail}
     joined[payload] = one[payload] + tail + between + head + other[payload]
     return all(
         joined[checksum.name] == checksum_bytes(frame, checksum, joined)

@@ -5,7 +5,7 @@ What is there checks by chance, once in 2^w for a checksum of w bits.
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, Frame, LengthPart, PayloadPart
+from protogen.model.frame import ChecksumPart, Frame, LengthPart
 from protogen.model.framing import End
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
@@ -40,7 +40,7 @@ def _wrong_length(frame: Frame, length: LengthPart, messages: list[Message]) -> 
         return ""  # Its message can't have that size.
     if _settled_early(frame, length):
         return ""
-    behind = [part for part in frame.checksums if _stands_behind(frame, part)]
+    behind = [part for part in frame.checksums if part in frame.tail]
     if not frame.checksums:
         return f"a wrong `{length.name}`: nothing checks it"
     if not behind:
@@ -50,7 +50,7 @@ def _wrong_length(frame: Frame, length: LengthPart, messages: list[Message]) -> 
 
 def _wrong_field(frame: Frame, messages: list[Message]) -> str:
     """Identity and fields tell the size here, and a wrong one another size."""
-    behind = [part for part in frame.checksums if _stands_behind(frame, part)]
+    behind = [part for part in frame.checksums if part in frame.tail]
     sizes = {message.sizes for message in messages}
     one_size = len(sizes) < 2 and all(item.fixed is not None for item in sizes)
     if not behind or one_size:
@@ -63,8 +63,7 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
 
     Behind the payload, another size makes another identity of it.
     """
-    names = [part.name for part in frame.parts]
-    first = all(names.index(part.name) < _payload_index(frame) for part in frame.identity)
+    first = set(frame.identity) <= set(frame.head)
     groups: dict[tuple[int, ...], SizeSet] = {}
     for message in messages:
         key = message.identity if first else ()
@@ -82,22 +81,11 @@ def _settled_early(frame: Frame, length: LengthPart) -> bool:
     return any(
         length.name in part.covers
         and not part.when_payload
-        and not _stands_behind(frame, part)
-        and all(not isinstance(frame.part(name), PayloadPart) for name in part.covers)
+        and part in frame.head
+        and frame.payload.name not in part.covers
         for part in frame.checksums
     )
 
 
-def _payload_index(frame: Frame) -> int:
-    return next(i for i, part in enumerate(frame.parts) if isinstance(part, PayloadPart))
-
-
-def _stands_behind(frame: Frame, part: ChecksumPart) -> bool:
-    return frame.parts.index(part) > _payload_index(frame)
-
-
 def _names(parts: list[ChecksumPart]) -> str:
     return " and ".join(f"`{part.name}`" for part in parts)
-
-
-__all__ = ["misread_absence", "misread_size"]

@@ -126,8 +126,7 @@ def _share_a_size(messages: list[Message]) -> bool:
 
 def _inside(frame: Frame, payload: ByteSet) -> str:
     """Sentence on what still shows some wrong bytes: an encoding, or a highest bit of 0."""
-    encoding = frame.transparency.encoding if frame.transparency else None
-    if isinstance(encoding, Base16):
+    if isinstance(frame.encoding, Base16):
         return " that is still a hex digit"
     return " whose highest bit is still 0" if payload == SEVEN_BITS else ""
 
@@ -149,11 +148,9 @@ def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
 
 def _stuffing(frame: Frame) -> str:
     """One wrong byte on the wire can become several behind the stuffing."""
-    if frame.transparency is None or not frame.checksums:
+    if not frame.checksums or isinstance(frame.encoding, Base16 | None):
         return ""
-    if isinstance(frame.transparency.encoding, Base16):
-        return ""
-    if isinstance(frame.transparency.encoding, Cobs):
+    if isinstance(frame.encoding, Cobs):
         return "a wrong COBS code byte moves zeros, which the checksum misses in rare cases"
     return (
         "a wrong byte that makes or breaks a stuffed sequence changes several bytes and the size, "

@@ -50,15 +50,6 @@ def _plain() -> Mapping[int, bytes]:
     return {byte: bytes((byte,)) for byte in range(256)}
 
 
-def covered_parts(frame: Frame) -> frozenset[str]:
-    """The names of the parts under transparency."""
-    if frame.transparency is None:
-        return frozenset()
-    names = [part.name for part in frame.parts]
-    first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
-    return frozenset(names[first : last + 1])
-
-
 def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
     """Values of each unstuffed byte of a part; for the payload, of any of its bytes."""
     match part:
@@ -85,9 +76,7 @@ def _number_bytes(
 
 def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[Segment]:
     """The frame as it can stand on the wire; the parts called `delimiters` are its own literals."""
-    covered = covered_parts(frame)
-    encoding = frame.transparency.encoding if frame.transparency else None
-    code = code_of(encoding)
+    covered, code = frame.stuffed, code_of(frame.encoding)
     own = frozenset(delimiters)
     result: list[Segment] = []
     for part in frame.parts:
@@ -137,8 +126,7 @@ def _joined(parts: list[Segment]) -> list[Segment]:
 
 def wire_bytes(frame: Frame, payload: ByteSet) -> Iterable[tuple[Part, ByteSet]]:
     """Each part with all bytes that can stand for it on the wire."""
-    covered = covered_parts(frame)
-    code = code_of(frame.transparency.encoding) if frame.transparency else None
+    covered, code = frame.stuffed, code_of(frame.encoding)
     for part in frame.parts:
         values = frozenset().union(*part_bytes(part, payload)) if part else frozenset()
         if part.name not in covered:

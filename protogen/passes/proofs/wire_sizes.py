@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart, Part, PayloadPart
+from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import tail_literals
 from protogen.passes.proofs.contents import Contents, Stretch, contents_of, payload_of
 from protogen.passes.proofs.together import Together
-from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, code_of, covered_parts
+from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, code_of
 
 _COBS_BLOCK = 254
 _FOLLOWING = (LengthPart, ChecksumPart)
@@ -30,25 +30,25 @@ class WireSizes:
     def __init__(self, frame: Frame, payload: ByteSet) -> None:
         self._frame = frame
         self._payload = payload
-        self._covered = covered_parts(frame)
-        self._encoding = frame.transparency.encoding if frame.transparency else None
+        self._covered = frame.stuffed
+        self._encoding = frame.encoding
         self._lenient = frame.transparency is not None and frame.transparency.lenient
         self._by_byte = code_of(self._encoding)
         """The codeword of each byte; None for COBS."""
-        self._payload_name = next(p.name for p in frame.parts if isinstance(p, PayloadPart))
+        self._payload_name = frame.payload.name
         self._checksums = {sign: Together(frame, partial(self._price, sign)) for sign in (1, -1)}
         self._known: dict[tuple[ByteSet, int], int] = {}
 
     @property
     def head(self) -> int:
         """Unstuffed bytes in front of the payload."""
-        return sum(part.size for part in self._around()[0])
+        return sum(part.size for part in self._frame.head)
 
     @property
     def tail(self) -> int:
         """Unstuffed bytes behind the payload but for the end literal."""
-        ends = {part.name for part in tail_literals(self._frame)}
-        return sum(part.size for part in self._around()[1] if part.name not in ends)
+        ends = tail_literals(self._frame)
+        return sum(part.size for part in self._frame.tail if part not in ends)
 
     @property
     def overhead(self) -> SizeSet:
@@ -66,11 +66,6 @@ class WireSizes:
         names = [part.name for part in self._frame.identity]
         identity = dict(zip(names, message.identity, strict=True))
         return self._sizes(payload, identity, message.fields)
-
-    def _around(self) -> tuple[list[Part], list[Part]]:
-        parts = list(self._frame.parts)
-        middle = next(i for i, part in enumerate(parts) if isinstance(part, PayloadPart))
-        return parts[:middle], parts[middle + 1 :]
 
     def _sizes(
         self, payload: SizeSet, identity: Mapping[str, int], fields: tuple[Field, ...]

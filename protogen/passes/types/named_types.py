@@ -6,13 +6,15 @@ it different room, the type takes the greater bounds, whatever a single use coul
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from protogen.copying import replace
 from protogen.model.meanings import Enum, Flags
 from protogen.model.nesting import inner_types, is_composite, with_structs
+from protogen.model.sizes import SizeSet
 from protogen.model.types import Field, Struct, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.joining import joined_struct
-from protogen.passes.types.positions import placed
 
 Named = Enum | Flags | Struct
 
@@ -67,7 +69,7 @@ class NamedTypes:
         """The fields with all structs as they came to be. To be asked when all are registered."""
         if not any(_holds_struct(field.type) for field in fields):
             return fields
-        return placed(
+        return _placed(
             replace(field, type=with_structs(field.type, self._struct)) for field in fields
         )
 
@@ -76,8 +78,18 @@ class NamedTypes:
             latest = self._types.get(struct.name)
             struct = latest if isinstance(latest, Struct) else struct
             fields = self.settled(struct.fields)
-            self._settled[struct.name] = replace(struct, fields=placed(fields))
+            self._settled[struct.name] = replace(struct, fields=_placed(fields))
         return self._settled[struct.name]
+
+
+def _placed(fields: Iterable[Field]) -> tuple[Field, ...]:
+    """The fields with their positions, behind each other."""
+    found: list[Field] = []
+    behind = SizeSet.exactly(0)
+    for field in fields:
+        found.append(replace(field, position=behind.fixed))
+        behind += field.type.sizes
+    return tuple(found)
 
 
 def _joined(known: Named, other: Named) -> Named | None:
@@ -89,6 +101,3 @@ def _joined(known: Named, other: Named) -> Named | None:
 
 def _holds_struct(type_: Type) -> bool:
     return is_composite(type_) or any(map(_holds_struct, inner_types(type_)))
-
-
-__all__ = ["NamedTypes"]

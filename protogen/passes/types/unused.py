@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
-from protogen.passes.messages.byte_orders import byte_order_of
 from protogen.passes.types.fields import FieldBuilder
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.setting import nowhere
@@ -38,6 +37,6 @@ def check_unused(context: Context, draft: Draft) -> None:
 def _layout(context: Context, message: MessageSyntax | None) -> Layout:
     senders = message.from_ if message else (ALL_SENDERS, *context.syntax.endpoints)
     orders = [message.byte_order] if message else []
-    orders += [byte_order_of(context, sender) for sender in senders]
+    orders += [context.byte_order(sender) for sender in senders]
     known = [order for order in orders if order is not None]
     return Layout(byte_bits=context.syntax.byte_bits, byte_order=known[0] if known else None)
