@@ -29,6 +29,7 @@ from hypothesis import settings
 
 from protogen.runtime import decoder as runtime_decoder
 from protogen.runtime.machine import Candidate
+from protogen.runtime.prefix import prefix_of
 from protogen.runtime.sender import Cutter
 from protogen.runtime.starts import starts_of
 
@@ -83,7 +84,8 @@ def test_each_portion_gives_what_the_reference_gives(
 def test_nothing_is_awaited_behind_a_verdict(path: Path, sender: str, seed: int) -> None:
     """Also where the beginning of a frame is damaged: no verdict is left to a later byte."""
     spec = module_at(path).PROTOCOL.sender(sender)
-    if spec.waits is None:
+    prefix = prefix_of(spec)
+    if prefix is None:
         return
     dice = Random(seed)
     for piece in islice(pieces(material_of(path, sender), dice), 40):
@@ -92,11 +94,16 @@ def test_nothing_is_awaited_behind_a_verdict(path: Path, sender: str, seed: int)
         if start.context == 0 and start.find(data, 0, 1) != 0:
             continue
         candidate = Candidate(spec)
+        due = 0
         for end, byte in enumerate(data, 1):
+            is_seen = end >= due or byte not in prefix.plain
+            wanted = prefix.wanted(data[:end], 0)
+            assert prefix.wanted(b"\0\0" + data[:end], 2) == wanted
             if candidate.push(byte) is not None:
-                assert not spec.waits(data[:end], 0)
+                assert wanted == 0
+                assert is_seen
                 break
-            assert spec.waits(b"\0\0" + data[:end], 2) == spec.waits(data[:end], 0)
+            due = end + wanted if is_seen else due
 
 
 AWAITED_BY_THE_REFERENCE = {
@@ -110,8 +117,8 @@ AWAITED_BY_THE_REFERENCE = {
 
 @EVERY_SENDER
 def test_who_awaits_frames(path: Path, sender: str) -> None:
-    waits = module_at(path).PROTOCOL.sender(sender).waits
-    assert (waits is None) == ((name_of(path), sender) in AWAITED_BY_THE_REFERENCE)
+    prefix = prefix_of(module_at(path).PROTOCOL.sender(sender))
+    assert (prefix is None) == ((name_of(path), sender) in AWAITED_BY_THE_REFERENCE)
 
 
 @pytest.fixture
@@ -134,7 +141,7 @@ def test_a_clean_stream_in_portions_does_not_need_the_reference(
     path: Path, sender: str, size: int, candidates: list[Any]
 ) -> None:
     """Wherever a portion ends: in a head, a checksum, an end or the stuffing of a byte."""
-    if module_at(path).PROTOCOL.sender(sender).waits is None:
+    if prefix_of(module_at(path).PROTOCOL.sender(sender)) is None:
         return
     messages = known_frames(path, protocol_of(path).sender(sender))
     frames = [frame for frame in messages if _is_cut_fast(path, sender, frame, candidates)]
@@ -244,9 +251,9 @@ def test_nothing_fed_leaves_nothing_behind(tmp_path: Path, engine: str) -> None:
     frame = module.encode(module.List(a=bytes(9000)), "station")
     decoder = module.Decoder("station", engine)
     assert decoder.feed(frame[:6000]) == []
-    before = decoder._is_waiting, len(decoder._behind), decoder.pending
+    before = decoder._wanted, len(decoder._behind), decoder.pending
     assert [decoder.feed(b"") for _ in range(5)] == [[]] * 5
-    assert (decoder._is_waiting, len(decoder._behind), decoder.pending) == before
+    assert (decoder._wanted, len(decoder._behind), decoder.pending) == before
     assert [event.raw for event in decoder.feed(frame[6000:])] == [frame]
 
 
@@ -283,7 +290,7 @@ def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:
 
         return call
 
-    for name in ("_lane", "_cut", "_waits", "_join", "_deliver"):
+    for name in ("_lane", "_cut", "_wanted_at", "_join", "_deliver"):
         if getattr(decoder, name) is not None:
             setattr(decoder, name, counted(getattr(decoder, name)))
     events = [event for byte in frame for event in decoder.feed(bytes([byte]))]

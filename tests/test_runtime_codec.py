@@ -25,7 +25,7 @@ def encode_error(action: Any, *arguments: Any, **named: Any) -> rt.EncodeError:
 
 def changed(spec: Any, **changes: Any) -> Any:
     """A sender that differs in this."""
-    names = ("name", "frame", "parts", "messages", "encode_only", "cut", "waits")
+    names = ("name", "frame", "parts", "messages", "encode_only", "cut")
     return rt.SenderSpec(**({name: getattr(spec, name) for name in names} | changes))
 
 

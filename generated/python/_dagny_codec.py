@@ -325,28 +325,6 @@ def _decode_host(data: bytes) -> _typing.Any:
     return read(payload)
 
 
-def _waits_host(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 515:
-        return False
-    if data.startswith(b"\x0a", at):
-        return False
-    try:
-        content = data[at:]
-        if size < 1:
-            return True
-        payload_size: int = _HOST_KINDS[content[0]][0]
-        if payload_size < 0:
-            if data.find(b"\x0a", at + 1) >= 0:
-                return False
-            return size <= ~payload_size + 2
-        if not payload_size:
-            return False
-        return size <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     if payload:
         content = _PACK_0(id_) + payload
@@ -453,28 +431,6 @@ def _decode_robot(data: bytes) -> _typing.Any:
         if _checksum.xor_of(content):
             raise _fast.NeedsReference
     return read(payload)
-
-
-def _waits_robot(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 515:
-        return False
-    if data.startswith(b"\x0a", at):
-        return False
-    try:
-        content = data[at:]
-        if size < 1:
-            return True
-        payload_size: int = _ROBOT_KINDS[content[0]][0]
-        if payload_size < 0:
-            if data.find(b"\x0a", at + 1) >= 0:
-                return False
-            return size <= ~payload_size + 2
-        if not payload_size:
-            return False
-        return size <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
 
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
@@ -833,7 +789,5 @@ _fast.add_readers(
 _fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
 _DECODERS["host"] = _decode_host
 HOST_SENDER.cut = _cut_host
-HOST_SENDER.waits = _waits_host
 _DECODERS["robot"] = _decode_robot
 ROBOT_SENDER.cut = _cut_robot
-ROBOT_SENDER.waits = _waits_robot

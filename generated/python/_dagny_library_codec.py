@@ -277,36 +277,6 @@ def _decode_host(data: bytes) -> _typing.Any:
     return read(payload)
 
 
-def _waits_host(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 1027:
-        return False
-    if data.find(b"\x0d", at) >= 0:
-        return False
-    try:
-        content = data[at:]
-        part = False
-        if 0x0D in content or 0x1B in content:
-            part = content.endswith(b"\x1b")
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x1b\x16", b"\x0d")
-            content = content.replace(b"\x1b\x00", b"\x1b")
-            again = content.replace(b"\x1b", b"\x1b\x00")
-            again = again.replace(b"\x0d", b"\x1b\x16")
-            if again != stuffed:
-                return False
-        if len(content) < 1:
-            return True
-        payload_size: int = _HOST_KINDS[content[0]][0]
-        if payload_size < 0:
-            return len(content) + part <= ~payload_size + 1
-        return len(content) + part <= payload_size + 1
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
     if 0x0D in content or 0x1B in content:
@@ -400,36 +370,6 @@ def _decode_robot(data: bytes) -> _typing.Any:
     if 0 <= payload_size != len(payload):
         raise _fast.NeedsReference
     return read(payload)
-
-
-def _waits_robot(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 1027:
-        return False
-    if data.find(b"\x0d", at) >= 0:
-        return False
-    try:
-        content = data[at:]
-        part = False
-        if 0x0D in content or 0x1B in content:
-            part = content.endswith(b"\x1b")
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x1b\x16", b"\x0d")
-            content = content.replace(b"\x1b\x00", b"\x1b")
-            again = content.replace(b"\x1b", b"\x1b\x00")
-            again = again.replace(b"\x0d", b"\x1b\x16")
-            if again != stuffed:
-                return False
-        if len(content) < 1:
-            return True
-        payload_size: int = _ROBOT_KINDS[content[0]][0]
-        if payload_size < 0:
-            return len(content) + part <= ~payload_size + 1
-        return len(content) + part <= payload_size + 1
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
 
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
@@ -641,7 +581,5 @@ _fast.add_readers(
 _fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
 _DECODERS["host"] = _decode_host
 HOST_SENDER.cut = _cut_host
-HOST_SENDER.waits = _waits_host
 _DECODERS["robot"] = _decode_robot
 ROBOT_SENDER.cut = _cut_robot
-ROBOT_SENDER.waits = _waits_robot

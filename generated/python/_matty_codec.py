@@ -282,38 +282,6 @@ def _decode_pc(data: bytes) -> _typing.Any:
     return read(content)
 
 
-def _waits_pc(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 250:
-        return False
-    if not data.startswith(b"\x55", at):
-        return False
-    try:
-        content = data[at + 1:]
-        part = False
-        if 0x55 in content or 0x56 in content:
-            if data.find(b"\x55", at + 1) > 0:
-                return False
-            part = content.endswith(b"\x56")
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x56\xaa", b"\x55")
-            content = content.replace(b"\x56\xa9", b"\x56")
-            again = content.replace(b"\x56", b"\x56\xa9")
-            again = again.replace(b"\x55", b"\x56\xaa")
-            if again != stuffed:
-                return False
-        if len(content) < 1:
-            return True
-        payload_size = content[0] - 2
-        if not 0 <= payload_size <= 121:
-            return False
-        return len(content) + part < payload_size + 4
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -417,38 +385,6 @@ def _decode_esp(data: bytes) -> _typing.Any:
     if read is None:
         raise _fast.NeedsReference
     return read(content)
-
-
-def _waits_esp(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 250:
-        return False
-    if not data.startswith(b"\x55", at):
-        return False
-    try:
-        content = data[at + 1:]
-        part = False
-        if 0x55 in content or 0x56 in content:
-            if data.find(b"\x55", at + 1) > 0:
-                return False
-            part = content.endswith(b"\x56")
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x56\xaa", b"\x55")
-            content = content.replace(b"\x56\xa9", b"\x56")
-            again = content.replace(b"\x56", b"\x56\xa9")
-            again = again.replace(b"\x55", b"\x56\xaa")
-            if again != stuffed:
-                return False
-        if len(content) < 1:
-            return True
-        payload_size = content[0] - 2
-        if not 0 <= payload_size <= 121:
-            return False
-        return len(content) + part < payload_size + 4
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
 
 
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
@@ -644,7 +580,5 @@ _fast.add_readers(
 _fast.add_writers((PC_SENDER, ESP_SENDER), _ENCODERS, ("counter",))
 _DECODERS["pc"] = _decode_pc
 PC_SENDER.cut = _cut_pc
-PC_SENDER.waits = _waits_pc
 _DECODERS["esp"] = _decode_esp
 ESP_SENDER.cut = _cut_esp
-ESP_SENDER.waits = _waits_esp

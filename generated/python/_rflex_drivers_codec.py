@@ -512,40 +512,6 @@ def _decode_linux(data: bytes) -> _typing.Any:
     return read(content)
 
 
-def _waits_linux(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 780:
-        return False
-    if not data.startswith(b"\x1b\x02", at):
-        return False
-    try:
-        content = data[at + 2:]
-        part = False
-        if 0x1B in content or 0x7C in content:
-            if data.find(b"\x1b\x02", at + 1) > 0:
-                return False
-            if data.find(b"\x1b\x03", at + 2) >= 0:
-                return False
-            if content.endswith(b"\x1b"):
-                content = content[:-1]
-            part = content.endswith((b"\x1b", b"\x7c"))
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x7c\x1b\x01", b"\x7c")
-            content = content.replace(b"\x1b\x00", b"\x1b")
-            again = content.replace(b"\x1b", b"\x1b\x00")
-            again = again.replace(b"\x7c", b"\x7c\x1b\x01")
-            if again != stuffed:
-                return False
-        if len(content) < 4:
-            return True
-        payload_size = content[3]
-        return len(content) + part <= payload_size + 5
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_linux(
     payload: bytes, class_id_: int | None, subclass_: int | None, number_: int | None
 ) -> bytes:
@@ -683,40 +649,6 @@ def _decode_flex(data: bytes) -> _typing.Any:
     if read is None:
         raise _fast.NeedsReference
     return read(content)
-
-
-def _waits_flex(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 780:
-        return False
-    if not data.startswith(b"\x1b\x02", at):
-        return False
-    try:
-        content = data[at + 2:]
-        part = False
-        if 0x1B in content or 0x7C in content:
-            if data.find(b"\x1b\x02", at + 1) > 0:
-                return False
-            if data.find(b"\x1b\x03", at + 2) >= 0:
-                return False
-            if content.endswith(b"\x1b"):
-                content = content[:-1]
-            part = content.endswith((b"\x1b", b"\x7c"))
-            if part:
-                content = content[:-1]
-            stuffed = content
-            content = content.replace(b"\x7c\x1b\x01", b"\x7c")
-            content = content.replace(b"\x1b\x00", b"\x1b")
-            again = content.replace(b"\x1b", b"\x1b\x00")
-            again = again.replace(b"\x7c", b"\x7c\x1b\x01")
-            if again != stuffed:
-                return False
-        if len(content) < 4:
-            return True
-        payload_size = content[3]
-        return len(content) + part <= payload_size + 5
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
 
 
 def _frame_flex(
@@ -1272,7 +1204,5 @@ _fast.add_readers(
 _fast.add_writers((LINUX_SENDER, FLEX_SENDER), _ENCODERS, ("number",))
 _DECODERS["linux"] = _decode_linux
 LINUX_SENDER.cut = _cut_linux
-LINUX_SENDER.waits = _waits_linux
 _DECODERS["flex"] = _decode_flex
 FLEX_SENDER.cut = _cut_flex
-FLEX_SENDER.waits = _waits_flex

@@ -366,30 +366,6 @@ def _decode_host(data: bytes) -> _typing.Any:
     return read(payload)
 
 
-def _waits_host(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 7:
-        return False
-    if not size or not 0x80 <= data[at] <= 0xFE:
-        return False
-    if data.find(b"\xff", at) >= 0:
-        return False
-    try:
-        content = data[at:]
-        if size < 1:
-            return True
-        payload_size: int = _HOST_KINDS[content[0]][0]
-        if payload_size < 0:
-            if not content[1:].isascii():
-                return False
-            return size <= ~payload_size + 1
-        if not content[1:].isascii():
-            return False
-        return size <= payload_size + 1
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_host(payload: bytes, start_: int | None) -> bytes:
     content = _PACK_1(start_) + payload
     return content + b"\xff"
@@ -447,24 +423,6 @@ def _decode_brain(data: bytes) -> _typing.Any:
     if not payload.isascii():
         raise _fast.NeedsReference
     return read(payload)
-
-
-def _waits_brain(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 722:
-        return False
-    if not size or not 0x80 <= data[at] <= 0xFE:
-        return False
-    try:
-        content = data[at:]
-        if size < 1:
-            return True
-        frame_size: int = _BRAIN_KINDS[content[0]][0]
-        if not content[1:].isascii():
-            return False
-        return size < frame_size
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
 
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:
@@ -763,7 +721,5 @@ _fast.add_readers(
 _fast.add_writers((HOST_SENDER, BRAIN_SENDER), _ENCODERS, (), _CODES)
 _DECODERS["host"] = _decode_host
 HOST_SENDER.cut = _cut_host
-HOST_SENDER.waits = _waits_host
 _DECODERS["brain"] = _decode_brain
 BRAIN_SENDER.cut = _cut_brain
-BRAIN_SENDER.waits = _waits_brain

@@ -171,32 +171,6 @@ def _decode_daemon(data: bytes) -> _typing.Any:
     return read(content)
 
 
-def _waits_daemon(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 512:
-        return False
-    if not data.startswith(b"\x62", at):
-        return False
-    if data.find(b"\x62", at + 1) > 0:
-        return False
-    if data.find(b"\x65", at + 1) >= 0:
-        return False
-    try:
-        content = data[at + 1:]
-        part = len(content) % 2
-        content = _STUFFING_0.decode(content + b"0" * part)
-        if part:
-            content = content[:-1]
-        if len(content) < 1:
-            return True
-        payload_size = content[0] - 2
-        if not 0 <= payload_size <= 253:
-            return False
-        return len(content) + part <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, type_) + payload
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
@@ -275,32 +249,6 @@ def _decode_board(data: bytes) -> _typing.Any:
     return read(content)
 
 
-def _waits_board(data: bytes, at: int) -> bool:
-    size = len(data) - at
-    if size >= 512:
-        return False
-    if not data.startswith(b"\x62", at):
-        return False
-    if data.find(b"\x62", at + 1) > 0:
-        return False
-    if data.find(b"\x65", at + 1) >= 0:
-        return False
-    try:
-        content = data[at + 1:]
-        part = len(content) % 2
-        content = _STUFFING_0.decode(content + b"0" * part)
-        if part:
-            content = content[:-1]
-        if len(content) < 1:
-            return True
-        payload_size = content[0] - 2
-        if not 0 <= payload_size <= 253:
-            return False
-        return len(content) + part <= payload_size + 2
-    except _fast.ANYTHING:  # The reference says what is wrong.
-        return False
-
-
 def _frame_board(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, type_) + payload
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
@@ -376,7 +324,5 @@ _fast.add_readers(
 _fast.add_writers((DAEMON_SENDER, BOARD_SENDER), _ENCODERS, ())
 _DECODERS["daemon"] = _decode_daemon
 DAEMON_SENDER.cut = _cut_daemon
-DAEMON_SENDER.waits = _waits_daemon
 _DECODERS["board"] = _decode_board
 BOARD_SENDER.cut = _cut_board
-BOARD_SENDER.waits = _waits_board

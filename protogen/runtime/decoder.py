@@ -8,6 +8,7 @@ from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
 from protogen.runtime.frame import AfterEnd, Anywhere
 from protogen.runtime.machine import Candidate, Cut, Failure
+from protogen.runtime.prefix import Prefix, prefix_of
 from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.starts import starts_of
 
@@ -50,12 +51,12 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         check_engine(engine)
         self._sender = sender
         self._cut = sender.cut if engine == "fast" else None
-        self._waits = sender.waits if engine == "fast" else None
         self._starts = starts_of(sender.frame)
         is_alone = not self._starts.context and not sender.layout.shares_delimiter
         self._lane = self._cut if is_alone else None
         """Cuts what comes in, where nothing of earlier frames tells how a frame starts."""
-        self._least = sender.frame.least
+        shared = len(sender.layout.start) if sender.layout.shares_delimiter else 0
+        self._least = sender.frame.least - shared  # So many bytes a frame has that can be cut.
         self._greatest = sender.frame.greatest
         self._is_anywhere = isinstance(sender.frame.start, Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
@@ -69,13 +70,16 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._candidate: Candidate | None = None
         self._failure: Failure | None = None  # The candidate's, until the next start is known.
         self._shares_start = False  # Whether the candidate starts with the end before it.
-        self._is_waiting = False  # What stands at `_scan` needs no candidate before more comes in.
+        self._wanted = 0  # Before so many bytes come in, what stands at `_scan` is not judged.
+        self._judges = self._cut is not None  # Whether beginnings of frames can be judged.
+        self._prefix: Prefix | None = None  # Judge of them, made when first needed.
+        self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
 
     @property
     def pending(self) -> int:
         """How many bytes were taken that no event covers yet."""
-        return (self._pushed if self._behind else len(self._data)) - self._done
+        return len(self._data) + len(self._behind) - self._done
 
     def feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the next bytes of the input; the events that are certain now.
@@ -85,45 +89,59 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if type(data) is not bytes:
             data = octets(data)  # Of what is like bytes, some have a sum of their own with them.
         lane = self._lane
-        if lane is None or (self._data and (not self._is_waiting or len(self._data) > _LOOKED)):
+        whole = data
+        if self._data:
+            if self._wanted > len(data) and not data.translate(None, self._plain):
+                self._wanted -= len(data)
+                self._behind += data
+                return []
+            if lane is None or not self._wanted or self._is_large:
+                return self._feed(data)
+            self._join()
+            whole = self._data + data
+        elif lane is None:
             return self._feed(data)
         # All in front is delivered, and a frame may start at the first of these bytes.
-        whole = self._data + data
         events: list[Event[MessageT_co, PartsT_co]] = []
-        end = lane(whole, 0, self._offset, events)
-        if end == len(whole):
-            self._data = b""
-            self._is_waiting = False
-        else:
-            self._data = rest = whole[end:] if end else whole
-            waits = self._waits
-            self._is_waiting = waits is not None and waits(rest, 0)
+        end = lane(whole, 0, self._offset, events) if len(whole) >= self._least else 0
         self._offset += end
-        if self._data and not self._is_waiting:
-            self._events = events
-            self._run(final=False)
-            return self._deliver()
+        self._data = whole[end:]
+        self._wanted = 0
+        if end < len(whole):
+            self._wanted = self._wanted_at(0)
+            if not self._wanted:
+                self._events = events
+                self._run(final=False)
+                return self._deliver()
         return events
+
+    @property
+    def _is_large(self) -> bool:
+        """True if looking at all that is kept takes longer than a candidate takes for a byte."""
+        return len(self._data) + len(self._behind) > _LOOKED
 
     def _feed(self, data: bytes) -> list[Event[MessageT_co, PartsT_co]]:
         """The same in any state."""
-        if len(self._data) > _LOOKED:
+        if self._is_large:
             if not data:
                 return []
             if self._is_little(data):
                 if self._candidate is not None:
                     return self._feed_little(self._candidate, data)
-                if self._is_waiting:
+                if self._wanted:
                     self._open_candidate()
-            self._join()
+        self._join()
         self._data += data
-        if self._is_waiting:
-            if self._still_waits(self._scan):
+        is_waiting, self._wanted = self._wanted > 0, 0
+        is_begun = is_waiting or self._candidate is not None
+        # It may stand here as a whole now, in which case what was pushed needs not be.
+        if is_begun and self._cut_frames():
+            is_waiting = False
+        if is_waiting:
+            self._wanted = self._wanted_at(self._scan)
+            if self._wanted:
                 return []
-            self._take_up()
-        elif self._candidate is not None and len(self._data) - self._scan >= self._least:
-            # It may stand here as a whole now, in which case what was pushed needs not be.
-            self._cut_frames()
+            self._open_candidate()
         self._run(final=False)
         return self._deliver()
 
@@ -134,7 +152,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """
         if self._is_anywhere or self._failure is not None:
             return False  # There is more to do than to ask the candidate.
-        size = len(self._data) if self._candidate is None else self._pushed
+        size = len(self._data) + len(self._behind)
         return size - self._scan > _LOOKED * len(data)
 
     def _feed_little(
@@ -161,7 +179,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
         self._join()
-        if self._is_waiting:
+        if self._wanted:
             self._open_candidate()
         self._run(final=True)
         events = self._deliver()
@@ -218,31 +236,36 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._scan = self._pushed = start
         if self._cut_frames():
             return True
-        self._is_waiting = not final and self._still_waits(start)
-        if not self._is_waiting:
+        self._wanted = 0 if final else self._wanted_at(start)
+        if not self._wanted:
             self._candidate = Candidate(self._sender)
-        return not self._is_waiting
+        return not self._wanted
 
-    def _still_waits(self, start: int) -> bool:
-        """True if a frame plainly begins there, on which there is no verdict as yet."""
-        return self._waits is not None and self._waits(self._data, start)
+    def _wanted_at(self, start: int) -> int:
+        """How many bytes may come before what begins there is judged; 0: a candidate takes it."""
+        if not self._judges:
+            return 0
+        if self._prefix is None:
+            self._prefix = prefix_of(self._sender)
+            if self._prefix is None:
+                self._judges = False
+                return 0
+            self._plain = self._prefix.plain
+        return self._prefix.wanted(self._data, start)
 
     def _open_candidate(self) -> None:
         """Leave what was waited for to a candidate, from its first byte on."""
-        self._is_waiting = False
+        self._join()
+        self._wanted = 0
         self._is_fresh = False
         self._pushed = self._scan
         self._candidate = Candidate(self._sender)
 
-    def _take_up(self) -> None:
-        """Go on with what was waited for: a whole frame now, or something for a candidate."""
-        self._is_waiting = False
-        if not self._cut_frames():
-            self._open_candidate()
-
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
         if self._cut is None or self._done != self._scan:
+            return False
+        if len(self._data) - self._scan < self._least:
             return False
         end = self._cut(self._data, self._scan, self._offset, self._events)
         if end == self._scan:

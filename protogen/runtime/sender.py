@@ -19,10 +19,6 @@ Cutter = Callable[[bytes, int, int, list[Any]], int]
 """Called with data, a place in them, the offset of the data in the input, and a list to which it
 adds events. Gives the place of the first byte that it did not take."""
 
-Waiter = Callable[[bytes, int], bool]
-"""Called with data and a place in them; behind an end, if that is where frames start. True: the
-rest of the data is the beginning of a frame, on which there can be no verdict as yet."""
-
 
 class IdentityGroup(Generic[MessageT_co]):
     """The messages that a receiver may find behind one identity: one, or more told by size."""
@@ -63,7 +59,6 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         messages: tuple[type[MessageT_co], ...],
         encode_only: tuple[type[MessageT_co], ...] = (),
         cut: Cutter | None = None,
-        waits: Waiter | None = None,
     ) -> None:
         """`frame` may be what makes the frame's description, when it is first needed."""
         self.name = name
@@ -73,8 +68,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         self.encode_only = encode_only
         self.cut = cut
         """Takes whole frames that are plainly in order; None where only the reference cuts them."""
-        self.waits = waits
-        """Tells plain beginnings of frames; None: the reference takes all that is not whole."""
+        self.prefix: Any = None
+        """Judge of the beginnings of frames, made by the first decoder that needs one."""
 
     @cached_property
     def frame(self) -> FrameSpec:

@@ -85,18 +85,6 @@ class FastFrame:
         return self.plan.takes_whole
 
     @property
-    def can_wait(self) -> bool:
-        """Whether there is a function that tells plain beginnings of frames."""
-        region = self.plan.region
-        encoding = None if region is None else region.encoding
-        return (
-            self.can_cut
-            and not self.shares
-            and (not self.stuffed or self.replacements is not None or isinstance(encoding, Base16))
-            and (bool(self.end) or self.length is not None or not self._are_all_open)
-        )
-
-    @property
     def can_frame(self) -> bool:
         """True if there is a function that makes frames; else the reference does it alone."""
         return (
@@ -120,10 +108,6 @@ class FastFrame:
     def shares(self) -> bool:
         """True if the end of a frame may be the start of the next as well."""
         return self.plan.shares_delimiter
-
-    @property
-    def _are_all_open(self) -> bool:
-        return all(group.fixed is None for group in self.groups)
 
     @property
     def has_open_groups(self) -> bool:

@@ -9,7 +9,7 @@ import msgspec
 from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.targets.python.engine import cutting, framing, waiting
+from protogen.targets.python.engine import cutting, framing
 from protogen.targets.python.engine.frames import FastFrame
 from protogen.targets.python.engine.layout import outer_names
 from protogen.targets.python.engine.lines import Constants
@@ -40,7 +40,6 @@ class FastSender(msgspec.Struct, frozen=True):
     cut: Function | None
     head: Function | None
     decode: Function | None
-    waits: Function | None
     kinds: str
     frame: Function | None
 
@@ -85,7 +84,7 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     for sender in senders:
         lines += [
             line
-            for item in (sender.cut, sender.head, sender.decode, sender.waits, sender.frame)
+            for item in (sender.cut, sender.head, sender.decode, sender.frame)
             if item
             for line in item.body
         ]
@@ -235,7 +234,7 @@ def _overload(frame: FastFrame, group: IdentityGroup) -> Function:
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
     name = frame.sender.name
-    cut = head = alone = waits = made = None
+    cut = head = alone = made = None
     if frame.can_cut:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
@@ -246,13 +245,10 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
     if frame.can_decode:
         body = cutting.decoder(frame, constants)
         alone = _function(f"_decode_{name}", "data: bytes", "_typing.Any", body)
-    if frame.can_wait:
-        body = waiting.waiter(frame, constants)
-        waits = _function(f"_waits_{name}", "data: bytes, at: int", "bool", body)
     if frame.can_frame:
         given = framing.arguments(frame, of_caller)
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
     kinds = cutting.kinds(frame) if cut else ""
-    return FastSender(name, name.upper(), cut, head, alone, waits, kinds, made)
+    return FastSender(name, name.upper(), cut, head, alone, kinds, made)
