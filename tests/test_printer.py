@@ -27,21 +27,21 @@ from protogen.convert.formats import OutputFormat  # noqa: E402
 from protogen.convert.writers.csv_writer import CsvWriter  # noqa: E402
 from protogen.convert.writers.format_writers import write_all  # noqa: E402
 from protogen.convert.writers.pending_files import Pending  # noqa: E402
-from protogen.native.print_source import UnprintableError, source_of  # noqa: E402
 from protogen.native.print_steps import (  # noqa: E402
     IN_CELLS,
     IN_LINES,
-    Characters,
-    HexOf,
-    Literal,
-    Name,
-    Physical,
     Place,
-    Quoted,
     Source,
     Spelling,
     Step,
+    UnprintableError,
+    characters,
+    hex_of,
+    literal,
+    named,
     number,
+    physical,
+    quoted,
 )
 from protogen.native.printer import PrintedRows, Printer, build_printer  # noqa: E402
 from protogen.runtime.assembly import encode_frame  # noqa: E402
@@ -61,7 +61,7 @@ def printed(values: Any, *steps: Step, line: bytes = b"") -> list[str]:
     rows = np.zeros(len(values), [("offset", "u8"), ("value", values.dtype, values.shape[1:])])
     rows["offset"] = np.arange(len(values))
     rows["value"] = values
-    built = build_printer("test", [[*steps, Literal("\0")]], quoted_characters())
+    built = build_printer("test", [[*steps, literal("\0")]], quoted_characters())
     texts = Printer(built).texts([PrintedRows(0, rows)], line)
     return b"".join(texts).decode().split("\0")[:-1]
 
@@ -130,7 +130,7 @@ class TestPhysicalValues:
         values = [least, most, 0, 1, 3, 77, most // 3]
         values += [dice.randint(least, most) >> dice.randrange(64) for _ in range(500)]
         raw = np.array([value for value in values if least <= value <= most], code)
-        found = printed(raw, Physical(place_of(raw), scale, offset, [3, 77], "", IN_CELLS))
+        found = printed(raw, physical(place_of(raw), scale, offset, [3, 77], "", IN_CELLS))
         due = [float(it * scale + offset) for it in raw.tolist()]
         missing = [it in (3, 77) for it in raw.tolist()]
         pairs = zip(due, missing, strict=True)
@@ -141,25 +141,24 @@ class TestPhysicalValues:
         dice = Random(code)
         scale, offset = Fraction(1, 3), Fraction(1, 7)
         raw = np.array([0.0, 1e30, 3.0, *(dice.uniform(-9, 9) for _ in range(500))], code)
-        found = printed(raw, Physical(place_of(raw), scale, offset, [3], "none", IN_CELLS))
+        found = printed(raw, physical(place_of(raw), scale, offset, [3], "none", IN_CELLS))
         due = ["none" if it == 3 else repr(it * scale + offset) for it in raw.tolist()]
         assert found == due
 
     def test_are_left_to_python_where_c_has_no_such_numbers(self) -> None:
-        step = Physical(Place(0, "u8", 8), Fraction(1 << 64, 3), Fraction(0), [], "", IN_CELLS)
         with pytest.raises(UnprintableError):
-            source_of([[step]], [])
+            physical(Place(0, "u8", 8), Fraction(1 << 64, 3), Fraction(0), [], "", IN_CELLS)
 
 
 class TestTexts:
     def test_are_as_long_as_they_are(self) -> None:
         values = np.array([b"ab", b"", b"a\1b", b"\xe9"], "S4")
-        step = Characters(Place(0, "u1", 8), 4, None, Spelling.PLAIN)
+        step = characters(Place(0, "u1", 8), 4, None, Spelling.PLAIN)
         assert printed(values, step) == ["ab", "", "a\1b", "é"]
 
     def test_hold_and_end_with_nul_where_they_have_a_length(self) -> None:
         values = np.array([b"ab", b"", b"a\0b"], "S4")
-        step = Characters(Place(0, "u1", 8), 4, 3, Spelling.JSON)
+        step = characters(Place(0, "u1", 8), 4, 3, Spelling.JSON)
         assert printed(values, step) == ["ab\\u0000", 3 * "\\u0000", "a\\u0000b"]
 
     @pytest.mark.parametrize("spelling", [Spelling.JSON, Spelling.JSON_ASCII])
@@ -167,24 +166,24 @@ class TestTexts:
         values = np.arange(256, dtype="u1").reshape(256, 1)
         is_ascii = spelling is Spelling.JSON_ASCII
         due = [json.dumps(chr(code), ensure_ascii=is_ascii)[1:-1] for code in range(256)]
-        assert printed(values, Characters(Place(0, "u1", 8), 1, 1, spelling)) == due
+        assert printed(values, characters(Place(0, "u1", 8), 1, 1, spelling)) == due
 
     def test_may_be_longer_than_the_room(self) -> None:
         line = bytes(range(256)) * 8000
         spans = np.array([[0, 2], [1, len(line) - 1]], "u8")
-        step = HexOf(Source.LINE, Place(0, "u8", 8), Place(0, "u8", 16))
+        step = hex_of(Source.LINE, Place(0, "u8", 8), Place(0, "u8", 16))
         assert "".join(printed(spans, step, line=line)) == "0001" + line[1:].hex()
 
     def test_are_chosen_by_number(self) -> None:
         values = np.array([1, -1, 0, 2, -3], "i2")
-        assert printed(values, Name(place_of(values), {0: "a", 1: "b?", -3: "c"})) == [
+        assert printed(values, named(place_of(values), {0: "a", 1: "b?", -3: "c"})) == [
             "b?", "", "a", "", "c",
         ]  # fmt: skip
 
     def test_are_in_quotes_where_csv_puts_them(self) -> None:
         texts = ['"', "a,b", "", "\r", "\n", " x ", "é", 'say ""', "'", "a;b"]
         values = np.array([text.encode("latin-1") for text in texts], "S8")
-        found = printed(values, Quoted([Characters(Place(0, "u1", 8), 8, None, Spelling.PLAIN)]))
+        found = printed(values, quoted([characters(Place(0, "u1", 8), 8, None, Spelling.PLAIN)]))
         assert found == [csv_cell(text) for text in texts]
 
 

@@ -52,7 +52,7 @@ def build(
 def _build_printers(name: str, tables: Tables) -> None:
     """Compile what prints rows as text."""
     from protogen.convert.writers.printer_library import built_printer
-    from protogen.native.print_source import UnprintableError
+    from protogen.native.print_steps import UnprintableError
 
     for format in (OutputFormat.JSONL, OutputFormat.CSV):
         with suppress(UnprintableError):

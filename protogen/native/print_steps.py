@@ -1,21 +1,34 @@
-"""Steps that print a row as text. `print_source.py` makes C of them."""
+"""Steps that print a row as text: each is the C that does so.
+
+In C, `out` is where the text goes on, `end` where the room for it ends, and `at_N` the record
+inside of N lists that is printed; `at_0` is the row. `templates/printer.c` has what they call.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from itertools import groupby
+from math import lcm
 from typing import NamedTuple
 
-import msgspec
-
-MAX_INTEGER = 20
+_MAX_INTEGER = 20
 """Characters of an integer of 64 bits with its sign."""
-MAX_FLOAT = 40
+_MAX_FLOAT = 40
 """Characters of a float."""
+_EXACT = 1 << 53
+"""Whole numbers up to here are floats without loss."""
+_LONG = 1 << 63
 
 
-class Place(msgspec.Struct, frozen=True):
+class UnprintableError(Exception):
+    """A step has no C, because its numbers are too great."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
     """Location of a number, or of the first byte of something, in a row."""
 
     depth: int
@@ -24,6 +37,26 @@ class Place(msgspec.Struct, frozen=True):
     """Its type, as NumPy calls it."""
     offset: int
     """Bytes from the start of the record."""
+
+    @property
+    def pointer(self) -> str:
+        """C that points there."""
+        return f"at_{self.depth} + {self.offset}" if self.offset else f"at_{self.depth}"
+
+    @property
+    def value(self) -> str:
+        """C of the number: `int64_t` or, without a sign, `uint64_t`; of a float, a double."""
+        return f"{'u1' if self.code == '?' else self.code}_at({self.pointer})"
+
+    @property
+    def is_signed(self) -> bool:
+        """True if it is an integer that may be negative."""
+        return self.code.startswith("i")
+
+    @property
+    def is_float(self) -> bool:
+        """True if it is a float."""
+        return self.code.startswith("f")
 
 
 Count = Place | int
@@ -53,103 +86,13 @@ class Spelling(Enum):
     PLAIN = "put_plain"
 
 
-class Literal(msgspec.Struct, frozen=True):
-    """A fixed text."""
-
-    text: str
-
-
-class Int(msgspec.Struct, frozen=True):
-    """An integer; `from_start`: with the offset of the capture's first byte added."""
-
-    place: Place
-    from_start: bool = False
-
-
-class Bool(msgspec.Struct, frozen=True):
-    """A bool: `true` or `false`."""
-
-    place: Place
-
-
-class Float(msgspec.Struct, frozen=True):
-    """The shortest decimal that is read as the same float."""
-
-    place: Place
-    others: Others
-
-
-class Physical(msgspec.Struct, frozen=True):
-    """The physical value of a raw one, raw x scale + offset, rounded once."""
-
-    place: Place
-    scale: Fraction
-    offset: Fraction
-    special: Sequence[int]
-    """Raw values that have none."""
-    missing: str
-    """Text for those."""
-    others: Others
-
-
-class Name(msgspec.Struct, frozen=True):
-    """The text of a number; nothing for a number that has none."""
-
-    place: Place
-    texts: Mapping[int, str]
-
-
-class Characters(msgspec.Struct, frozen=True):
-    """Text that lies in the row, padded with NUL.
-
-    `count`: its characters; None: up to the last one that is not NUL.
-    """
-
-    place: Place
-    room: int
-    count: Count | None
-    spelling: Spelling
-
-
-class Hex(msgspec.Struct, frozen=True):
-    """Two digits for each of some bytes that lie in the row."""
-
-    place: Place
-    count: Count
-
-
 class Source(Enum):
-    """Bytes that lie outside of rows."""
+    """Bytes that lie outside of rows, behind the offset of the first one in C."""
 
-    LINE = "job->line"
+    LINE = "job->line + ({} - job->base)"
     """The bytes of the capture."""
-    PAYLOADS = "rows->payloads"
+    PAYLOADS = "rows->payloads + ({})"
     """The payloads of unknown frames."""
-
-
-class HexOf(msgspec.Struct, frozen=True):
-    """Two digits for each of some bytes that lie elsewhere."""
-
-    source: Source
-    start: Place
-    size: Place
-
-
-class Repeat(msgspec.Struct, frozen=True):
-    """Steps for each element of a list, with commas between the elements."""
-
-    first: Place
-    stride: int
-    count: Count
-    body: Steps
-
-
-class Choose(msgspec.Struct, frozen=True):
-    """The steps of the case whose value a number has, else those of `rest`."""
-
-    place: Place
-    cases: Sequence[tuple[int, Steps]]
-    rest: Steps
 
 
 class Condition(Enum):
@@ -161,47 +104,245 @@ class Condition(Enum):
     """The time of the row is known."""
 
 
-class When(msgspec.Struct, frozen=True):
-    """Steps that are taken where a condition holds."""
+@dataclass(frozen=True, slots=True)
+class Step:
+    """C that prints something."""
 
-    condition: Condition
-    body: Steps
-
-
-class Time(msgspec.Struct, frozen=True):
-    """The time of the row."""
-
-
-class Quoted(msgspec.Struct, frozen=True):
-    """One value of CSV, in quotes where it needs them."""
-
-    body: Steps
+    lines: Sequence[str]
+    size: int | None = None
+    """The most characters that it prints; None: it looks itself whether there is room."""
+    text: str | None = None
+    """The text, if it is always the same."""
 
 
-Bounded = Literal | Int | Bool | Float | Physical | Name | Time
-"""Steps that print at most so many characters."""
-Unbounded = Characters | Hex | HexOf | Repeat | Choose | When | Quoted
-Step = Bounded | Unbounded
 Steps = Sequence[Step]
 
 
+def block(steps: Iterable[Step]) -> Iterator[str]:
+    """C of steps, with a test for room in front of each run of those whose size is known."""
+    for _, run in groupby(_joined(steps), lambda step: step.size is None):
+        each = list(run)
+        size = sum(step.size or 0 for step in each)
+        if size:
+            yield f"NEED({size});"
+        for step in each:
+            yield from step.lines
+
+
+def _joined(steps: Iterable[Step]) -> Iterator[Step]:
+    """Steps with one text where several follow each other, and none that is empty."""
+    for is_text, run in groupby(steps, lambda step: step.text is not None):
+        if not is_text:
+            yield from run
+        elif text := "".join(step.text or "" for step in run):
+            yield literal(text)
+
+
+def indented(lines: Iterable[str]) -> Iterator[str]:
+    """Lines inside of a block."""
+    return (f"    {line}" for line in lines)
+
+
+# --- texts ----------------------------------------------------------------------------------------
+
+
+def literal(text: str) -> Step:
+    """Print a fixed text."""
+    return Step([_put(text)], len(text.encode()), text)
+
+
+def named(place: Place, texts: Mapping[int, str]) -> Step:
+    """Print the text of a number; nothing for a number that has none."""
+    cases = [(value, [_put(text)]) for value, text in texts.items()]
+    size = max((len(text.encode()) for text in texts.values()), default=0)
+    return Step([*_switch(place, cases, [])], size)
+
+
+def characters(place: Place, room: int, count: Count | None, spelling: Spelling) -> Step:
+    """Print text that lies in the row, padded with NUL up to `room`.
+
+    `count`: its characters; None: up to the last one that is not NUL.
+    """
+    stored = f"text_size({place.pointer}, {room})"
+    size = stored if count is None else f"(int64_t){_count(count)}"
+    return _fallible(f"{spelling.value}(out, end, {place.pointer}, {stored}, {size})")
+
+
+def hex_digits(place: Place, count: Count) -> Step:
+    """Print two digits for each of some bytes that lie in the row."""
+    return _fallible(f"put_hex(out, end, {place.pointer}, (uint64_t){_count(count)})")
+
+
+def hex_of(source: Source, start: Place, size: Place) -> Step:
+    """Print two digits for each of some bytes that lie elsewhere."""
+    return _fallible(f"put_hex(out, end, {source.value.format(start.value)}, {size.value})")
+
+
+def quoted(body: Iterable[Step]) -> Step:
+    """Print one value of CSV, in quotes where it needs them."""
+    return Step(
+        [
+            "{",
+            "    uint8_t *const mark = out;",
+            *indented(block(body)),
+            "    OR_FAIL(put_quotes(mark, out, end));",
+            "}",
+        ]
+    )
+
+
+def _put(text: str) -> str:
+    return f"PUT({_string(text)});"
+
+
+def _string(text: str) -> str:
+    """A string of C."""
+    return '"' + "".join(map(_character, text.encode())) + '"'
+
+
+def _character(byte: int) -> str:
+    # Question marks could make trigraphs.
+    is_plain = 0x20 <= byte < 0x7F and chr(byte) not in '"\\?'
+    return chr(byte) if is_plain else f"\\{byte:03o}"
+
+
+def _fallible(put: str, size: int | None = None) -> Step:
+    return Step([f"OR_FAIL({put});"], size)
+
+
+# --- what counts and chooses ----------------------------------------------------------------------
+
+
+def repeat(first: Place, stride: int, count: Count, body: Iterable[Step]) -> Step:
+    """Print each element of a list, with commas between the elements."""
+    depth = first.depth + 1
+    at, left = f"at_{depth}", f"left_{depth}"
+    return Step(
+        [
+            "{",
+            f"    const uint8_t *{at} = {first.pointer};",
+            f"    int64_t {left} = (int64_t){_count(count)};",
+            f"    for (; {left} > 0; {left}--, {at} += {stride}) {{",
+            *indented(indented(block(body))),
+            f"        if ({left} > 1) {{",
+            f"            NEED({len(', ')});",
+            '            PUT(", ");',
+            "        }",
+            "    }",
+            "}",
+        ]
+    )
+
+
+def choose(place: Place, cases: Mapping[int, Iterable[Step]], rest: Iterable[Step]) -> Step:
+    """Take the steps of the case whose value a number has, else those of `rest`."""
+    blocks = [(value, list(block(body))) for value, body in cases.items()]
+    return Step([*_switch(place, blocks, block(rest))])
+
+
+def when(condition: Condition, body: Iterable[Step]) -> Step:
+    """Take steps where a condition holds."""
+    return Step([*_either(condition.value, block(body))])
+
+
+def _either(condition: str, body: Iterable[str], other: Iterable[str] = ()) -> Iterator[str]:
+    yield f"if ({condition}) {{"
+    yield from indented(body)
+    if other:
+        yield "} else {"
+        yield from indented(other)
+    yield "}"
+
+
+def _switch(
+    place: Place, cases: Iterable[tuple[int, Sequence[str]]], rest: Iterable[str]
+) -> Iterator[str]:
+    yield f"switch ({place.value}) {{"
+    for value, lines in cases:
+        yield f"case {_constant(value, place)}:"
+        yield from indented([*lines, "break;"])
+    yield "default:"
+    yield from indented([*rest, "break;"])
+    yield "}"
+
+
+def _count(count: Count) -> str:
+    return count.value if isinstance(count, Place) else str(count)
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+TIME = Step(["out = put_integer(out, rows->times[rows->next]);"], _MAX_INTEGER)
+"""Prints the time of the row."""
+
+
 def number(place: Place, others: Others) -> Step:
-    """The step that prints a number of any type."""
+    """Print a number of any type: a float as the shortest decimal that is read as the same one."""
     if place.code == "?":
-        return Bool(place)
-    return Float(place, others) if place.code.startswith("f") else Int(place)
+        lines = _either(place.value, [_put("true")], [_put("false")])
+        return Step([*lines], len("false"))
+    if not place.is_float:
+        put = "put_integer" if place.is_signed else "put_natural"
+        return Step([f"out = {put}(out, {place.value});"], _MAX_INTEGER)
+    odd = [f"is_odd |= is_odd_{place.code}({place.pointer});"] if others == IN_LINES else []
+    return Step([*odd, *_put_float(place.value, others).lines], _MAX_FLOAT)
 
 
-def max_size(step: Bounded) -> int:
-    """The most characters that a step prints."""
-    match step:
-        case Literal(text=text):
-            return len(text.encode())
-        case Int() | Time():
-            return MAX_INTEGER
-        case Bool():
-            return len("false")
-        case Float() | Physical():
-            return MAX_FLOAT
-        case Name(texts=texts):
-            return max((len(text.encode()) for text in texts.values()), default=0)
+def offset_of(place: Place) -> Step:
+    """Print an offset in the capture, whose first byte need not be the one that was fed first."""
+    return Step([f"out = put_natural(out, {place.value} + job->start);"], _MAX_INTEGER)
+
+
+def physical(
+    place: Place,
+    scale: Fraction,
+    offset: Fraction,
+    special: Iterable[int],
+    missing: str,
+    others: Others,
+) -> Step:
+    """Print the physical value of a raw one, raw x scale + offset, rounded once.
+
+    Raw values that are `special` have none: `missing` is printed. Raises UnprintableError.
+    """
+    if scale == 1 and offset == 0:
+        found = number(place, others).lines
+    else:
+        scaled = _scaled_float if place.is_float else _scaled_integer
+        found = _put_float(scaled(place, scale, offset), others).lines
+    equal = " || ".join(f"{place.value} == {_constant(it, place)}" for it in sorted(special))
+    return Step([*_either(equal, [_put(missing)], found)] if equal else found, _MAX_FLOAT)
+
+
+def _put_float(value: str, others: Others) -> Step:
+    return _fallible(f"put_double(job, out, {value}, {', '.join(map(_string, others))})")
+
+
+def _scaled_float(place: Place, scale: Fraction, offset: Fraction) -> str:
+    return f"scaled_float({place.value}, {float(scale).hex()}, {float(offset).hex()})"
+
+
+def _scaled_integer(place: Place, scale: Fraction, offset: Fraction) -> str:
+    """The quotient of two integers, rounded once."""
+    over = lcm(scale.denominator, offset.denominator)
+    times, plus = int(scale * over), int(offset * over)
+    greatest = 1 << 8 * int(place.code[1:] or 1)
+    if greatest * abs(times) + abs(plus) < _EXACT and over < _EXACT:
+        sum = f"(int64_t){place.value} * {_signed(times)} + {_signed(plus)}"
+        return f"(double)({sum}) / {over}.0"
+    if max(abs(times), abs(plus), over) >= _LONG:
+        raise UnprintableError(Fraction(times, over))
+    return f"scaled_integer({place.value}, {_signed(times)}, {_signed(plus)}, UINT64_C({over}))"
+
+
+def _constant(value: int, place: Place) -> str:
+    """A number of the same type."""
+    if place.is_float:
+        return float(value).hex()
+    return _signed(value) if place.is_signed else f"UINT64_C({value})"
+
+
+def _signed(value: int) -> str:
+    # C has no negative constants: the least number has no positive counterpart.
+    return f"(-INT64_C({-value - 1}) - 1)" if value < 0 else f"INT64_C({value})"

@@ -75,7 +75,7 @@ def _printer(tables: Tables, format: OutputFormat) -> RowPrinter | None:
     from protogen.capture.errors import SlowCaptureWarning
     from protogen.convert.writers.row_printer import RowPrinter
     from protogen.native.errors import NativeError
-    from protogen.native.print_source import UnprintableError
+    from protogen.native.print_steps import UnprintableError
 
     for known, of, printer in _PRINTERS:
         if known is tables and of is format:

@@ -11,19 +11,19 @@ from protogen.convert.writers.value_steps import Spot, ValueSteps
 from protogen.model.types import Array, Octets, Type
 from protogen.native.print_steps import (
     IN_LINES,
+    TIME,
     Condition,
-    HexOf,
-    Int,
-    Literal,
-    Name,
     Place,
     Source,
     Spelling,
     Step,
     Steps,
-    Time,
-    When,
+    hex_of,
+    literal,
+    named,
     number,
+    offset_of,
+    when,
 )
 
 
@@ -39,18 +39,18 @@ def _message(name: str, table: TableSchema, sender: str) -> Iterator[Step]:
     places = places_of(table.columns)
     yield from _start(places, {"event": "message", "message": name, "sender": sender})
     yield from _parts(places)
-    yield Literal(', "fields": ')
+    yield literal(', "fields": ')
     yield from _LineValues().members(table.message.fields, table.columns, Spot.row())
-    yield When(Condition.DIFFERS, list(_raw(places)))
+    yield when(Condition.DIFFERS, list(_raw(places)))
     yield from _end()
 
 
 def _invalid(table: TableSchema, sender: str) -> Iterator[Step]:
     places = places_of(table.columns)
     yield from _start(places, {"event": "invalid", "sender": sender})
-    yield Literal(', "reason": "')
-    yield Name(places["reason"], {it.value: it.word for it in InvalidReason})
-    yield Literal('"')
+    yield literal(', "reason": "')
+    yield named(places["reason"], {it.value: it.word for it in InvalidReason})
+    yield literal('"')
     yield from _raw(places)
     yield from _end()
 
@@ -59,10 +59,10 @@ def _unknown(table: TableSchema, sender: str) -> Iterator[Step]:
     places = places_of(table.columns)
     yield from _start(places, {"event": "unknown", "sender": sender})
     yield from _parts(places)
-    yield Literal(', "payload": "')
-    yield HexOf(Source.PAYLOADS, places["payload_offset"], places["payload_size"])
-    yield Literal('"')
-    yield When(Condition.DIFFERS, list(_raw(places)))
+    yield literal(', "payload": "')
+    yield hex_of(Source.PAYLOADS, places["payload_offset"], places["payload_size"])
+    yield literal('"')
+    yield when(Condition.DIFFERS, list(_raw(places)))
     yield from _end()
 
 
@@ -78,32 +78,32 @@ def places_of(columns: Sequence[Column]) -> dict[str, Place]:
 
 
 def _start(places: Mapping[str, Place], words: Mapping[str, str]) -> Iterator[Step]:
-    yield Literal('{"offset": ')
-    yield Int(places["offset"], from_start=True)
-    yield Literal(', "size": ')
-    yield Int(places["size"])
+    yield literal('{"offset": ')
+    yield offset_of(places["offset"])
+    yield literal(', "size": ')
+    yield number(places["size"], IN_LINES)
     for name, value in words.items():
-        yield Literal(f', "{name}": {json.dumps(value, ensure_ascii=False)}')
+        yield literal(f', "{name}": {json.dumps(value, ensure_ascii=False)}')
 
 
 def _parts(places: Mapping[str, Place]) -> Iterator[Step]:
-    yield Literal(', "parts": {')
+    yield literal(', "parts": {')
     parts = [(name, place) for name, place in places.items() if name.startswith("@")]
     for order, (name, place) in enumerate(parts):
-        yield Literal(f"{', ' if order else ''}{json.dumps(name[1:])}: ")
+        yield literal(f"{', ' if order else ''}{json.dumps(name[1:])}: ")
         yield number(place, IN_LINES)
-    yield Literal("}")
+    yield literal("}")
 
 
 def _raw(places: Mapping[str, Place]) -> Iterator[Step]:
-    yield Literal(', "raw": "')
-    yield HexOf(Source.LINE, places["offset"], places["size"])
-    yield Literal('"')
+    yield literal(', "raw": "')
+    yield hex_of(Source.LINE, places["offset"], places["size"])
+    yield literal('"')
 
 
 def _end() -> Iterator[Step]:
-    yield When(Condition.TIMED, [Literal(', "t_ns": '), Time()])
-    yield Literal("}\n")
+    yield when(Condition.TIMED, [literal(', "t_ns": '), TIME])
+    yield literal("}\n")
 
 
 class _LineValues(ValueSteps):

@@ -8,15 +8,21 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from math import prod
 from typing import Any
 
-import msgspec
-
-from protogen.capture.schema import Choice, Column, Dimension, Number, Record
+from protogen.capture.schema import Column, Dimension, Number, Record
 from protogen.capture.schema import Text as TextShape
 from protogen.convert.columns.event_values import constant_of
+from protogen.convert.columns.held_columns import (
+    cases_of,
+    dimensions_of,
+    held,
+    members_of,
+    rest_of,
+)
 from protogen.model.types import (
     Array,
     Case,
@@ -31,24 +37,25 @@ from protogen.model.types import (
     Type,
 )
 from protogen.native.print_steps import (
-    Characters,
-    Choose,
     Count,
-    Hex,
-    Literal,
     Others,
     Place,
-    Repeat,
     Spelling,
     Step,
+    characters,
+    choose,
+    hex_digits,
+    literal,
     number,
+    repeat,
 )
 
 Scope = ChainMap[str, Count]
 """The numbers in front, which count and choose: their places, or constant ones themselves."""
 
 
-class Spot(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class Spot:
     """A value in a record: how many lists are around, bytes from where the record begins."""
 
     depth: int
@@ -60,36 +67,29 @@ class Spot(msgspec.Struct, frozen=True):
         """The start of a row."""
         return cls(0, 0, ChainMap())
 
-    def place(self, code: str = "u1") -> Place:
-        """The number, or the first byte, that lies here."""
-        return Place(self.depth, code, self.offset)
+    def place(self, column: Column | None = None) -> Place:
+        """The number of a column that lies here; without one, the first byte of something."""
+        shape = column and column.shape
+        return Place(self.depth, shape.code if isinstance(shape, Number) else "u1", self.offset)
 
-    def moved(self, offset: int) -> Spot:
-        """A spot so many bytes behind."""
-        return Spot(self.depth, self.offset + offset, self.scope)
+    def moved(self, column: Column) -> Spot:
+        """The spot of a column of the record that begins here."""
+        return Spot(self.depth, self.offset + column.position, self.scope)
 
-    def inside(self, columns: Iterable[Column] = ()) -> Spot:
-        """The same spot as that of a record with these columns, whose numbers are known there."""
-        counts = {
-            item.name: Place(self.depth, item.shape.code, self.offset + item.position)
-            for item in columns
-            if item.role == "count" and isinstance(item.shape, Number)
-        }
-        return Spot(self.depth, self.offset, self.scope.new_child(dict[str, Count](counts)))
-
-    def note(self, item: Field, column: Column | None) -> None:
-        """Let what stands behind a number find it."""
-        if column is None:
-            if isinstance(item.const, int):
-                self.scope[item.name] = item.const
-        elif isinstance(column.shape, Number) and not column.dimensions:
-            place = self.moved(column.position).place(column.shape.code)
-            self.scope[item.name] = self.scope[column.name] = place
-
-
-def fields_of(columns: Iterable[Column]) -> dict[str, Column]:
-    """The columns of fields by the fields' names."""
-    return {item.source: item for item in columns if item.role == "field"}
+    def fields(
+        self, fields: Sequence[Field], columns: Sequence[Column]
+    ) -> Iterator[tuple[Field, Column | None, Spot]]:
+        """The fields of the record that begins here, which know the numbers in front of them."""
+        counts = (item for item in columns if item.role == "count")
+        scope = self.scope.new_child({item.name: self.moved(item).place(item) for item in counts})
+        inner = Spot(self.depth, self.offset, scope)
+        for item, column in held(fields, columns):
+            here = inner if column is None else inner.moved(column)
+            yield item, column, here
+            if column is None and isinstance(item.const, int):
+                scope[item.name] = item.const
+            elif column is not None and isinstance(column.shape, Number) and not column.dimensions:
+                scope[item.name] = here.place(column)
 
 
 class ValueSteps(ABC):
@@ -114,167 +114,122 @@ class ValueSteps(ABC):
     def nothing(self) -> str:
         """The value of a case without fields."""
 
-    # --- records ----------------------------------------------------------------------------------
-
     def members(
         self, fields: Sequence[Field], columns: Sequence[Column], at: Spot
     ) -> Iterator[Step]:
         """The members of a record, in braces."""
-        known, inner = fields_of(columns), at.inside(columns)
-        yield Literal("{")
-        for place, item in enumerate(fields):
-            yield Literal(f"{', ' if place else ''}{self.name(item.name)}: ")
-            column = known.get(item.name)
-            if column is None:
-                yield from self.constant_steps(item, item.type, inner)
-                inner.note(item, None)
-            else:
-                inner.note(item, column)
-                here = inner.moved(column.position)
-                yield from self.value(item, item.type, column, column.dimensions, here)
-        yield Literal("}")
+        yield literal("{")
+        for place, (item, column, here) in enumerate(at.fields(fields, columns)):
+            yield literal(f"{', ' if place else ''}{self.name(item.name)}: ")
+            yield from self.value(item, item.type, column, dimensions_of(column), here)
+        yield literal("}")
 
-    def constant_steps(self, item: Field, type: Type, at: Spot) -> Iterator[Step]:
-        """A value that is in no row, because it is constant or holds nothing."""
-        if item.const is not None:
-            yield Literal(self.constant(type, constant_of(item, type)))
+    def value(
+        self, item: Field, type: Type, column: Column | None, left: Sequence[Dimension], at: Spot
+    ) -> Iterator[Step]:
+        """A value, or the arrays in it, of which these dimensions are left."""
+        if column is None and item.const is not None:
+            yield literal(self.constant(type, constant_of(item, type)))
             return
         match type:
             case Struct(fields=fields):
-                yield from self.members(fields, (), at)
-            case Array(element=Struct() | Switch() | Array() as element, extent=extent):
-                count = constant_count(extent, at)
-                yield from self._list(
-                    at, 0, count, lambda spot: self.constant_steps(item, element, spot)
-                )
-            case Switch(cases=cases, selector=selector):
-                bodies = {it.value: self._case(item, it, None, at) for it in cases}
-                yield from chosen(at.scope[selector], bodies, [])
+                yield from self.members(fields, members_of(column), at)
+            case Switch():
+                yield from self._choice(item, type, column, at)
+            case Array(element=Struct() | Switch() | Array()):
+                yield from self._array(item, type, column, left, at)
+            case _ if column is None:
+                yield literal("[]")  # Nothing else holds nothing.
+            case Array():
+                yield from self._array(item, type, column, left, at)
+            case Text():
+                yield from _in_quotes(text_of(type, column, left[0], at, self.spelling))
+            case Octets(extent=extent):
+                yield from _in_quotes(hex_digits(at.place(), count_of(extent, left, at)))
             case _:
-                yield Literal("[]")
+                yield number(at.place(column), self.others)
 
-    # --- values -----------------------------------------------------------------------------------
-
-    def value(
-        self, item: Field, type: Type, column: Column, left: Sequence[Dimension], at: Spot
+    def _array(
+        self, item: Field, type: Array, column: Column | None, left: Sequence[Dimension], at: Spot
     ) -> Iterator[Step]:
-        """A value, or the arrays in it, of which these dimensions are left."""
-        if isinstance(type, Text):
-            yield Literal('"')
-            yield characters(type, column, left[0], at, self.spelling)
-            yield Literal('"')
-        elif isinstance(type, Octets):
-            yield Literal('"')
-            yield Hex(at.place(), count_of(left[0], type.extent, at))
-            yield Literal('"')
-        elif left and isinstance(type, Array):
-            element = type.element
-            yield from self.array(
-                type,
-                column,
-                left,
-                at,
-                lambda spot: self.value(item, element, column, left[1:], spot),
-            )
-        elif isinstance(column.shape, Record):
-            assert isinstance(type, Struct)
-            yield from self.members(type.fields, column.shape.columns, at)
-        elif isinstance(column.shape, Choice):
-            assert isinstance(type, Switch)
-            yield from self._choice(item, type, column.shape, at)
-        else:
-            assert isinstance(column.shape, Number)
-            yield number(at.place(column.shape.code), self.others)
+        return self.array(
+            type,
+            column,
+            left,
+            at,
+            lambda spot: self.value(item, type.element, column, left[1:], spot),
+        )
 
     def array(
         self,
         type: Array,
-        column: Column,
+        column: Column | None,
         left: Sequence[Dimension],
         at: Spot,
         body: Callable[[Spot], Iterator[Step]],
     ) -> Iterator[Step]:
         """A list of what `body` prints, in brackets."""
-        sizes = [it.capacity for it in left[1:]]
-        is_text = isinstance(column.shape, TextShape)
-        stride = column.shape.size * prod(sizes[:-1] if is_text else sizes)
-        yield from self._list(at, stride, count_of(left[0], type.extent, at), body)
+        stride = 0
+        if column is not None:
+            sizes = [it.capacity for it in left[1:]]
+            is_text = isinstance(column.shape, TextShape)
+            stride = column.shape.size * prod(sizes[:-1] if is_text else sizes)
+        element = Spot(at.depth + 1, 0, at.scope)
+        yield literal("[")
+        yield repeat(at.place(), stride, count_of(type.extent, left, at), body(element))
+        yield literal("]")
 
-    def _list(
-        self, at: Spot, stride: int, count: Count, body: Callable[[Spot], Iterator[Step]]
-    ) -> Iterator[Step]:
-        yield Literal("[")
-        yield Repeat(at.place(), stride, count, list(body(Spot(at.depth + 1, 0, at.scope))))
-        yield Literal("]")
-
-    def _choice(self, item: Field, type: Switch, choice: Choice, at: Spot) -> Iterator[Step]:
-        known = dict(choice.cases)
+    def _choice(self, item: Field, type: Switch, column: Column | None, at: Spot) -> Iterator[Step]:
+        known, rest = cases_of(column), rest_of(column)
         bodies = {it.value: self._case(item, it, known.get(it.value), at) for it in type.cases}
-        rest = () if choice.rest is None else self.case("", self._rest(choice, at))
-        yield from chosen(selector_of(choice, at), bodies, rest)
+        other = () if rest is None else self.case("", _in_quotes(rest_digits(rest, at)))
+        yield from chosen(at.scope[type.selector], bodies, other)
 
     def _case(self, item: Field, case: Case, column: Column | None, at: Spot) -> Iterator[Step]:
         if isinstance(case.type, Struct) and not case.type.fields:
-            body: Iterator[Step] = iter([Literal(self.nothing())])
-        elif column is None:
-            body = self.constant_steps(item, case.type, at)
-        else:
-            body = self.value(item, case.type, column, column.dimensions, at)
-        return self.case(case.name, body)
+            return self.case(case.name, iter([literal(self.nothing())]))
+        return self.case(case.name, self.value(item, case.type, column, dimensions_of(column), at))
 
-    def _rest(self, choice: Choice, at: Spot) -> Iterator[Step]:
-        yield Literal('"')
-        yield rest_of(choice, at)
-        yield Literal('"')
+
+def _in_quotes(step: Step) -> Iterator[Step]:
+    yield literal('"')
+    yield step
+    yield literal('"')
 
 
 # --- what counts and chooses ----------------------------------------------------------------------
 
 
-def selector_of(choice: Choice, at: Spot) -> Count:
-    """The number that chooses a case."""
-    selector = choice.selector
-    return selector if isinstance(selector, int) else at.scope[selector]
-
-
 def chosen(
-    selector: Count, bodies: dict[int, Iterator[Step]], rest: Iterable[Step]
+    selector: Count, bodies: Mapping[int, Iterable[Step]], rest: Iterable[Step]
 ) -> Iterator[Step]:
     """The steps of the case that a number chooses."""
     if isinstance(selector, int):
         yield from bodies.get(selector, rest)
     else:
-        yield Choose(selector, [(it, list(body)) for it, body in bodies.items()], list(rest))
+        yield choose(selector, bodies, rest)
 
 
-def count_of(dimension: Dimension, extent: Extent, at: Spot) -> Count:
+def count_of(extent: Extent, left: Sequence[Dimension], at: Spot) -> Count:
     """The elements or bytes that there are."""
-    if dimension.counted_by is not None:
-        return at.scope[dimension.counted_by]
-    return extent.count if isinstance(extent, Fixed) else dimension.capacity
+    match extent:
+        case Fixed(count=count):
+            return count
+        case Counted(field=name):
+            return at.scope[name]
+    counted_by = left[0].counted_by if left else None
+    return 0 if counted_by is None else at.scope[counted_by]
 
 
-def constant_count(extent: Extent, at: Spot) -> Count:
-    """The elements of a list that is in no row."""
-    if isinstance(extent, Counted):
-        return at.scope[extent.field]
-    return extent.count if isinstance(extent, Fixed) else 0
-
-
-def characters(
-    type: Text, column: Column, dimension: Dimension, at: Spot, spelling: Spelling
-) -> Step:
+def text_of(type: Text, column: Column, dimension: Dimension, at: Spot, spelling: Spelling) -> Step:
     """The characters of a text."""
     is_padded = isinstance(type.extent, Fixed)
-    count = None if is_padded else count_of(dimension, type.extent, at)
-    return Characters(at.place(), column.shape.size, count, spelling)
+    count = None if is_padded else count_of(type.extent, [dimension], at)
+    return characters(at.place(), column.shape.size, count, spelling)
 
 
-def rest_of(choice: Choice, at: Spot) -> Step:
+def rest_digits(rest: Column, at: Spot) -> Step:
     """The bytes of a value that no case stands for."""
-    assert choice.rest is not None
-    assert isinstance(choice.rest.shape, Record)
-    size, data = choice.rest.shape.column("size"), choice.rest.shape.column("bytes")
-    assert isinstance(size.shape, Number)
-    count = at.moved(size.position).place(size.shape.code)
-    return Hex(at.moved(data.position).place(), count)
+    assert isinstance(rest.shape, Record)
+    size, data = rest.shape.column("size"), rest.shape.column("bytes")
+    return hex_digits(at.moved(data).place(), at.moved(size).place(size))

@@ -1,0 +1,42 @@
+"""Columns of rows beside the fields whose values they hold.
+
+A field that is constant or holds nothing has no column: it is None here, as is all inside of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from protogen.capture.schema import Choice, Column, Dimension, Record
+from protogen.model.types import Field
+
+
+def held(
+    fields: Iterable[Field], columns: Iterable[Column]
+) -> Iterator[tuple[Field, Column | None]]:
+    """Each field with its column."""
+    known = {item.source: item for item in columns if item.role == "field"}
+    return ((item, known.get(item.name)) for item in fields)
+
+
+def members_of(column: Column | None) -> Sequence[Column]:
+    """The columns inside of a struct's."""
+    shape = column and column.shape
+    return shape.columns if isinstance(shape, Record) else ()
+
+
+def cases_of(column: Column | None) -> dict[int, Column]:
+    """The columns inside of a switch's, by the values that choose them."""
+    shape = column and column.shape
+    return dict(shape.cases) if isinstance(shape, Choice) else {}
+
+
+def rest_of(column: Column | None) -> Column | None:
+    """The column of the bytes of a value that no case stands for."""
+    shape = column and column.shape
+    return shape.rest if isinstance(shape, Choice) else None
+
+
+def dimensions_of(column: Column | None) -> Sequence[Dimension]:
+    """The dimensions of the arrays in a column."""
+    return () if column is None else column.dimensions
