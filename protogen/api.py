@@ -60,6 +60,6 @@ def generate(
 
 def module_of(protocol: Protocol) -> ModuleType:
     """The Python codec of a protocol, imported from memory."""
-    from protogen import live
+    from protogen.live import codec
 
-    return live.module_of(protocol)
+    return codec.module_of(protocol)

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import ModuleType
 
 from protogen.compiler import compile_file
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 
 ROOT = Path(__file__).resolve().parent.parent

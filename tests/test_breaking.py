@@ -22,7 +22,7 @@ from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Gate, findings
 from protogen.evolution.observe import Reading
 from protogen.evolution.rules import BY_NAME, RULES
 from protogen.evolution.witness import Harm, Witness
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 from protogen.runtime.values import as_dict
 

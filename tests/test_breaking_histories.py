@@ -14,7 +14,7 @@ from compiled import protocol_of
 from protogen.compiler import compile_file
 from protogen.evolution.findings import Finding, findings
 from protogen.evolution.witness import Harm, Witness
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 from protogen.runtime.errors import DecodeError
 

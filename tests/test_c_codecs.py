@@ -28,7 +28,7 @@ from tooling import require_tool
 
 from protogen.compiler import compile_file
 from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type

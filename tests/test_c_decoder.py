@@ -27,7 +27,7 @@ from vectors import ExpectedEvent, Stream, Vector, VectorFile
 
 from protogen.copying import replace
 from protogen.fuzzing.c_calls import OK, CEvent, Step
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
 from protogen.targets.c.options import COptions

@@ -31,7 +31,7 @@ from protogen.fuzzing.c_calls import OK, RANGE, VALUE, Calls, Encoded, Sent
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.fuzzing.trips import same
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
 from protogen.targets.c.fuzz_driver.driver import driver_of

@@ -23,7 +23,7 @@ from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.fuzzing.trips import same
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.errors import EncodeError

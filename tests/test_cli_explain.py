@@ -201,7 +201,7 @@ def test_failure_is_reported_with_all_that_it_takes(monkeypatch: pytest.MonkeyPa
     def module(protocol: object) -> object:
         return handwritten_matty
 
-    monkeypatch.setattr("protogen.live.module_of", module)
+    monkeypatch.setattr("protogen.live.codec.module_of", module)
     monkeypatch.setattr(handwritten_matty.Go, "to_dict", wrong)
     result = run("fuzz", MATTY, "--message", "go", "--seed", "7", "--examples", "3")
     assert result.exit_code == 1

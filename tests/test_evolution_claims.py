@@ -10,7 +10,7 @@ from cli_support import run
 from protogen.compiler import compile_file
 from protogen.evolution.findings import Finding, findings
 from protogen.evolution.quantities import meaning_of
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 from protogen.model.types import Field, Integer
 from protogen.runtime.errors import DecodeError

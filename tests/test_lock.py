@@ -13,7 +13,7 @@ from corpus import material_of
 
 from protogen.evolution.findings import findings
 from protogen.evolution.lock import LockError, lock_text, read_lock
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 
 

@@ -29,6 +29,7 @@ from test_recovery import drawn_pieces
 from tooling import require_module, require_tool
 
 import protogen
+from protogen import cache_folder
 from protogen.capture import (
     CaptureError,
     SlowCaptureWarning,
@@ -671,7 +672,7 @@ def test_code_that_others_could_have_put_there_is_not_loaded(folder: Path) -> No
 
 def test_code_of_somebody_else_is_not_loaded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     build()
-    monkeypatch.setattr(cache.os, "geteuid", lambda: 12345)
+    monkeypatch.setattr(cache_folder.os, "geteuid", lambda: 12345)
     with pytest.raises(NativeError, match="belongs to somebody else"):
         build()
 
@@ -693,7 +694,7 @@ def test_each_platform_has_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LOCALAPPDATA", "/local")
     usual = {"linux": "/home/me/.cache", "darwin": "/home/me/Library/Caches", "win32": "/local"}
     for platform, expected in usual.items():
-        monkeypatch.setattr(cache.sys, "platform", platform)
+        monkeypatch.setattr(cache_folder.sys, "platform", platform)
         assert cache.cache_folder() == Path(expected, "protogen", "native")
     cache.check(Path("/no/such/file"))  # Nothing is asked on Windows.
 
@@ -703,7 +704,7 @@ def test_a_user_without_a_home_has_no_cache(monkeypatch: pytest.MonkeyPatch) -> 
         raise RuntimeError
 
     monkeypatch.delenv("XDG_CACHE_HOME")
-    monkeypatch.setattr(cache.Path, "home", home)
+    monkeypatch.setattr(cache_folder.Path, "home", home)
     with pytest.raises(NativeError, match="no home folder"):
         cache.cache_folder()
 
@@ -751,7 +752,7 @@ def test_the_command_says_why_it_can_not(folder: Path, monkeypatch: pytest.Monke
         raise RuntimeError
 
     monkeypatch.delenv("XDG_CACHE_HOME")
-    monkeypatch.setattr(cache.Path, "home", home)
+    monkeypatch.setattr(cache_folder.Path, "home", home)
     assert "no home folder" in run("native", "path").output
 
 

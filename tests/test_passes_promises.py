@@ -12,7 +12,7 @@ import pytest
 from passes_support import HEAD, SCHEMAS, protocol_of, repository_protocol
 
 from protogen.fuzzing.samples import samples
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.errors import EncodeError

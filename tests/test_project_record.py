@@ -11,6 +11,7 @@ import pytest
 from cli_support import SINK, run, start
 
 import protogen.compiler
+from protogen import program
 from protogen.project import record
 
 END = "<!-- /protogen -->"
@@ -135,20 +136,20 @@ def test_the_user_may_go_on_with_stubs(folder: Path, compiled: list[str]) -> Non
 def test_another_program(
     folder: Path, compiled: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(record, "VERSION", "9.9.9")
+    monkeypatch.setattr(program, "VERSION", "9.9.9")
     run("generate", "--check")
     assert compiled == ["dialect.yaml"]
 
 
 def test_a_changed_file_of_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a.py").write_text("1")
-    monkeypatch.setattr(record, "_PACKAGE", tmp_path)
-    before = record.program()
-    assert record.program() == before
+    monkeypatch.setattr(program, "_PACKAGE", tmp_path)
+    before = program.program()
+    assert program.program() == before
     (tmp_path / "a.py").write_text("2")
-    changed = record.program()
+    changed = program.program()
     (tmp_path / "b.j2").write_text("")
-    assert len({before, changed, record.program()}) == 3
+    assert len({before, changed, program.program()}) == 3
 
 
 def test_options_do_not_forget_each_other(folder: Path, compiled: list[str]) -> None:

@@ -22,7 +22,7 @@ from schema_fuzzing.values import all_parts, parts_of, values_of
 
 from protogen.compiler import Compilation, compile_file
 from protogen.copying import replace
-from protogen.live import module_of
+from protogen.live.codec import module_of
 from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender

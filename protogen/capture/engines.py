@@ -74,7 +74,7 @@ def reading_of(protocol: Model, sender: Sender) -> Reading:
     for model, name, found in _READINGS:
         if model is protocol and name == sender.name:
             return found
-    from protogen.live import module_of
+    from protogen.live.codec import module_of
 
     schema = capture_schema(protocol, sender)
     spec = module_of(protocol).PROTOCOL.sender(sender.name)

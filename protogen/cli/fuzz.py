@@ -42,9 +42,9 @@ def fuzz(
     from random import SystemRandom
 
     from protogen.cli.schemas import find_message
-    from protogen.cli.wire.codec import open_codec
+    from protogen.cli.wire.codec import fresh_codec
 
-    codec = open_codec(schema)
+    codec = fresh_codec(schema)
     if message is not None:
         find_message(codec.protocol, message)
     run = Run(examples, SystemRandom().randrange(_GREATEST_SEED) if seed is None else seed, message)

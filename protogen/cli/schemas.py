@@ -36,11 +36,20 @@ def open_protocol(path: Path) -> Protocol:
 
     With an error in the schema, prints its problems and ends the command.
     """
+    return protocol_of(compile_schema(path))
+
+
+def compile_schema(path: Path) -> Compilation:
+    """Compile a schema. Raises UsageError if it is not there."""
     from protogen.compiler import compile_file
 
     if not path.is_file():
         raise UsageError(f"there is no schema `{path}`")
-    compilation = compile_file(path)
+    return compile_file(path)
+
+
+def protocol_of(compilation: Compilation) -> Protocol:
+    """Return what a schema was compiled to. With an error in it, prints and ends the command."""
     if compilation.protocol is None:
         print_problems([compilation])
         raise typer.Exit(FINDINGS)

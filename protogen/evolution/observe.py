@@ -14,7 +14,7 @@ from protogen.evolution.quantities import quantity
 from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
-from protogen.live import kept_module
+from protogen.live.codec import kept_module
 from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.payload_builder import plan_of
 from protogen.model.protocol import Protocol

@@ -48,7 +48,7 @@ def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
         if path is None:
             raise
         return path, False
-    folder = safe_folder(cache_folder())
+    folder = safe_folder()
     paths = [folder / f"{stem}-{_digest(item.identity)[:8]}{SUFFIX}" for item in found]
     path = next((path for path in paths if path.exists()), None)
     is_new = path is None
@@ -71,7 +71,7 @@ def _built_ahead(stem: str) -> Path | None:
     try:
         if not cache_folder().is_dir():
             return None
-        built = safe_folder(cache_folder()).glob(f"{stem}-*{SUFFIX}")
+        built = safe_folder().glob(f"{stem}-*{SUFFIX}")
         path = max(built, key=lambda item: item.stat().st_mtime_ns, default=None)
     except OSError:  # Somebody cleans the cache, or does not let us look there.
         return None

@@ -1,67 +1,42 @@
-"""The user's folder of compiled libraries, which nobody else can put anything into."""
+"""Compiled libraries in the user's folder for caches."""
 
 from __future__ import annotations
 
-import os
-import stat
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from protogen import cache_folder as caches
 from protogen.native.errors import NativeError
 
-_OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
+SUFFIX = ".dll" if sys.platform == "win32" else ".so"
 
 
+@contextmanager
+def _as_native_error() -> Iterator[None]:
+    try:
+        yield
+    except caches.CacheError as error:
+        raise NativeError(str(error)) from None
+
+
+@_as_native_error()
 def cache_folder() -> Path:
-    """Where libraries are kept: `$XDG_CACHE_HOME/protogen/native`, or the platform's like.
-
-    Raises NativeError where the user has no folder for caches.
-    """
-    given = os.environ.get("XDG_CACHE_HOME", "")
-    if given and Path(given).is_absolute():
-        return Path(given, "protogen", "native")
-    try:
-        return _of_platform(Path.home()) / "protogen" / "native"
-    except RuntimeError:
-        raise NativeError("there is no home folder to keep compiled code in") from None
+    """Folder of the libraries. Raises NativeError where the user has no folder for caches."""
+    return caches.cache_folder("native")
 
 
-def _of_platform(home: Path) -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    return home / "Library" / "Caches" if sys.platform == "darwin" else home / ".cache"
+@_as_native_error()
+def safe_folder() -> Path:
+    """The same folder, which is there now. Raises NativeError where others could write into it."""
+    return caches.safe_folder(caches.cache_folder("native"))
 
 
-def safe_folder(folder: Path) -> Path:
-    """Make the folder, unless it is there. Raises NativeError where others could write into it."""
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        real = folder.resolve(strict=True)
-    except OSError as error:
-        raise NativeError(f"{folder}: {error.strerror}") from None
-    check(real)
-    for outer in real.parents:
-        check(outer, is_above=True)
-    return real
-
-
-def check(path: Path, *, is_above: bool = False) -> None:
-    """Raise NativeError unless this user alone decides what stands there.
-
-    What lies above may be the administrator's, and anybody's where only owners can remove things.
-    """
-    if sys.platform == "win32":
-        return  # The folders of a user are the user's there.
-    try:
-        status = path.lstat()
-    except OSError as error:
-        raise NativeError(f"{path}: {error.strerror}") from None
-    owners = (os.geteuid(), 0) if is_above else (os.geteuid(),)
-    if status.st_uid not in owners:
-        raise NativeError(f"{path} belongs to somebody else, and code from there is not loaded")
-    is_sticky = is_above and bool(status.st_mode & stat.S_ISVTX)
-    if status.st_mode & _OTHERS_WRITE and not is_sticky:
-        raise NativeError(f"others can write to {path}, and code from there is not loaded")
+@_as_native_error()
+def check(path: Path) -> None:
+    """Raise NativeError unless this user alone decides what stands there."""
+    caches.check(path)
 
 
 def libraries() -> list[Path]:
@@ -70,11 +45,8 @@ def libraries() -> list[Path]:
     return sorted(folder.glob(f"*{SUFFIX}")) if folder.is_dir() else []
 
 
-SUFFIX = ".dll" if sys.platform == "win32" else ".so"
-
-
 def clean() -> int:
-    """Remove all libraries; how many there were."""
+    """Remove all libraries. Returns how many there were."""
     found = libraries()
     for library in found:
         library.unlink(missing_ok=True)

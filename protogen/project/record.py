@@ -17,25 +17,21 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
-from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 import msgspec
 
 from protogen.problems.sources import SourceMap
+from protogen.program import program
 from protogen.schema.dialects.project_folder import project_folder
 from protogen.targets.output import File, expected_files, is_current
-from protogen.version import VERSION
 
 FOLDER = ".protogen_cache"
 _IGNORE = "# Made by protogen. May be deleted at any time.\n*\n"
-_PACKAGE = Path(__file__).resolve().parent.parent
 _BYTE_ORDER_MARK = "\ufeff".encode()
-_LIBRARIES = ("construct", "jinja2", "pydantic", "yaml")
 
 Job = tuple[Sequence[File], Path, bool]
 """The files of a target, their folder, and whether others of ours in it are stale."""
@@ -65,18 +61,6 @@ class Record(msgspec.Struct, frozen=True):
     """The hash of each schema, of each one that it extends, and of each page with blocks."""
     made: tuple[Made, ...]
     pages: int
-
-
-def program() -> str:
-    """Return a hash of the program: its files as they are now, and what it was built on.
-
-    A version alone would not do: a checkout that is installed as it is changes without one.
-    """
-    parts = [VERSION, sys.version]
-    for root, folders, names in os.walk(_PACKAGE):
-        folders[:] = sorted(name for name in folders if name != "__pycache__")
-        parts += (_file_part(Path(root, name)) for name in sorted(names))
-    return _hash("\n".join([*parts, *map(_library, _LIBRARIES)]))
 
 
 class Keeper(msgspec.Struct, frozen=True):
@@ -161,19 +145,6 @@ class Keeper(msgspec.Struct, frozen=True):
         temporary = self._file.with_suffix(f".{os.getpid()}.tmp")
         temporary.write_text(text, encoding="utf-8")
         temporary.replace(self._file)
-
-
-def _file_part(path: Path) -> str:
-    return f"{path.relative_to(_PACKAGE).as_posix()} {sha256(path.read_bytes()).hexdigest()}"
-
-
-def _library(name: str) -> str:
-    """Return where a library is and since when; it is not imported for that."""
-    spec = find_spec(name)
-    if spec is None or spec.origin is None:
-        return name
-    status = Path(spec.origin).stat()
-    return f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}"
 
 
 def _digest(root: Path, path: str, text: str | None = None) -> str | None:

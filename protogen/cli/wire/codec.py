@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from protogen.cli.exits import UsageError
-from protogen.cli.schemas import find_sender, open_protocol
+from protogen.cli.schemas import compile_schema, find_sender, open_protocol, protocol_of
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -55,8 +55,24 @@ class Codec(msgspec.Struct, frozen=True):
 
 
 def open_codec(schema: Path) -> Codec:
-    """Compile a schema and import its codec. With an error in it, ends the command."""
-    from protogen.live import module_of
+    """Open the codec of a schema, kept or compiled. With an error in it, ends the command."""
+    from protogen.live import cache
+    from protogen.live.modules import import_modules
+
+    compiled = cache.read(schema)
+    if compiled is None:
+        from protogen.live.codec import modules_of
+
+        compilation = compile_schema(schema)
+        protocol = protocol_of(compilation)
+        compiled = cache.Compiled(protocol, modules_of(protocol))
+        cache.keep(schema, compilation.sources, compiled)
+    return Codec(compiled.protocol, import_modules(compiled.modules))
+
+
+def fresh_codec(schema: Path) -> Codec:
+    """Compile a schema and import its codec, to try both. With an error in it, ends the command."""
+    from protogen.live import codec
 
     protocol = open_protocol(schema)
-    return Codec(protocol, module_of(protocol))
+    return Codec(protocol, codec.module_of(protocol))

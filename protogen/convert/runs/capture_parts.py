@@ -124,7 +124,7 @@ def _tools(protocol: Protocol, sender: str) -> tuple[Tables, SenderSpec[Any, Any
 @lru_cache(maxsize=4)
 def _tools_of(pickled: bytes, sender: str) -> tuple[Tables, SenderSpec[Any, Any]]:
     """Each task brings its own copy of a protocol, which has no hash."""
-    from protogen.live import module_of
+    from protogen.live.codec import module_of
 
     protocol: Protocol = pickle.loads(pickled)  # noqa: S301 - what was pickled just now
     tables = tables_of(protocol, protocol.sender(sender))
