@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from protogen.runtime import api as rt
-from protogen.runtime.constructs import PayloadError, prefix_size, whole
+from protogen.runtime.constructs import PayloadError, Whole, prefix_size
 from protogen.runtime.transparency import TransparencyError
 
 NEVER = 10**9
@@ -158,7 +158,7 @@ def read_payload(messages: list[Any], payload: bytes) -> Any:
     fitting = [message for message in messages if len(payload) in message.SIZES]
     if not fitting:
         raise PayloadError("size", "", 0, "no message has this size")
-    whole(fitting[0].FORMAT).parse(payload)
+    Whole(fitting[0].FORMAT).parse(payload)
     return fitting[0].from_payload(payload)
 
 

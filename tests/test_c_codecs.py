@@ -32,7 +32,7 @@ from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
-from protogen.runtime.constructs import PayloadError, whole
+from protogen.runtime.constructs import PayloadError, Whole
 from protogen.runtime.errors import EncodeError
 from protogen.targets.c import options
 from protogen.targets.c.emit import emit
@@ -105,7 +105,7 @@ class Subject:
         if sizes.fixed is not None and len(payload) != sizes.fixed:
             return SIZE, None
         try:
-            whole(self.record.FORMAT).parse(payload)
+            Whole(self.record.FORMAT).parse(payload)
             if len(payload) not in sizes:
                 return SIZE, None
             values = self.record.from_payload(payload).to_dict()

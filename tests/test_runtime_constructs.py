@@ -23,7 +23,7 @@ def build_error(format: Any, value: Any) -> c.PayloadError:
 
 def parse_error(format: Any, wire: str) -> c.PayloadError:
     with pytest.raises(c.PayloadError) as caught:
-        c.whole(format).parse(bytes.fromhex(wire))
+        c.Whole(format).parse(bytes.fromhex(wire))
     return caught.value
 
 
@@ -67,7 +67,7 @@ READING = c.Struct("sonar" / c.Int(8), "range" / c.Int(16, order="big"))
 def test_values_lie_on_the_wire_as_computed_by_hand(format: Any, value: Any, wire: str) -> None:
     data = bytes.fromhex(wire)
     assert format.build(value) == data
-    parsed = c.whole(format).parse(data)
+    parsed = c.Whole(format).parse(data)
     if isinstance(value, dict):
         parsed = {name: parsed[name] for name in value}
     assert parsed == value
@@ -187,7 +187,7 @@ def test_a_case_is_chosen_by_the_field_in_front() -> None:
     assert CHOICE.build({"kind": 0, "value": None}) == b"\0"
     assert CHOICE.build({"kind": 1, "value": 2}) == b"\1\2\0"
     assert CHOICE.build({"kind": 9, "value": b"abc"}) == b"\x09abc"
-    assert c.whole(CHOICE).parse(b"\0")["value"] is None
+    assert c.Whole(CHOICE).parse(b"\0")["value"] is None
     assert CHOICE.parse(b"\x09ab")["value"] == b"ab"
     assert parse_error(CHOICE, "00 00").reason == "size"
 
@@ -216,7 +216,7 @@ def test_a_constant_needs_no_value() -> None:
         (c.Float(64), 8),
         (c.Fixed(c.Int(8), 1), 1),
         (c.Cases("x", {0: c.Int(8), 1: c.Flag01}), 1),
-        (c.whole(POINT), 4),
+        (c.Whole(POINT), 4),
     ],
 )
 def test_fixed_sizes_are_known(format: Any, size: int) -> None:
@@ -292,7 +292,7 @@ def test_what_parses_builds_the_same_bytes(format: Any, data: st.DataObject) -> 
     wire = data.draw(few | st.binary(max_size=9))
     stream = io.BytesIO(wire)
     try:
-        parsed = c.whole(format).parse_stream(stream)
+        parsed = c.Whole(format).parse_stream(stream)
     except c.PayloadError as error:
         assert 0 <= error.offset <= len(wire)
         return

@@ -38,7 +38,7 @@ def test_what_a_format_parses_it_builds_compiled_or_not(path: Path, data: Any) -
     wire = bytes(byte & 0x7F for byte in wire) if data.draw(st.booleans()) else wire
     compiled = message.FORMAT.compile()
     try:
-        parsed = c.whole(message.FORMAT).parse(wire)
+        parsed = c.Whole(message.FORMAT).parse(wire)
     except c.PayloadError as error:
         assert 0 <= error.offset <= len(wire)
         return

@@ -164,12 +164,12 @@ class Message(Record):
     @classmethod
     def parse_payload(cls, payload: bytes) -> Self:
         """The same, but raises construct's kind of error: PayloadError."""
-        from protogen.runtime.constructs import PayloadError, whole  # It takes long to import.
+        from protogen.runtime.constructs import PayloadError, Whole  # It takes long to import.
 
         if len(payload) not in cls.SIZES:
             problem = f"{cls.NAME} has {cls.SIZES} bytes of payload, not {len(payload)}"
             raise PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
-        raw = whole(cls.FORMAT).parse(payload)
+        raw = Whole(cls.FORMAT).parse(payload)
         rule, scope = _rule(cls)
         message: Self = rule.from_wire(raw, scope)
         return message

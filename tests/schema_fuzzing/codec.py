@@ -13,7 +13,7 @@ from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
-from protogen.runtime.constructs import PayloadError, whole
+from protogen.runtime.constructs import PayloadError, Whole
 from schema_fuzzing.reference import frame_bytes, payload_bytes
 from schema_fuzzing.values import all_parts
 
@@ -41,10 +41,10 @@ def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) 
 
 def check_format(format: Any, payload: bytes) -> None:
     """Values that `FORMAT` parses build the same bytes; other bytes are an error with its place."""
-    assert format.build(whole(format).parse(payload)) == payload
+    assert format.build(Whole(format).parse(payload)) == payload
     for wire in (payload[:-1], payload[1:], payload + b"\1"):
         try:
-            parsed = whole(format).parse(wire)
+            parsed = Whole(format).parse(wire)
         except PayloadError as error:
             assert 0 <= error.offset <= len(wire)
         else:

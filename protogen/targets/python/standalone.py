@@ -6,7 +6,8 @@ Each protocol becomes a package: its module, and beside it a copy of the runtime
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from importlib.abc import Traversable
 from importlib.resources import files
 from pathlib import PurePosixPath
 
@@ -42,16 +43,24 @@ def _package(protocol: Protocol) -> tuple[File, ...]:
     )
 
 
-def _runtime() -> list[tuple[str, str]]:
+def _runtime() -> list[tuple[PurePosixPath, str]]:
     """The modules of the runtime, importing each other as neighbours."""
-    modules = sorted(files(RUNTIME).iterdir(), key=lambda item: item.name)
     return [
-        (item.name, _relative(_NOQA.sub("", item.read_text("utf-8"))))
-        for item in modules
-        if item.name.endswith(".py")
+        (path, _relative(_NOQA.sub("", text), path))
+        for path, text in _modules(files(RUNTIME), PurePosixPath())
     ]
 
 
-def _relative(text: str) -> str:
+def _modules(folder: Traversable, path: PurePosixPath) -> Iterator[tuple[PurePosixPath, str]]:
+    """The texts of the modules in a folder and in those inside of it."""
+    for item in sorted(folder.iterdir(), key=lambda item: item.name):
+        if item.is_dir():
+            yield from _modules(item, path / item.name)
+        elif item.name.endswith(".py"):
+            yield path / item.name, item.read_text("utf-8")
+
+
+def _relative(text: str, module: PurePosixPath) -> str:
     """`from protogen.runtime.frame import ...` -> `from .frame import ...`."""
-    return _IMPORT.sub(lambda found: f"{found[1]}." + (" " if found[2] == " " else ""), text)
+    dots = "." * len(module.parts)
+    return _IMPORT.sub(lambda found: f"{found[1]}{dots}" + (" " if found[2] == " " else ""), text)

@@ -1,0 +1,62 @@
+"""The pieces of construct that a generated `FORMAT` is made of, strict and lossless.
+
+This is the only package that knows construct. Each piece here is a construct object like any other:
+it parses, builds, tells its size where that is fixed, and can be embedded in a larger declaration.
+
+    >>> point = Struct("x" / Int(16, signed=True), "y" / Int(16, signed=True))
+    >>> point.build({"x": -2, "y": 3}).hex()
+    'feff0300'
+    >>> point.sizeof()
+    4
+
+What parses builds the same bytes again. What does not parse raises `PayloadError`, which says where
+and why. construct's own pieces are wrapped where they lose bytes or say too little: they ignore
+bytes behind the last field, keys that no field has, and a bad tail of a greedy range.
+"""
+
+from construct import (  # type: ignore[import-untyped,unused-ignore]
+    Construct,
+    Container,
+    Pass,
+    Renamed,
+)
+
+from protogen.runtime.constructs.numbers import (
+    Closed,
+    Fixed,
+    Flag01,
+    Float,
+    Int,
+    SevenBit,
+    SevenBitFloat,
+)
+from protogen.runtime.constructs.pieces import Count, PayloadError, Piece
+from protogen.runtime.constructs.strings import Latin1, Latin1Fill, Octets, OctetsFill
+from protogen.runtime.constructs.structs import Cases, Counted, Fill, Struct, Whole, prefix_size
+
+__all__ = [
+    "Cases",
+    "Closed",
+    "Construct",
+    "Container",
+    "Count",
+    "Counted",
+    "Fill",
+    "Fixed",
+    "Flag01",
+    "Float",
+    "Int",
+    "Latin1",
+    "Latin1Fill",
+    "Octets",
+    "OctetsFill",
+    "Pass",
+    "PayloadError",
+    "Piece",
+    "Renamed",
+    "SevenBit",
+    "SevenBitFloat",
+    "Struct",
+    "Whole",
+    "prefix_size",
+]

@@ -1,0 +1,144 @@
+"""Bytes and text."""
+
+from __future__ import annotations
+
+from typing import Any, BinaryIO
+
+from protogen.runtime.constructs.pieces import (
+    Around,
+    Extent,
+    PayloadError,
+    Piece,
+    extent_of,
+    fixed_extent,
+    read,
+)
+
+
+def _check_seven_bits(data: bytes, path: str, offset: int) -> None:
+    if not data.isascii():
+        index = next(index for index, byte in enumerate(data) if byte > 0x7F)
+        problem = f"{data[index]:02X} has its most significant bit set"
+        raise PayloadError("encoding", path, offset + index, problem)
+
+
+class Octets(Piece):
+    """Bytes that nobody interprets: a number of them, or as many as an earlier field says."""
+
+    def __init__(self, size: Extent, seven_bit: bool = False) -> None:
+        super().__init__()
+        self._extent = size
+        self._seven_bit = seven_bit
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> bytes:
+        data = read(stream, extent_of(self._extent, context, path), path)
+        if self._seven_bit:
+            _check_seven_bits(data, path, stream.tell() - len(data))
+        return data
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> bytes:
+        size = extent_of(self._extent, context, path)
+        data = _as_bytes(obj, path, stream)
+        if len(data) != size:
+            problem = f"needs exactly {size} bytes, not {len(data)}"
+            raise PayloadError("size", path, stream.tell(), problem)
+        if self._seven_bit:
+            _check_seven_bits(data, path, stream.tell())
+        stream.write(data)
+        return data
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        return fixed_extent(self._extent, path)
+
+
+class OctetsFill(Piece):
+    """All bytes that are left, at most `greatest` of them."""
+
+    def __init__(self, greatest: int | None = None, seven_bit: bool = False) -> None:
+        super().__init__()
+        self._greatest = greatest
+        self._seven_bit = seven_bit
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> bytes:
+        offset = stream.tell()
+        data = stream.read()
+        self._check(data, path, offset)
+        return data
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> bytes:
+        data = _as_bytes(obj, path, stream)
+        self._check(data, path, stream.tell())
+        stream.write(data)
+        return data
+
+    def _check(self, data: bytes, path: str, offset: int) -> None:
+        if self._greatest is not None and len(data) > self._greatest:
+            problem = f"has {len(data)} bytes, at most {self._greatest} are allowed"
+            raise PayloadError("size", path, offset + self._greatest, problem)
+        if self._seven_bit:
+            _check_seven_bits(data, path, offset)
+
+
+def _as_bytes(obj: Any, path: str, stream: BinaryIO) -> bytes:
+    if isinstance(obj, bytes | bytearray | memoryview):
+        return bytes(obj)
+    raise PayloadError("value", path, stream.tell(), f"must be bytes, not {obj!r}")
+
+
+class _Text(Around):
+    """Text, one byte a character (Latin-1, of which ASCII is a part)."""
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> str:
+        data: bytes = self.subcon._parsereport(stream, context, path)
+        return data.decode("latin-1")
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> str:
+        self.subcon._build(_latin1(obj, path, stream), stream, context, path)
+        return str(obj)
+
+
+class _PaddedText(Around):
+    """Text in a fixed number of bytes, padded with NUL at the end."""
+
+    def __init__(self, size: int, seven_bit: bool) -> None:
+        super().__init__(Octets(size, seven_bit))
+        self._size = size
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> str:
+        data: bytes = self.subcon._parsereport(stream, context, path)
+        return data.rstrip(b"\0").decode("latin-1")
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> str:
+        data = _latin1(obj, path, stream)
+        if len(data) > self._size:
+            problem = f"has {len(data)} characters, at most {self._size} are allowed"
+            raise PayloadError("size", path, stream.tell(), problem)
+        if data.endswith(b"\0"):
+            problem = "ends with NUL, which a receiver takes for padding"
+            raise PayloadError("value", path, stream.tell(), problem)
+        self.subcon._build(data.ljust(self._size, b"\0"), stream, context, path)
+        return str(obj)
+
+
+def _latin1(obj: Any, path: str, stream: BinaryIO) -> bytes:
+    try:
+        return bytes(obj.encode("latin-1"))
+    except (AttributeError, UnicodeEncodeError):
+        problem = f"must be text of characters up to U+00FF, not {obj!r}"
+        raise PayloadError("value", path, stream.tell(), problem) from None
+
+
+def Latin1(size: Extent, seven_bit: bool = False) -> Piece:  # noqa: N802
+    """Text of one byte a character.
+
+    Of a fixed size it is padded with NUL at the end, so the text itself does not end with NUL. Of
+    a size that an earlier field gives it has exactly that many characters.
+    """
+    if isinstance(size, int):
+        return _PaddedText(size, seven_bit)
+    return _Text(Octets(size, seven_bit))
+
+
+def Latin1Fill(greatest: int | None = None, seven_bit: bool = False) -> Piece:  # noqa: N802
+    """Text that takes all bytes that are left, at most `greatest` of them."""
+    return _Text(OctetsFill(greatest, seven_bit))

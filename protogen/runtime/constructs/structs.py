@@ -1,0 +1,197 @@
+"""Several values: structs, arrays, and one of several pieces; and whole payloads."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from typing import Any, BinaryIO
+
+import construct  # type: ignore[import-untyped,unused-ignore]
+from construct import Construct, Container
+
+from protogen.runtime.constructs.pieces import (
+    Around,
+    Extent,
+    PayloadError,
+    Piece,
+    bytes_left,
+    extent_of,
+    fixed_extent,
+    look_up,
+)
+
+
+class Struct(construct.Struct):  # type: ignore[misc]
+    """construct's Struct, which also rejects missing values and those that no field has."""
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        values = {} if obj is None else obj
+        if not isinstance(values, Mapping):
+            raise PayloadError("value", path, stream.tell(), f"must be a mapping, not {obj!r}")
+        known = {subcon.name for subcon in self.subcons}
+        strange = [key for key in values if key not in known and not str(key).startswith("_")]
+        missing = [
+            subcon.name
+            for subcon in self.subcons
+            if subcon.name not in values and not subcon.flagbuildnone
+        ]
+        if strange or missing:
+            problem = "there is no such field" if strange else "the value is missing"
+            raise PayloadError("value", f"{path} -> {(strange or missing)[0]}", 0, problem)
+        return self._build_in_order(values, stream, context, path)
+
+    def _build_in_order(
+        self, values: Mapping[str, Any], stream: BinaryIO, context: Any, path: str
+    ) -> Container:
+        """Build field after field, each of which sees those in front of it and no others.
+
+        construct shows a field all values from the start, and its own. Where one of them is called
+        like the field of an outer struct that counts or selects, that one would not be seen.
+        """
+        inside = Container(
+            _=context,
+            _params=context._params,
+            _root=None,
+            _parsing=context._parsing,
+            _building=context._building,
+            _sizing=context._sizing,
+            _subcons=self._subcons,
+            _io=stream,
+            _index=context.get("_index", None),
+        )
+        inside._root = context.get("_root", inside)
+        for subcon in self.subcons:
+            built = subcon._build(values.get(subcon.name), stream, inside, path)
+            if subcon.name:
+                inside[subcon.name] = built
+        return inside
+
+
+class Counted(Around):
+    """A number of elements, or as many as an earlier field says."""
+
+    def __init__(self, count: Extent, element: Construct) -> None:
+        super().__init__(element)
+        self._count = count
+        self.flagbuildnone = False
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
+        count = extent_of(self._count, context, path)
+        parse = self.subcon._parsereport
+        return [parse(stream, context, f"{path} -> [{index}]") for index in range(count)]
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        count = extent_of(self._count, context, path)
+        elements = _as_list(obj, path, stream)
+        if len(elements) != count:
+            problem = f"needs exactly {count} elements, not {len(elements)}"
+            raise PayloadError("size", path, stream.tell(), problem)
+        for index, element in enumerate(elements):
+            self.subcon._build(element, stream, context, f"{path} -> [{index}]")
+        return obj
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        return fixed_extent(self._count, path) * int(self.subcon._sizeof(context, path))
+
+
+class Fill(Around):
+    """Elements to the end, at most `greatest`. A tail that is no whole element is an error."""
+
+    def __init__(self, element: Construct, greatest: int | None = None) -> None:
+        super().__init__(element)
+        self._greatest = greatest
+        self.flagbuildnone = False
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
+        elements: list[Any] = []
+        while bytes_left(stream):
+            self._check(len(elements) + 1, path, stream.tell())
+            here = stream.tell()
+            place = f"{path} -> [{len(elements)}]"
+            elements.append(self.subcon._parsereport(stream, context, place))
+            if stream.tell() == here:
+                raise PayloadError("size", place, here, "an element of no bytes fills nothing")
+        return elements
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        elements = _as_list(obj, path, stream)
+        self._check(len(elements), path, stream.tell())
+        for index, element in enumerate(elements):
+            self.subcon._build(element, stream, context, f"{path} -> [{index}]")
+        return obj
+
+    def _check(self, count: int, path: str, offset: int) -> None:
+        if self._greatest is not None and count > self._greatest:
+            problem = f"at most {self._greatest} elements are allowed"
+            raise PayloadError("size", path, offset, problem)
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        raise construct.SizeofError("the size depends on what is left", path=path)
+
+
+def _as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:
+    if isinstance(obj, str | bytes | Mapping):
+        raise PayloadError("value", path, stream.tell(), f"must be a sequence, not {obj!r}")
+    try:
+        return list(obj)
+    except TypeError:
+        problem = f"must be a sequence, not {obj!r}"
+        raise PayloadError("value", path, stream.tell(), problem) from None
+
+
+class Cases(Piece):
+    """One of several pieces, chosen by an earlier field.
+
+    A value without a case is parsed by `rest`, or is an error where there is none.
+    """
+
+    def __init__(
+        self, selector: str, cases: Mapping[int, Construct], rest: Construct | None = None
+    ) -> None:
+        super().__init__()
+        self._selector = selector
+        self._cases = dict(cases)
+        self._rest = rest
+        self.flagbuildnone = all(case.flagbuildnone for case in self._cases.values())
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        return self._case(stream, context, path)._parsereport(stream, context, path)
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        return self._case(stream, context, path)._build(obj, stream, context, path)
+
+    def _case(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        value = look_up(context, self._selector, path)
+        case = self._cases.get(value, self._rest)
+        if case is None:
+            problem = f"there is no case for {self._selector} = {value}"
+            raise PayloadError("value", path, stream.tell(), problem)
+        return case
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        choices = [*self._cases.values(), *([] if self._rest is None else [self._rest])]
+        sizes = {int(choice._sizeof(context, path)) for choice in choices}
+        if len(sizes) != 1:
+            raise construct.SizeofError(f"the size depends on {self._selector}", path=path)
+        return sizes.pop()
+
+
+class Whole(Around):
+    """A format that has to take all bytes."""
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        parsed = self.subcon._parsereport(stream, context, path)
+        left = bytes_left(stream)
+        if left:
+            raise PayloadError("size", path, stream.tell(), f"{left} bytes too many")
+        return parsed
+
+
+def prefix_size(format: Construct, data: bytes) -> int:
+    """How many bytes at the start of `data` the format takes.
+
+    Raises PayloadError; its `missing` is greater than 0 where `data` is a good start but too short.
+    """
+    stream = io.BytesIO(data)
+    format.parse_stream(stream)
+    return stream.tell()
