@@ -131,6 +131,8 @@ class Float(_Number, frozen=True, kw_only=True):
     signed: ClassVar[bool] = False
     role: ClassVar[IntegerRole] = "number"
     enum: ClassVar[None] = None
+    flags: ClassVar[None] = None
+    bit_fields: ClassVar[tuple[()]] = ()
     named_types: ClassVar[tuple[()]] = ()
     is_closed: ClassVar[bool] = False
 

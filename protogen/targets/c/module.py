@@ -6,12 +6,10 @@ from collections.abc import Sequence
 
 import msgspec
 
-from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import IntegerStep, RecordStep, every_step
 from protogen.model.protocol import Protocol
-from protogen.model.types import Struct
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.named import (
@@ -104,10 +102,10 @@ def view(protocol: Protocol, options: COptions) -> Module:
 
 def _used(messages: Sequence[Message]) -> set[str]:
     """The names of the types that some messages use."""
-    named: list[Enum | Flags | Struct | None] = []
+    found: set[str] = set()
     for step in every_step(step for message in messages for step in message.plan.steps):
         if isinstance(step, IntegerStep):
-            named += [step.type.enum, step.type.flags, *(run.enum for run in step.type.bit_fields)]
+            found.update(item.name for item in step.type.named_types)
         elif isinstance(step, RecordStep):
-            named.append(step.type)
-    return {item.name for item in named if item is not None}
+            found.add(step.type.name)
+    return found

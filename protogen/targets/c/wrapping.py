@@ -28,7 +28,7 @@ class _Break(msgspec.Struct, frozen=True):
     margins: tuple[int, ...]
     """Columns behind the brackets that are open there."""
     column: int
-    """Where the rest is aligned."""
+    """Column at which the rest is aligned."""
 
 
 def wrapped(text: str) -> str:
@@ -63,7 +63,7 @@ def _breaks(line: str, margins: tuple[int, ...]) -> list[_Break]:
     outside = value.end() if value and value.end() > indent else indent + (0 if margins else 4)
     opened = list(margins)
     asked: dict[int, int] = {}
-    """Where a condition was asked, by how many brackets are open."""
+    """Columns of the question marks of conditions, by how many brackets are open."""
     found: list[_Break] = []
     for column, sign in enumerate(line):
         if sign in _OPENING:

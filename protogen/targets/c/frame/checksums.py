@@ -6,7 +6,7 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs, wire_bytes
 
@@ -21,7 +21,7 @@ class CoveredRun(msgspec.Struct, frozen=True):
     literal: bytes = b""
 
     def of(self, payload: str) -> str:
-        """Where it begins and how long it is, where `payload` is the C of the payload's size."""
+        """Start and size of the run, where `payload` is the C of the payload's size."""
         first, last = self.first.of(payload), self.last.of(payload)
         return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
 
@@ -38,10 +38,10 @@ class ChecksumView(msgspec.Struct, frozen=True):
 
     name: str
     checksum: Algorithm
-    type: Integer
+    type: NumberType
     covers: tuple[CoveredRun | CoveredLiteral, ...]
     at: Index
-    """Where its first byte is in the content."""
+    """Place of its first byte in the content."""
     optional: bool
     over_wire: bool
     sums_stuffed: bool

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import msgspec
 
 from protogen.model.frame_plan import Place, Side
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
@@ -82,7 +82,7 @@ def _pairs(data: Iterable[int | str], array: str, at: int | str) -> Iterable[tup
 # --- numbers --------------------------------------------------------------------------------------
 
 
-def wire_bytes(type_: Integer, value: str) -> tuple[str, ...]:
+def wire_bytes(type_: NumberType, value: str) -> tuple[str, ...]:
     """The bytes of an unsigned `value`, in wire order."""
     places = range(0, type_.byte_bits * type_.size, type_.byte_bits)
     mask = " & 0x7FU" if type_.byte_bits == 7 else ""
@@ -97,7 +97,7 @@ def _byte_of(value: str, shift: int, mask: str) -> str:
     return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
 
 
-def number_of(type_: Integer, at: str, offset: int, less: str = "") -> str:
+def number_of(type_: NumberType, at: str, offset: int, less: str = "") -> str:
     """The unsigned value of the bytes from `at[offset]` on, padding bits included.
 
     `less` is C that is put behind each index.

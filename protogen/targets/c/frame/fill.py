@@ -1,4 +1,4 @@
-"""What a decoder fills: events that it hands to its handler, or rows of tables."""
+"""Output of a decoder: events that it hands to its handler, or rows of tables."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Fill(msgspec.Struct, frozen=True):
     """Functions that write the row of a message, called with the decoder and an event without a
     kind, by the message's name; None where all events go to `deliver`."""
     storage: str = "static"
-    """What stands in front of the function that takes whole frames."""
+    """Words in front of the function that takes whole frames."""
 
 
 EVENTS = Fill("decoder->handler")

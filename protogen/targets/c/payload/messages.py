@@ -192,7 +192,7 @@ class _Codec:
             "load": ("void", (message, payload, *size)),
             "decode": (result, (message, payload, "size_t size")),
         }
-        """What each function returns and takes."""
+        """Result and arguments of each function."""
 
     def _head(self, word: str) -> tuple[str, tuple[str, ...]]:
         result, arguments = self._signatures[word]

@@ -21,7 +21,7 @@ _SMALL = 64
 class _Table(msgspec.Struct, frozen=True):
     view: MessageView
     clears: bool
-    """Whether the row is cleared before it is filled."""
+    """True if the row is cleared before it is filled."""
     holes: tuple[range, ...]
     """Else, the bytes that lie between its members."""
     loads: bool
@@ -34,7 +34,7 @@ class _Table(msgspec.Struct, frozen=True):
 
 
 class _Spelling(msgspec.Struct, frozen=True):
-    """What makes the frame of a message again."""
+    """The function that makes the frame of a message again."""
 
     number: int
     """Of its table."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags, NamedValue
-from protogen.model.types import Field, Integer
+from protogen.model.types import Field, NumberType
 from protogen.targets.markdown.fields.values import Anchors, character, tells_more, values_text
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.path import Path
@@ -34,51 +34,45 @@ def legends(field: Field, path: Path, anchors: Anchors) -> Iterable[Legend]:
     if not anchor.startswith("type-"):
         yield from type_legends(integer, code(path.shown), anchor)
     if tells_more(field.special):
-        special = _value_table(field.special, integer)
+        special = _value_table(field.special, integer.bits, shown=integer.role == "char")
         yield Legend(anchors.of_special(path), f"{code(path.shown)}, special values", "", special)
 
 
-def type_legends(integer: Integer, title: str, anchor: str) -> Iterable[Legend]:
+def type_legends(type_: NumberType, title: str, anchor: str) -> Iterable[Legend]:
     """Yield the tables of a type's values."""
-    if integer.enum and tells_more(integer.enum.values):
-        yield _enum_legend(integer.enum, integer, title, anchor)
-    elif integer.flags and tells_more(integer.flags.bits):
-        yield Legend(anchor, title, _spare(integer), _flags_table(integer.flags, integer))
-    elif integer.bit_fields:
-        yield Legend(anchor, title, "", _bits_table(integer, anchor))
-        yield from _bit_enum_legends(integer, title, anchor)
+    if type_.enum and tells_more(type_.enum.values):
+        shown = type_.role == "char"
+        yield _enum_legend(type_.enum, type_.bits, title, anchor, shown=shown)
+    elif type_.flags and tells_more(type_.flags.bits):
+        note = _spare(type_.flags, type_.bits)
+        yield Legend(anchor, title, note, _flags_table(type_.flags, type_.bits))
+    elif type_.bit_fields:
+        yield Legend(anchor, title, "", _bits_table(type_, anchor))
+        for run in type_.bit_fields:
+            if run.enum and tells_more(run.enum.values):
+                name, bits = f"{title}, {run.name}", run.high - run.low + 1
+                yield _enum_legend(run.enum, bits, name, f"{anchor}-{run.name}")
 
 
-def _enum_legend(enum: Enum, integer: Integer, title: str, anchor: str) -> Legend:
+def _enum_legend(enum: Enum, bits: int, title: str, anchor: str, *, shown: bool = False) -> Legend:
     note = "Any other value is invalid." if enum.closed else ""
-    return Legend(anchor, title, note, _value_table(enum.values, integer))
+    return Legend(anchor, title, note, _value_table(enum.values, bits, shown=shown))
 
 
-def _bit_enum_legends(integer: Integer, title: str, anchor: str) -> Iterable[Legend]:
-    for bits in integer.bit_fields:
-        if bits.enum and tells_more(bits.enum.values):
-            name = f"{title}, {bits.name}"
-            yield _enum_legend(bits.enum, _bits_integer(bits), name, f"{anchor}-{bits.name}")
-
-
-def _bits_integer(bits: BitField) -> Integer:
-    return Integer(bits=bits.high - bits.low + 1, enum=bits.enum)
-
-
-def _spare(integer: Integer) -> str:
-    assert integer.flags is not None
-    spare = integer.bits - len({bit.bit for bit in integer.flags.bits})
+def _spare(flags: Flags, bits: int) -> str:
+    spare = bits - len({bit.bit for bit in flags.bits})
     return "Bits without a name are kept as they are." if spare else ""
 
 
-def _value_table(values: Sequence[NamedValue], integer: Integer) -> Table:
+def _value_table(values: Sequence[NamedValue], bits: int, *, shown: bool) -> Table:
+    """Print named values of so many bits; with `shown` as the characters that they are."""
     return table(
         ("Raw", "Hex", "", "Name", "Meaning"),
         (
             (
                 code(item.value),
-                code(hex_number(item.value, integer.bits)),
-                character(item.value) if integer.role == "char" else "",
+                code(hex_number(item.value, bits)),
+                character(item.value) if shown else "",
                 code(item.name),
                 about_line(item.about),
             )
@@ -87,13 +81,13 @@ def _value_table(values: Sequence[NamedValue], integer: Integer) -> Table:
     )
 
 
-def _flags_table(flags: Flags, integer: Integer) -> Table:
+def _flags_table(flags: Flags, bits: int) -> Table:
     return table(
         ("Bit", "Mask", "Name", "Meaning"),
         (
             (
                 code(item.bit),
-                code(hex_number(1 << item.bit, integer.bits)),
+                code(hex_number(1 << item.bit, bits)),
                 code(item.name),
                 about_line(item.about),
             )
@@ -102,18 +96,18 @@ def _flags_table(flags: Flags, integer: Integer) -> Table:
     )
 
 
-def _bits_table(integer: Integer, anchor: str) -> Table:
+def _bits_table(type_: NumberType, anchor: str) -> Table:
     return table(
         ("Bits", "Mask", "Name", "Values", "Meaning"),
         (
             (
                 code(item.low if item.low == item.high else f"{item.high}..{item.low}"),
-                code(hex_number(item.mask, integer.bits)),
+                code(hex_number(item.mask, type_.bits)),
                 code(item.name),
                 _bit_values(item, f"{anchor}-{item.name}"),
                 about_line(item.about),
             )
-            for item in integer.bit_fields
+            for item in type_.bit_fields
         ),
     )
 

@@ -9,7 +9,7 @@ import msgspec
 
 from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
-from protogen.model.types import Constant, Field, Integer
+from protogen.model.types import Constant, Field, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.text.path import Path
 from protogen.targets.markdown.text.words import (
@@ -31,9 +31,9 @@ class Anchors(msgspec.Struct, frozen=True):
     prefix: str
     shared: frozenset[str] = frozenset()
 
-    def of_type(self, path: Path, integer: Integer) -> str:
+    def of_type(self, path: Path, type_: NumberType) -> str:
         """Return the anchor for the values of the field at `path`."""
-        named = integer.enum or integer.flags
+        named = type_.enum or type_.flags
         if named is not None and named.name in self.shared:
             return type_anchor(named)
         return f"{self.prefix}{path.anchor}"
@@ -60,23 +60,23 @@ def range_text(field: Field, path: Path, anchors: Anchors) -> str:
     return "; ".join(text for text in texts if text)
 
 
-def constant(value: Constant, integer: Integer | None) -> str:
+def constant(value: Constant, type_: NumberType | None) -> str:
     """Print a raw value as a schema may give it for a constant or a default."""
     if isinstance(value, tuple):
-        return ", ".join(constant(item, integer) for item in value)
+        return ", ".join(constant(item, type_) for item in value)
     if isinstance(value, bytes):
         return code(hex_bytes(value)) if value else "no bytes"
     if isinstance(value, str):
         return markdown(f"'{value}'")
-    if integer is None or isinstance(value, bool | float):
+    if type_ is None or isinstance(value, bool | float):
         return code(value)
-    return raw_text(int(value), integer)
+    return raw_text(int(value), type_)
 
 
-def raw_text(value: int, integer: Integer) -> str:
+def raw_text(value: int, type_: NumberType) -> str:
     """Print a raw value: a character as one, its name behind it where it has one."""
-    shown = character(value) if integer.role == "char" else ""
-    name = name_of(value, integer.enum)
+    shown = character(value) if type_.role == "char" else ""
+    name = name_of(value, type_.enum)
     return " ".join(filter(None, (shown, code(short_number(value)), name)))
 
 
@@ -148,8 +148,8 @@ def _bounds_text(field: Field) -> str:
     return f"{raw} ({_physical_bounds(field)})" if field.scaled else raw
 
 
-def _is_plain_char(integer: Integer | None) -> bool:
-    return integer is not None and integer.role in ("char", "bool")
+def _is_plain_char(type_: NumberType | None) -> bool:
+    return type_ is not None and type_.role in ("char", "bool")
 
 
 def _physical_bounds(field: Field) -> str:
@@ -187,9 +187,9 @@ def tells_more(items: Sequence[NamedValue] | Sequence[NamedBit]) -> bool:
     return len(items) > _FEW or any(item.about != About() for item in items)
 
 
-def value_meaning(value: int, field: Field, kind: Integer) -> str:
+def value_meaning(value: int, field: Field, type_: NumberType) -> str:
     """Say what a raw value means: its names, else its physical value, else what the field is."""
-    named = _special_name(value, field) or _names(value, kind)
+    named = _special_name(value, field) or _names(value, type_)
     if named:
         return named
     if field.unit or field.scaled:
@@ -202,14 +202,14 @@ def _special_name(value: int, field: Field) -> str:
     return next((code(item.name) for item in field.special if item.value == value), "")
 
 
-def _names(value: int, kind: Integer) -> str:
-    if kind.enum:
-        name = name_of(value, kind.enum)
+def _names(value: int, type_: NumberType) -> str:
+    if type_.enum:
+        name = name_of(value, type_.enum)
         return code(name) if name else "no name"
-    if kind.flags:
-        names = [code(item.name) for item in kind.flags.bits if value >> item.bit & 1]
+    if type_.flags:
+        names = [code(item.name) for item in type_.flags.bits if value >> item.bit & 1]
         return ", ".join(names) or "no flag"
-    runs = ((bits, (value & bits.mask) >> bits.low) for bits in kind.bit_fields)
+    runs = ((bits, (value & bits.mask) >> bits.low) for bits in type_.bit_fields)
     return ", ".join(f"{code(bits.name)} {_run_text(run, bits.enum)}" for bits, run in runs)
 
 

@@ -24,7 +24,7 @@ from protogen.model.frame import (
     ValuePart,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.model.wire import FULL_GROUP
 from protogen.targets.markdown.fields.types import number_text
 from protogen.targets.markdown.fields.values import character, raw_text
@@ -145,8 +145,8 @@ def _number_roles(part: NumberPart) -> tuple[str, ...]:
             return ("Tells which message it is.",)
 
 
-def _default(value: int | None, integer: Integer) -> str:
-    return "" if value is None else f"{raw_text(value, integer)} by default."
+def _default(value: int | None, type_: NumberType) -> str:
+    return "" if value is None else f"{raw_text(value, type_)} by default."
 
 
 def _checksum_roles(part: ChecksumPart) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import msgspec
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.fields.walk import named_fields
 
@@ -18,7 +18,7 @@ class Context(msgspec.Struct, frozen=True):
     """A protocol, with what is looked up in it again and again."""
 
     protocol: Protocol
-    users: Mapping[str, list[Integer]]
+    users: Mapping[str, list[NumberType]]
     """The integers that use an enum or flags, by its name."""
     shared: frozenset[str]
     """The enums and flags that several fields use: they are explained once."""
@@ -48,9 +48,9 @@ class Context(msgspec.Struct, frozen=True):
         return natural.of(message.plan.steps), small.of(message.plan.steps)
 
 
-def _users(messages: Iterable[Message]) -> dict[str, list[Integer]]:
+def _users(messages: Iterable[Message]) -> dict[str, list[NumberType]]:
     """The integers of the fields that use each enum and flags, by its name."""
-    users: dict[str, list[Integer]] = {}
+    users: dict[str, list[NumberType]] = {}
     for message in messages:
         for _, field in named_fields(message.plan.steps):
             integer = field.integer

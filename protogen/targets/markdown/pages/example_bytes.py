@@ -11,7 +11,7 @@ from protogen.model.annotate import Row, annotate
 from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
-from protogen.model.types import Field, Integer, NumberType
+from protogen.model.types import Field, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.values import raw_text, value_meaning
 from protogen.targets.markdown.frames.parts import identity_value, role
@@ -189,13 +189,13 @@ def _value(row: Row) -> str:
         return markdown(f"'{text}'") if text else ""
     if row.value is None:
         return ""
-    if isinstance(row.value_type, Integer) and row.value_type.role == "char":
+    if isinstance(row.value_type, NumberType) and row.value_type.role == "char":
         return raw_text(int(row.value), row.value_type)
     return code(row.value)
 
 
 def _meaning(row: Row, field: Field) -> str:
-    if isinstance(row.value, int) and isinstance(row.value_type, Integer):
+    if isinstance(row.value, int) and isinstance(row.value_type, NumberType):
         return value_meaning(row.value, field, row.value_type)
     if isinstance(row.value, float):
         return markdown((row.meaning if field.scaled else field.unit) or field.about.doc)
