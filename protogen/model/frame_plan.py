@@ -30,7 +30,7 @@ from protogen.model.wire import FULL_GROUP
 
 
 class StartRule(Enum):
-    """What marks the start of a frame."""
+    """Mark of the start of a frame."""
 
     LITERAL = auto()
     SET = auto()
@@ -42,7 +42,7 @@ class StartRule(Enum):
 
 
 class EndRule(Enum):
-    """What tells where a frame of a known message ends."""
+    """Rule by which a frame of a known message ends."""
 
     DELIMITER = auto()
     """The next end literal, which occurs nowhere else in a frame."""
@@ -55,7 +55,7 @@ class EndRule(Enum):
 
 
 class Store(Enum):
-    """What a decoder keeps of a candidate until its verdict."""
+    """Bytes that a decoder keeps of a candidate until its verdict."""
 
     CONTENT = auto()
     """Unstuffed bytes alone: no frame can start inside a failed candidate but at its end."""
@@ -65,7 +65,7 @@ class Store(Enum):
 
 
 class Side(Enum):
-    """Which side of the payload a place is counted on."""
+    """Side of the payload that a place is counted on."""
 
     HEAD = auto()
     TAIL = auto()
@@ -78,7 +78,7 @@ class Place(msgspec.Struct, frozen=True):
     offset: int
     """Bytes from the first byte of the content, or from the first one behind the payload."""
     absent: int = 0
-    """How many of these bytes are absent where the payload is empty."""
+    """Number of these bytes that are absent where the payload is empty."""
 
     def at(self, head_size: int, payload: int) -> int:
         """Index in the content of a frame with such a payload."""
@@ -367,7 +367,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def store(self) -> Store:
-        """What a decoder keeps of a candidate."""
+        """Bytes that a decoder keeps of a candidate."""
         if self.region is None:
             return Store.WIRE if self.rescans else Store.CONTENT
         over_wire = any(checksum.part.over_wire for checksum in self.checksums)

@@ -1,4 +1,4 @@
-"""Which bytes on the wire carry which byte of a frame's parts."""
+"""Bytes on the wire that carry each byte of a frame's parts."""
 
 from __future__ import annotations
 

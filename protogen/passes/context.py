@@ -43,7 +43,7 @@ class Context(msgspec.Struct, frozen=True):
 
     syntax: ProtocolSyntax
     data: Any
-    """What the syntax tree was made of."""
+    """Data that the syntax tree was made of."""
     find: Find
     """The place of a value."""
     find_key: Find

@@ -21,7 +21,7 @@ class Loaded(msgspec.Struct, frozen=True):
 
     syntax: ProtocolSyntax
     data: Any
-    """What the syntax tree was made of."""
+    """Data that the syntax tree was made of."""
     merged: Merged
     doubtful: frozenset[Loc] = frozenset()
     """Items of which something could not be read: what seems wrong with them may come of that."""

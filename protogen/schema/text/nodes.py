@@ -13,8 +13,26 @@ Loc = Sequence[Scalar]
 """A location: the keys and indices that lead from a node to one inside of it."""
 
 
+class _Inside:
+    """Access to the nodes inside of a node."""
+
+    __slots__ = ()
+
+    def child(self, step: Scalar) -> Node | None:
+        """Return the node under a key or an index, or None if there is none."""
+        return None
+
+    def at(self, path: Loc) -> Node | None:
+        """Return the node that ``path`` leads to, or None if there is none."""
+        node: Any = self
+        for step in path:
+            node = None if node is None else node.child(step)
+        found: Node | None = node
+        return found
+
+
 @dataclass(frozen=True, slots=True)
-class ScalarNode:
+class ScalarNode(_Inside):
     """A single value; ``text`` is what was written, ``plain`` whether without quotes."""
 
     value: Scalar
@@ -22,21 +40,13 @@ class ScalarNode:
     plain: bool
     span: Span
 
-    def child(self, step: Scalar) -> Node | None:
-        """Return None: a scalar has nothing inside."""
-        return None
-
-    def at(self, path: Loc) -> Node | None:
-        """Return the node that ``path`` leads to, or None if there is none."""
-        return _walk(self, path)
-
 
 Item = tuple[ScalarNode, "Node"]
 """A key of a mapping and its value."""
 
 
 @dataclass(frozen=True, slots=True)
-class MappingNode:
+class MappingNode(_Inside):
     """Keys with values, in written order. Keys are texts, integers or booleans, each there once."""
 
     items: tuple[Item, ...]
@@ -55,13 +65,9 @@ class MappingNode:
         item = self._index.get(step)
         return None if item is None else item[1]
 
-    def at(self, path: Loc) -> Node | None:
-        """Return the node that ``path`` leads to, or None if there is none."""
-        return _walk(self, path)
-
 
 @dataclass(frozen=True, slots=True)
-class SequenceNode:
+class SequenceNode(_Inside):
     """Values in written order."""
 
     items: tuple[Node, ...]
@@ -72,10 +78,6 @@ class SequenceNode:
         if isinstance(step, int) and 0 <= step < len(self.items):
             return self.items[step]
         return None
-
-    def at(self, path: Loc) -> Node | None:
-        """Return the node that ``path`` leads to, or None if there is none."""
-        return _walk(self, path)
 
 
 Node = ScalarNode | MappingNode | SequenceNode
@@ -128,10 +130,3 @@ def _follow(node: Node, loc: Loc) -> _Found:
             own = node.item(step) if isinstance(node, MappingNode) else None
             best = (found[0] + 1, found[1] if found[0] else own, found[2])
     return best
-
-
-def _walk(start: Node, path: Loc) -> Node | None:
-    node: Node | None = start
-    for step in path:
-        node = None if node is None else node.child(step)
-    return node
