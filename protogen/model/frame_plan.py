@@ -21,7 +21,6 @@ from protogen.model.frame import (
     IdentityPart,
     LengthPart,
     Part,
-    PayloadPart,
     ValuePart,
 )
 from protogen.model.messages import Message
@@ -331,11 +330,6 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
             if item.name == name:
                 return item
         raise KeyError(name)
-
-    @property
-    def payload_part(self) -> PayloadPart:
-        """The payload."""
-        return self.frame.payload
 
     @property
     def identity(self) -> tuple[IdentityPart, ...]:

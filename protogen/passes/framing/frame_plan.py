@@ -35,6 +35,7 @@ from protogen.model.frame_plan import (
 )
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
 from protogen.model.messages import Message, Overload
+from protogen.passes.framing.capacity import counted_size
 
 _START_RULES = {
     StartLiteral: StartRule.LITERAL,
@@ -152,12 +153,9 @@ class _Planner:
         part = self._frame.length
         if part is None:
             return None
-        counted = [self._frame.part(name) for name in part.counts]
-        return LengthPlan(
-            part=part,
-            base=sum(other.size for other in counted if not other.is_optional),
-            optional=sum(other.size for other in counted if other.is_optional),
-        )
+        base = counted_size(self._frame, part, empty=True)
+        optional = counted_size(self._frame, part, empty=False) - base
+        return LengthPlan(part=part, base=base, optional=optional)
 
     # --- start and end ----------------------------------------------------------------------------
 
@@ -188,12 +186,8 @@ class _Planner:
     @cached_property
     def _stuffed(self) -> tuple[str, ...]:
         """The parts of the content that are stuffed."""
-        transparency = self._frame.transparency
-        if transparency is None:
-            return ()
-        first, last = map(self._names.index, (transparency.first, transparency.last))
-        kept = {part.name for part in self._content}
-        return tuple(name for name in self._names[first : last + 1] if name in kept)
+        stuffed = self._frame.stuffed
+        return tuple(part.name for part in self._content if part.name in stuffed)
 
     @cached_property
     def _region(self) -> StuffedRegion | None:

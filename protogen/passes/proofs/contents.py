@@ -9,6 +9,7 @@ import msgspec
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
 from protogen.model.numbers import checksum_of, constant_bytes, number_bytes
 from protogen.model.types import Field
+from protogen.passes.framing.capacity import counted_size
 from protogen.passes.proofs.wire_code import ByteSet, code_of, part_bytes
 
 
@@ -74,8 +75,7 @@ def _part(
 
 def _stated(frame: Frame, length: LengthPart, payload: int) -> int | None:
     """Value of the length part; None where it can't say that, so that there is no such frame."""
-    counted = (frame.part(name) for name in length.counts)
-    value = payload + sum(part.size for part in counted if payload or not part.is_optional)
+    value = payload + counted_size(frame, length, empty=not payload)
     return value if length.least <= value <= length.greatest else None
 
 

@@ -76,23 +76,18 @@ def _number_bytes(
 
 def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[Segment]:
     """The frame as it can stand on the wire; the parts called `delimiters` are its own literals."""
-    covered, code = frame.stuffed, code_of(frame.encoding)
+    transparency, code = frame.transparency, code_of(frame.encoding)
     own = frozenset(delimiters)
     result: list[Segment] = []
     for part in frame.parts:
-        stuffed = part.name in covered
-        if stuffed and code is None:
-            if part.name == _first_covered(frame):
+        stuffed = part.name in frame.stuffed
+        if transparency is not None and stuffed and code is None:
+            if part.name == transparency.first:
                 words = frozenset(bytes((byte,)) for byte in range(1, 256))
                 result.append(Segment(words, 1, None))
             continue
         result.extend(_part_segments(part, payload, code if stuffed else _plain(), own))
     return _joined(result)
-
-
-def _first_covered(frame: Frame) -> str:
-    assert frame.transparency is not None
-    return frame.transparency.first
 
 
 def _part_segments(
@@ -128,7 +123,7 @@ def wire_bytes(frame: Frame, payload: ByteSet) -> Iterable[tuple[Part, ByteSet]]
     """Each part with all bytes that can stand for it on the wire."""
     covered, code = frame.stuffed, code_of(frame.encoding)
     for part in frame.parts:
-        values = frozenset().union(*part_bytes(part, payload)) if part else frozenset()
+        values = frozenset().union(*part_bytes(part, payload))
         if part.name not in covered:
             yield part, values
         elif code is None:

@@ -24,7 +24,7 @@ from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
 from protogen.passes.types.declared import Declarations, Effective
 from protogen.passes.types.expansion import Expansion
-from protogen.passes.types.extents import Extents, Written
+from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.setting import Setting
@@ -45,7 +45,6 @@ class FieldBuilder:
     def __init__(self, context: Context, named: NamedTypes) -> None:
         self._context = context
         self._named = named
-        self._extents = Extents(context)
         self._declarations = Declarations(context)
         self._switches = SwitchBuilder(context, named, self)
         self._expansion = Expansion(context)
@@ -161,7 +160,7 @@ class FieldBuilder:
         return Octets(extent=extent, byte_bits=byte_bits)
 
     def _extent(self, written: Written, loc: Loc, element: int, setting: Setting) -> Extent:
-        extent = self._extents.extent(written, loc, element, setting)
+        extent = extent_of(self._context, written, loc, element, setting)
         if not isinstance(extent, Fixed):
             self._expansion.vary()
         return extent

@@ -38,7 +38,7 @@ class FastFrame:
         self.end = plan.end_bytes
         self.head = tuple(item.part for item in plan.head)
         self.tail = tuple(item.part for item in plan.tail)
-        self.parts = (*self.head, plan.payload_part, *self.tail)
+        self.parts = (*self.head, plan.frame.payload, *self.tail)
         self.head_size = plan.head_size
         self.tail_size = plan.tail_size
         self.length = None if plan.length is None else plan.length.part
