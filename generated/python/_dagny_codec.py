@@ -291,40 +291,6 @@ _HOST_KINDS: dict[_typing.Any, _typing.Any] = {
     0x43: (-129, _read_command, (67,)),
 }
 
-def _decode_host(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data.startswith(b"\x0a"):
-        raise _fast.NeedsReference
-    payload_size, read, _ = _HOST_KINDS[data[0]]
-    if payload_size < 0:
-        end = data.find(b"\x0a", 1)
-        if end < 0:
-            raise _fast.NeedsReference
-        end += 1
-    elif payload_size:
-        end = 3 + payload_size
-    else:
-        end = 2
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 515:
-        raise _fast.NeedsReference
-    if not data.endswith(b"\x0a"):
-        raise _fast.NeedsReference
-    content = data[:-1]
-    if len(content) <= 2:
-        if len(content) != 1:
-            raise _fast.NeedsReference
-        payload = b""
-    else:
-        payload = content[1:-1]
-    if payload:
-        if _checksum.xor_of(content):
-            raise _fast.NeedsReference
-    return read(payload)
-
-
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     if payload:
         content = _PACK_0(id_) + payload
@@ -398,40 +364,6 @@ _ROBOT_KINDS: dict[_typing.Any, _typing.Any] = {
     0x4C: (-513, _read_laser, (76,)),
     0x43: (-129, _read_command, (67,)),
 }
-
-def _decode_robot(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data.startswith(b"\x0a"):
-        raise _fast.NeedsReference
-    payload_size, read, _ = _ROBOT_KINDS[data[0]]
-    if payload_size < 0:
-        end = data.find(b"\x0a", 1)
-        if end < 0:
-            raise _fast.NeedsReference
-        end += 1
-    elif payload_size:
-        end = 3 + payload_size
-    else:
-        end = 2
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 515:
-        raise _fast.NeedsReference
-    if not data.endswith(b"\x0a"):
-        raise _fast.NeedsReference
-    content = data[:-1]
-    if len(content) <= 2:
-        if len(content) != 1:
-            raise _fast.NeedsReference
-        payload = b""
-    else:
-        payload = content[1:-1]
-    if payload:
-        if _checksum.xor_of(content):
-            raise _fast.NeedsReference
-    return read(payload)
-
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     if payload:
@@ -787,7 +719,7 @@ _fast.add_readers(
     _TABLES,
 )
 _fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
-_DECODERS["host"] = _decode_host
+_DECODERS["host"] = _fast.decoder(_cut_host)
 HOST_SENDER.cut = _cut_host
-_DECODERS["robot"] = _decode_robot
+_DECODERS["robot"] = _fast.decoder(_cut_robot)
 ROBOT_SENDER.cut = _cut_robot

@@ -248,35 +248,6 @@ def _head_host(head: bytes) -> tuple[_typing.Any, ...]:
 
 _HOST_HEADS = _fast.Heads(_head_host)
 
-def _decode_host(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    end = data.find(b"\x0d", 0)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 1
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 1027:
-        raise _fast.NeedsReference
-    content = data[:-1]
-    if 0x0D in content or 0x1B in content:
-        stuffed = content
-        content = content.replace(b"\x1b\x16", b"\x0d")
-        content = content.replace(b"\x1b\x00", b"\x1b")
-        again = content.replace(b"\x1b", b"\x1b\x00")
-        again = again.replace(b"\x0d", b"\x1b\x16")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    if len(content) < 1:
-        raise _fast.NeedsReference
-    payload = content[1:]
-    _, payload_size, read = _HOST_HEADS[content[0:1]]
-    if 0 <= payload_size != len(payload):
-        raise _fast.NeedsReference
-    return read(payload)
-
-
 def _frame_host(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
     if 0x0D in content or 0x1B in content:
@@ -342,35 +313,6 @@ def _head_robot(head: bytes) -> tuple[_typing.Any, ...]:
 
 
 _ROBOT_HEADS = _fast.Heads(_head_robot)
-
-def _decode_robot(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    end = data.find(b"\x0d", 0)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 1
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 1027:
-        raise _fast.NeedsReference
-    content = data[:-1]
-    if 0x0D in content or 0x1B in content:
-        stuffed = content
-        content = content.replace(b"\x1b\x16", b"\x0d")
-        content = content.replace(b"\x1b\x00", b"\x1b")
-        again = content.replace(b"\x1b", b"\x1b\x00")
-        again = again.replace(b"\x0d", b"\x1b\x16")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    if len(content) < 1:
-        raise _fast.NeedsReference
-    payload = content[1:]
-    _, payload_size, read = _ROBOT_HEADS[content[0:1]]
-    if 0 <= payload_size != len(payload):
-        raise _fast.NeedsReference
-    return read(payload)
-
 
 def _frame_robot(payload: bytes, id_: int | None) -> bytes:
     content = _PACK_0(id_) + payload
@@ -579,7 +521,7 @@ _fast.add_readers(
     _TABLES,
 )
 _fast.add_writers((HOST_SENDER, ROBOT_SENDER), _ENCODERS, ())
-_DECODERS["host"] = _decode_host
+_DECODERS["host"] = _fast.decoder(_cut_host)
 HOST_SENDER.cut = _cut_host
-_DECODERS["robot"] = _decode_robot
+_DECODERS["robot"] = _fast.decoder(_cut_robot)
 ROBOT_SENDER.cut = _cut_robot

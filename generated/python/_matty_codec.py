@@ -253,35 +253,6 @@ def _head_pc(head: bytes) -> tuple[_typing.Any, ...]:
 
 _PC_HEADS = _fast.Heads(_head_pc)
 
-def _decode_pc(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data[0] != 0x55:
-        raise _fast.NeedsReference
-    if data.find(b"\x55", 1) > 0:
-        raise _fast.NeedsReference
-    content = data[1:]
-    if 0x56 in content:
-        if len(data) > 250:
-            raise _fast.NeedsReference
-        stuffed = content
-        content = content.replace(b"\x56\xaa", b"\x55")
-        content = content.replace(b"\x56\xa9", b"\x56")
-        again = content.replace(b"\x56", b"\x56\xa9")
-        again = again.replace(b"\x55", b"\x56\xaa")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    length = content[0]
-    if not 4 <= len(content) == length + 2 <= 125:
-        raise _fast.NeedsReference
-    if _adler32(content, 0) & 0xFF:
-        raise _fast.NeedsReference
-    _, read = _PC_HEADS[content[1:3]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
-
 def _frame_pc(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
     content += _BYTES[(-_adler32(content, 0) & 0xFF)]
@@ -357,35 +328,6 @@ def _head_esp(head: bytes) -> tuple[_typing.Any, ...]:
 
 
 _ESP_HEADS = _fast.Heads(_head_esp)
-
-def _decode_esp(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data[0] != 0x55:
-        raise _fast.NeedsReference
-    if data.find(b"\x55", 1) > 0:
-        raise _fast.NeedsReference
-    content = data[1:]
-    if 0x56 in content:
-        if len(data) > 250:
-            raise _fast.NeedsReference
-        stuffed = content
-        content = content.replace(b"\x56\xaa", b"\x55")
-        content = content.replace(b"\x56\xa9", b"\x56")
-        again = content.replace(b"\x56", b"\x56\xa9")
-        again = again.replace(b"\x55", b"\x56\xaa")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    length = content[0]
-    if not 4 <= len(content) == length + 2 <= 125:
-        raise _fast.NeedsReference
-    if _adler32(content, 0) & 0xFF:
-        raise _fast.NeedsReference
-    _, read = _ESP_HEADS[content[1:3]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
 
 def _frame_esp(payload: bytes, command_: int | None, counter_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, counter_, command_) + payload
@@ -578,7 +520,7 @@ _fast.add_readers(
     around=(3, 1),
 )
 _fast.add_writers((PC_SENDER, ESP_SENDER), _ENCODERS, ("counter",))
-_DECODERS["pc"] = _decode_pc
+_DECODERS["pc"] = _fast.decoder(_cut_pc)
 PC_SENDER.cut = _cut_pc
-_DECODERS["esp"] = _decode_esp
+_DECODERS["esp"] = _fast.decoder(_cut_esp)
 ESP_SENDER.cut = _cut_esp

@@ -479,39 +479,6 @@ def _head_linux(head: bytes) -> tuple[_typing.Any, ...]:
 
 _LINUX_HEADS = _fast.Heads(_head_linux)
 
-def _decode_linux(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if not data.startswith(b"\x1b\x02"):
-        raise _fast.NeedsReference
-    end = data.find(b"\x1b\x03", 2)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 2
-    if end != len(data):
-        raise _fast.NeedsReference
-    content = data[2:-2]
-    if 0x1B in content or 0x7C in content:
-        if len(data) > 780:
-            raise _fast.NeedsReference
-        stuffed = content
-        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
-        content = content.replace(b"\x1b\x00", b"\x1b")
-        again = content.replace(b"\x1b", b"\x1b\x00")
-        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    length = content[3]
-    if len(content) != length + 5:
-        raise _fast.NeedsReference
-    if _checksum.xor_of(content):
-        raise _fast.NeedsReference
-    _, read = _LINUX_HEADS[content[0:3]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
-
 def _frame_linux(
     payload: bytes, class_id_: int | None, subclass_: int | None, number_: int | None
 ) -> bytes:
@@ -617,39 +584,6 @@ def _head_flex(head: bytes) -> tuple[_typing.Any, ...]:
 
 
 _FLEX_HEADS = _fast.Heads(_head_flex)
-
-def _decode_flex(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if not data.startswith(b"\x1b\x02"):
-        raise _fast.NeedsReference
-    end = data.find(b"\x1b\x03", 2)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 2
-    if end != len(data):
-        raise _fast.NeedsReference
-    content = data[2:-2]
-    if 0x1B in content or 0x7C in content:
-        if len(data) > 780:
-            raise _fast.NeedsReference
-        stuffed = content
-        content = content.replace(b"\x7c\x1b\x01", b"\x7c")
-        content = content.replace(b"\x1b\x00", b"\x1b")
-        again = content.replace(b"\x1b", b"\x1b\x00")
-        again = again.replace(b"\x7c", b"\x7c\x1b\x01")
-        if again != stuffed:
-            raise _fast.NeedsReference
-    length = content[3]
-    if len(content) != length + 5:
-        raise _fast.NeedsReference
-    if _checksum.xor_of(content):
-        raise _fast.NeedsReference
-    _, read = _FLEX_HEADS[content[0:3]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
 
 def _frame_flex(
     payload: bytes, class_id_: int | None, subclass_: int | None, number_: int | None
@@ -1202,7 +1136,7 @@ _fast.add_readers(
     around=(4, 1),
 )
 _fast.add_writers((LINUX_SENDER, FLEX_SENDER), _ENCODERS, ("number",))
-_DECODERS["linux"] = _decode_linux
+_DECODERS["linux"] = _fast.decoder(_cut_linux)
 LINUX_SENDER.cut = _cut_linux
-_DECODERS["flex"] = _decode_flex
+_DECODERS["flex"] = _fast.decoder(_cut_flex)
 FLEX_SENDER.cut = _cut_flex

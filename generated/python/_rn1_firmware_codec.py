@@ -341,31 +341,6 @@ def _head_host(head: bytes) -> tuple[_typing.Any, ...]:
 
 _HOST_HEADS = _fast.Heads(_head_host)
 
-def _decode_host(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if not 0x80 <= data[0] <= 0xFE:
-        raise _fast.NeedsReference
-    end = data.find(b"\xff", 0)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 1
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 7:
-        raise _fast.NeedsReference
-    content = data[:-1]
-    if len(content) < 1:
-        raise _fast.NeedsReference
-    payload = content[1:]
-    if not payload.isascii():
-        raise _fast.NeedsReference
-    _, payload_size, read = _HOST_HEADS[content[0:1]]
-    if 0 <= payload_size != len(payload):
-        raise _fast.NeedsReference
-    return read(payload)
-
-
 def _frame_host(payload: bytes, start_: int | None) -> bytes:
     content = _PACK_1(start_) + payload
     return content + b"\xff"
@@ -411,19 +386,6 @@ _BRAIN_KINDS: dict[_typing.Any, _typing.Any] = {
     0xD1: (3, _read_motor_controller_message, (209,)),
     0xD2: (21, _read_debug_numbers, (210,)),
 }
-
-def _decode_brain(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    frame_size, read, _ = _BRAIN_KINDS[data[0]]
-    end = frame_size
-    if end != len(data):
-        raise _fast.NeedsReference
-    payload = data[1:]
-    if not payload.isascii():
-        raise _fast.NeedsReference
-    return read(payload)
-
 
 def _frame_brain(payload: bytes, start_: int | None) -> bytes:
     content = _PACK_1(start_) + payload
@@ -719,7 +681,7 @@ _fast.add_readers(
     seven_bit=True,
 )
 _fast.add_writers((HOST_SENDER, BRAIN_SENDER), _ENCODERS, (), _CODES)
-_DECODERS["host"] = _decode_host
+_DECODERS["host"] = _fast.decoder(_cut_host)
 HOST_SENDER.cut = _cut_host
-_DECODERS["brain"] = _decode_brain
+_DECODERS["brain"] = _fast.decoder(_cut_brain)
 BRAIN_SENDER.cut = _cut_brain

@@ -147,30 +147,6 @@ def _head_daemon(head: bytes) -> tuple[_typing.Any, ...]:
 
 _DAEMON_HEADS = _fast.Heads(_head_daemon)
 
-def _decode_daemon(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data[0] != 0x62:
-        raise _fast.NeedsReference
-    end = data.find(b"\x65", 1)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 1
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 512:
-        raise _fast.NeedsReference
-    content = data[1:-1]
-    content = _STUFFING_0.decode(content)
-    length = content[0]
-    if not 2 <= len(content) == length <= 255:
-        raise _fast.NeedsReference
-    _, read = _DAEMON_HEADS[content[1:2]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
-
 def _frame_daemon(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, type_) + payload
     return b"\x62" + _STUFFING_0.encode(content) + b"\x65"
@@ -224,30 +200,6 @@ def _head_board(head: bytes) -> tuple[_typing.Any, ...]:
 
 
 _BOARD_HEADS = _fast.Heads(_head_board)
-
-def _decode_board(data: bytes) -> _typing.Any:
-    if type(data) is not bytes:
-        raise _fast.NeedsReference
-    if data[0] != 0x62:
-        raise _fast.NeedsReference
-    end = data.find(b"\x65", 1)
-    if end < 0:
-        raise _fast.NeedsReference
-    end += 1
-    if end != len(data):
-        raise _fast.NeedsReference
-    if len(data) > 512:
-        raise _fast.NeedsReference
-    content = data[1:-1]
-    content = _STUFFING_0.decode(content)
-    length = content[0]
-    if not 2 <= len(content) == length <= 255:
-        raise _fast.NeedsReference
-    _, read = _BOARD_HEADS[content[1:2]]
-    if read is None:
-        raise _fast.NeedsReference
-    return read(content)
-
 
 def _frame_board(payload: bytes, type_: int | None) -> bytes:
     content = _PACK_0(len(payload) + 2, type_) + payload
@@ -322,7 +274,7 @@ _fast.add_readers(
     around=(2, 0),
 )
 _fast.add_writers((DAEMON_SENDER, BOARD_SENDER), _ENCODERS, ())
-_DECODERS["daemon"] = _decode_daemon
+_DECODERS["daemon"] = _fast.decoder(_cut_daemon)
 DAEMON_SENDER.cut = _cut_daemon
-_DECODERS["board"] = _decode_board
+_DECODERS["board"] = _fast.decoder(_cut_board)
 BOARD_SENDER.cut = _cut_board

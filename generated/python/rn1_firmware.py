@@ -829,9 +829,6 @@ def decode(
         except _fast.ANYTHING:  # The reference says what is wrong.
             if type(frame) is not bytes:
                 return decode(_fast.octets(frame), sender)
-            if not _TABLES.are_filled:  # Nothing is: its tables were empty.
-                _TABLES.fill()
-                return decode(frame, sender)
             engine = "construct"
     return PROTOCOL.decode(frame, sender, engine)
 

@@ -48,6 +48,7 @@ __all__ = [
     "add_writers",
     "checked",
     "closed",
+    "decoder",
     "frame_formats",
     "new",
     "octets",
@@ -80,6 +81,24 @@ def checked(wire: bytes, cut: Cutter) -> bytes:
     if cut(wire, 0, 0, events) != len(wire) or len(events) != 1:
         raise NeedsReference
     return wire
+
+
+def decoder(cut: Cutter, start: bytes = b"") -> Callable[[bytes], Any]:
+    """Reader of the message of exactly one frame, which is cut as in a stream.
+
+    `start` is what the frame has to begin with where the end of the one before could be its start.
+    The reader raises NeedsReference where the bytes are not plainly one frame of a message.
+    """
+
+    def decode(frame: bytes) -> Any:
+        if type(frame) is not bytes or not frame.startswith(start):
+            raise NeedsReference
+        events: list[Any] = []
+        if cut(frame, 0, 0, events) != len(frame) or len(events) != 1:
+            raise NeedsReference
+        return events[0].message  # Events of unknown frames have none.
+
+    return decode
 
 
 def add_encoders(encoders: Mapping[type[Message], Callable[..., bytes]]) -> None:

@@ -40,11 +40,6 @@ def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     return _Cutter(frame, Lines(constants)).body()
 
 
-def decoder(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
-    """The body of `_decode_SENDER(data)`, which gives the message of exactly one frame."""
-    return _Decoder(frame, Lines(constants)).body()
-
-
 def header(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     """The body of `_head_SENDER(head)`: what a cutter remembers by the bytes with all numbers.
 
@@ -102,19 +97,13 @@ def identity_key(identity: tuple[int, ...]) -> str:
 class _Cutter(FrameFunction):
     """Writes the body of one function."""
 
-    at = "at"
-    """Where the frame starts in the data; empty: at 0."""
-    raw = "raw"
-    """The frame's bytes."""
-    numbers = "numbers"
-    """Where the values of the frame's parts are put."""
     stop = "return at"
-    """What is done where something is not plainly in order."""
+    """Statement for where something is not plainly in order."""
 
     def __init__(self, frame: FastFrame, lines: Lines) -> None:
         super().__init__(frame, lines)
         is_raw = not frame.stuffed and not frame.shares and not frame.end
-        self.content = self.raw if is_raw else "content"
+        self.content = "raw" if is_raw else "content"
         """All parts before stuffing, but not the end, nor literals in front."""
 
     def body(self) -> tuple[str, ...]:
@@ -207,7 +196,7 @@ class _Cutter(FrameFunction):
 
     def _place(self, offset: int) -> str:
         """So many bytes behind the start of the frame."""
-        return Place(self.at, offset).text
+        return Place("at", offset).text
 
     # --- where the frame ends ---------------------------------------------------------------------
 
@@ -227,14 +216,15 @@ class _Cutter(FrameFunction):
         start = self.frame.start
         if isinstance(start, AfterEnd) and self.frame.ended_by is not EndRule.DELIMITER:
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
-            self._stop_if(f"data.startswith({literal(self.frame.end)}{self._from})")
+            self._stop_if(f"data.startswith({literal(self.frame.end)}, at)")
         elif isinstance(start, StartSet) and not self._identity_starts:
             first = f"data[{self._place(0)}]"
             self._stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
         elif isinstance(start, StartLiteral):
-            begins = f"data.startswith({literal(start.bytes)}{self._from})"
+            begins = f"data.startswith({literal(start.bytes)}, at)"
             if self.frame.shares:
-                self._shared_start(begins)
+                # The place behind the start, which may be the end of the frame before.
+                self.lines.add(f"begun = at + {len(start.bytes)} * {begins}")
             elif len(start.bytes) == 1:
                 self._stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
             else:
@@ -246,15 +236,6 @@ class _Cutter(FrameFunction):
         return (
             self.frame.ended_by is EndRule.IDENTITY and self.frame.parts[0] in self.frame.identity
         )
-
-    @property
-    def _from(self) -> str:
-        """An argument that lets `startswith` look where the frame starts."""
-        return f", {self.at}" if self.at else ""
-
-    def _shared_start(self, begins: str) -> None:
-        """Set `begun`, the place behind the start, which may be the end of the frame before."""
-        self.lines.add(f"begun = at + {len(self.frame.start_bytes)} * {begins}")
 
     def _until_start(self) -> None:
         if isinstance(self.frame.start, StartLiteral):
@@ -289,7 +270,7 @@ class _Cutter(FrameFunction):
 
         Else each of many starts that have no end would be looked for one in all that has come.
         """
-        return f", {self._place(self.frame.framing.greatest)}" if self.at else ""
+        return f", {self._place(self.frame.framing.greatest)}"
 
     @property
     def _is_stuffed_throughout(self) -> bool:
@@ -298,7 +279,9 @@ class _Cutter(FrameFunction):
         return frame.stuffed and frame.before == len(frame.start_bytes) > 0 and not frame.behind
 
     def _raw(self) -> None:
-        self._take()
+        if self.frame.ended_by in (EndRule.LENGTH, EndRule.IDENTITY):
+            self._stop_if("end > size")
+        self.lines.add("raw = data[at:end]")
         if not self._length_bounds:
             self._not_too_long()
 
@@ -312,34 +295,28 @@ class _Cutter(FrameFunction):
         return plain and is_seen and bare <= frame.framing.greatest
 
     def _not_too_long(self) -> None:
-        if self._bound and self.frame.ended_by is EndRule.DELIMITER and not self.frame.shares:
+        if self.frame.ended_by is EndRule.DELIMITER and not self.frame.shares:
             return  # Its end would not have been found.
-        size = f"len({self.raw})"
+        size = "len(raw)"
         if self.frame.shares:
             size += f" + {len(self.frame.start_bytes)}"
         open_groups = any(group.fixed is None for group in self.frame.groups)
         if self.frame.ended_by is not EndRule.IDENTITY or open_groups:
             self._stop_if(f"{size} > {self.frame.framing.greatest}")
 
-    def _take(self) -> None:
-        """Take the frame's bytes, now that its end is known."""
-        if self.frame.ended_by in (EndRule.LENGTH, EndRule.IDENTITY):
-            self._stop_if("end > size")
-        self.lines.add("raw = data[at:end]")
-
     def _no_start_inside(self) -> None:
         """A start that can't occur inside of a frame ends it where it stands."""
         start = self.frame.start
         if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
-            self._stop_if(f"{self.raw}.find({literal(start.bytes)}, 1) > 0")
+            self._stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
         elif isinstance(start, StartSet) and start.protected and not self.is_seen_by_bits:
-            self._stop_if(f"{self.starts()}({self.raw}, 1)")
+            self._stop_if(f"{self.starts()}(raw, 1)")
 
     def _by_length(self) -> None:
         frame, length = self.frame, self.frame.length
         assert length is not None
         around = frame.head_size + frame.tail_size + len(frame.end)
-        self.lines.add(f"count = {self.number('data', length, self.at)} - {self.counted(length)}")
+        self.lines.add(f"count = {self.number('data', length, 'at')} - {self.counted(length)}")
         if frame.optional:
             with self.lines.block(f"if count == {-self._counted_optional(length)}:"):
                 self.lines.add(f"end = {self._place(around - self.optional_size)}")
@@ -355,11 +332,11 @@ class _Cutter(FrameFunction):
     def _by_kind(self) -> None:
         frame = self.frame
         around = frame.head_size + frame.tail_size + len(frame.end)
-        key = self.identity("data", self.at)
+        key = self.identity("data", "at")
         varies = self.frame.has_open_groups or self.frame.optional
         found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
-            found += f", {self.numbers}"
+            found += ", numbers"
         self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
         open_groups = frame.has_open_groups
         if open_groups and frame.end:
@@ -381,14 +358,14 @@ class _Cutter(FrameFunction):
             if less or open_groups:
                 self.lines.add(f"end = {self._place(around)} + payload_size{less}")
             else:
-                self.lines.add("end = at + frame_size" if self.at else "end = frame_size")
+                self.lines.add("end = at + frame_size")
         self._sized()
 
     def _sized(self) -> None:
         """Take a frame of a known size."""
         self._raw()
         if self.frame.end:
-            self._stop_if(f"not {self.raw}.endswith({literal(self.frame.end)})")
+            self._stop_if(f"not raw.endswith({literal(self.frame.end)})")
         self._no_start_inside()
 
     # --- what is in it ----------------------------------------------------------------------------
@@ -396,31 +373,26 @@ class _Cutter(FrameFunction):
     def _content(self) -> None:
         """Set `content`, where the frame's bytes are not the content themselves."""
         frame = self.frame
-        if self.content == self.raw:
+        if self.content == "raw":
             return
-        first = self._begun if frame.shares else str(frame.before or "")
+        first = "begun - at" if frame.shares else str(frame.before or "")
         last = str(-(len(frame.end) + frame.behind) or "")
         if frame.stuffed and (frame.before > len(frame.start_bytes) or frame.behind):
             # Else what is in front of the stuffed bytes and what is behind them would overlap.
             around = len(frame.end) + frame.behind
             least = f"{first} + {around}" if frame.shares else f"{frame.before + around}"
-            self._stop_if(f"len({self.raw}) < {least}")
-        self.lines.add(f"content = {self.raw}[{first}:{last}]")
+            self._stop_if(f"len(raw) < {least}")
+        self.lines.add(f"content = raw[{first}:{last}]")
         if not frame.stuffed:
             return
         self._unstuffed()
         pieces = ["content"]
         if frame.before and not frame.skipped:
-            pieces.insert(0, f"{self.raw}[:{frame.before}]")
+            pieces.insert(0, f"raw[:{frame.before}]")
         if frame.behind:
-            pieces.append(f"{self.raw}[{last}:{-len(frame.end) or ''}]")
+            pieces.append(f"raw[{last}:{-len(frame.end) or ''}]")
         if len(pieces) > 1:
             self.lines.add(f"content = {' + '.join(pieces)}")
-
-    @property
-    def _begun(self) -> str:
-        """How many bytes of the frame are a shared start."""
-        return "begun - at"
 
     def _unstuffed(self) -> None:
         """Take the stuffing off, as an encoder would have put it on.
@@ -522,7 +494,7 @@ class _Cutter(FrameFunction):
             if isinstance(part, LiteralPart) and not self.is_start(part):
                 first, source = self.frame.offset(part), self.content
                 if first < 0:
-                    first, source = first + self.frame.skipped, self.raw
+                    first, source = first + self.frame.skipped, "raw"
                 self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
 
     # --- checksums --------------------------------------------------------------------------------
@@ -639,11 +611,11 @@ class _Cutter(FrameFunction):
         """Look the bytes with all numbers up, which a stream repeats over and over."""
         head = f"_{self.name.upper()}_HEADS[{self.content}[{first}:{last}]]"
         if self.frame.length is not None:
-            self.lines.add(f"{self.numbers}, read = {head}")
+            self.lines.add(f"numbers, read = {head}")
             with self.lines.block("if read is None:"):
                 self._unknown()
         else:
-            self.lines.add(f"{self.numbers}, payload_size, read = {head}")
+            self.lines.add(f"numbers, payload_size, read = {head}")
             self._stop_if("0 <= payload_size != len(payload)")
 
     def _look_up(self, identity: list[str]) -> None:
@@ -663,59 +635,6 @@ class _Cutter(FrameFunction):
         self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, {payload}))")
         self._taken()
         self.lines.add("continue")
-
-
-class _Decoder(_Cutter):
-    """Writes the body of one that takes a frame by itself."""
-
-    at = ""
-    raw = "data"
-    numbers = "_"
-    stop = "raise _fast.NeedsReference"
-
-    def body(self) -> tuple[str, ...]:
-        self.lines.refuse_if("type(data) is not bytes")
-        self._start()
-        self._frame()
-        self._numbers()
-        self.lines.add(f"return read({self._read_from})")
-        return self.lines.text
-
-    def _numbers(self) -> None:
-        frame = self.frame
-        if frame.ended_by is not EndRule.IDENTITY and frame.remembered is not None:
-            self._known_head(*frame.remembered)
-            return
-        for part in frame.shown:
-            if part not in frame.identity and self.has_padding(part.type):
-                self.lines.add(self.number(self.content, part))
-        if frame.ended_by is not EndRule.IDENTITY:
-            self._look_up([self.number(self.content, part) for part in frame.identity])
-
-    def _compare_xor(self, first: int) -> None:
-        self._fold(first)
-
-    def _shared_start(self, begins: str) -> None:
-        self._stop_if(f"not {begins}")
-
-    @property
-    def _begun(self) -> str:
-        return str(len(self.frame.start_bytes))
-
-    def _until_start(self) -> None:
-        start = self.frame.start
-        if isinstance(start, StartLiteral):
-            self._stop_if(f"data.find({literal(start.bytes)}, 1) > 0")
-        else:
-            self._stop_if(f"{self.starts()}(data, 1)")
-        self._raw()
-
-    def _take(self) -> None:
-        if self.frame.ended_by is not EndRule.NEXT_START:
-            self._stop_if("end != len(data)")
-
-    def _unknown(self) -> None:
-        self.lines.add("raise _fast.NeedsReference")
 
 
 class _Header(FrameFunction):

@@ -179,11 +179,6 @@ class FastFrame:
         return self.head_size - self.skipped, self.tail_size
 
     @property
-    def can_decode(self) -> bool:
-        """Whether there is a function that takes a frame by itself."""
-        return self.can_cut and (self.ended_by is not EndRule.NEXT_START or self.length is not None)
-
-    @property
     def shows_identity(self) -> bool:
         """Whether events show the identity and no other part."""
         return self.shown == self.identity

@@ -17,6 +17,7 @@ from protogen.targets.python.engine.reading import message_reader, struct_reader
 from protogen.targets.python.engine.writing import struct_writer
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, mapping, text, tuple_of
+from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import method, wrapped
 
@@ -39,9 +40,10 @@ class FastSender(msgspec.Struct, frozen=True):
     upper: str
     cut: Function | None
     head: Function | None
-    decode: Function | None
     kinds: str
     frame: Function | None
+    shared: str
+    """The delimiter that both ends and starts frames; empty where none does."""
 
 
 class Fast(msgspec.Struct, frozen=True):
@@ -83,10 +85,7 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     lines = [*constants.text, *(line for function in functions for line in function.body)]
     for sender in senders:
         lines += [
-            line
-            for item in (sender.cut, sender.head, sender.decode, sender.frame)
-            if item
-            for line in item.body
+            line for item in (sender.cut, sender.head, sender.frame) if item for line in item.body
         ]
     lines += [function.head for function in functions]
     joined = "\n".join(lines)
@@ -234,7 +233,7 @@ def _overload(frame: FastFrame, group: IdentityGroup) -> Function:
 
 def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
     name = frame.sender.name
-    cut = head = alone = made = None
+    cut = head = made = None
     if frame.can_cut:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
@@ -242,13 +241,12 @@ def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) 
     if frame.can_cut and frame.ended_by is not EndRule.IDENTITY and frame.remembered is not None:
         body = cutting.header(frame, constants)
         head = _function(f"_head_{name}", "head: bytes", "tuple[_typing.Any, ...]", body)
-    if frame.can_decode:
-        body = cutting.decoder(frame, constants)
-        alone = _function(f"_decode_{name}", "data: bytes", "_typing.Any", body)
     if frame.can_frame:
         given = framing.arguments(frame, of_caller)
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
     kinds = cutting.kinds(frame) if cut else ""
-    return FastSender(name, name.upper(), cut, head, alone, kinds, made)
+    return FastSender(
+        name, name.upper(), cut, head, kinds, made, literal(frame.end) if frame.shares else ""
+    )
