@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
+from msgspec.structs import astuple
+
 from protogen.model.protocol import Sender
 from protogen.targets.c.frame.flat import FlatDecoder
 from protogen.targets.c.frame.groups import groups_of
@@ -23,12 +25,12 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     def flat(self) -> FlatDecoder | None:
         """View of a flat decoder, if this is one."""
         is_flat = decoder_style(self.plan, self.events) is DecoderStyle.FLAT
-        return FlatDecoder(self) if is_flat else None
+        return FlatDecoder(*astuple(self)) if is_flat else None
 
     @cached_property
     def push(self) -> PushDecoder:
         """View of a decoder with states."""
-        return PushDecoder(self)
+        return PushDecoder(*astuple(self))
 
     @cached_property
     def whole(self) -> WholeFrames | None:

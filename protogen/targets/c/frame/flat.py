@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-import msgspec
-
 from protogen.targets.c.frame import style
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.groups import GroupView
@@ -15,10 +13,8 @@ from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import Branch, Node
 
 
-class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
+class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     """Counters and conditions of a flat decoder."""
-
-    decoder: ReceivedFrame
 
     # --- counters ---------------------------------------------------------------------------------
 
@@ -29,7 +25,7 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
         Frames of other sizes are given up where they tell their size: nobody asks for them, and no
         frame can start inside of them.
         """
-        groups = self.decoder.groups
+        groups = self.groups
         sizes = {group.fixed if len(group.messages) == 1 else None for group in groups}
         return sizes.pop() if len(sizes) == 1 else None
 
@@ -43,7 +39,7 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
         """Bytes of content of the frame, as far as is known."""
         if self.only_size is None:
             return "decoder->limit"
-        return f"{self.decoder.around + self.only_size}U"
+        return f"{self.around + self.only_size}U"
 
     @property
     def idle_member(self) -> str:
@@ -52,7 +48,7 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
         No byte gets into a candidate whose limit is nought, which is the shortest test; but only
         where a limit is all that is in front of it can that not be mistaken for a payload's size.
         """
-        is_size = self.decoder.around > self.decoder.first_head
+        is_size = self.around > self.first_head
         return "content" if is_size or self.only_size is not None else "limit"
 
     @property
@@ -61,9 +57,9 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
 
         A frame that is complete but for its end has no room either, which is the same test.
         """
-        is_bounded = self.only_size is not None and not self.decoder.end
+        is_bounded = self.only_size is not None and not self.plan.end_bytes
         is_nothing = is_bounded or self.idle_member == "limit"
-        return 0 if is_nothing else self.decoder.buffer_size + 1
+        return 0 if is_nothing else self.buffer_size + 1
 
     @property
     def has_no_room(self) -> str:
@@ -74,45 +70,43 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
     # --- start and end ----------------------------------------------------------------------------
 
     @property
-    def is_start(self) -> str:
+    def sees_start(self) -> str:
         """The condition that a byte is a start."""
-        return "byte > 0x7FU" if self.decoder.gives_up_high_bytes else self.decoder.is_start("byte")
+        return "byte > 0x7FU" if self.gives_up_high_bytes else self.is_start("byte")
 
     @property
     def identity_is_start(self) -> bool:
         """True if a start is the whole identity, and tells the payload's size."""
-        return style.identity_is_start(self.decoder.plan)
+        return style.identity_is_start(self.plan)
 
     @property
     def keeps_start(self) -> bool:
         """True if something reads the start's bytes again."""
-        first_head = self.decoder.first_head
-        runs = [run for c in self.decoder.plan.checksums for run in c.covers]
-        return not self.decoder.literal or any(
-            not isinstance(run, bytes) and run.first.at(self.decoder.head_size, 0) < first_head
+        first_head = self.first_head
+        runs = [run for c in self.plan.checksums for run in c.covers]
+        return not self.plan.start_bytes or any(
+            not isinstance(run, bytes) and run.first.at(self.plan.head_size, 0) < first_head
             for run in runs
         )
 
     @property
     def completes_with_start(self) -> bool:
         """True if some frame is a start and nothing else."""
-        d = self.decoder
-        fits = d.around == d.first_head and not d.end
-        return fits and any(group.fixed == 0 for group in d.groups)
+        fits = self.around == self.first_head and not self.plan.end_bytes
+        return fits and any(group.fixed == 0 for group in self.groups)
 
     @property
     def is_complete(self) -> str:
         """The condition that all content is there where an end comes."""
-        return f"at == {self.limit}" + (" && decoder->node == 0U" if self.decoder.stuffing else "")
+        return f"at == {self.limit}" + (" && decoder->node == 0U" if self.stuffing else "")
 
     # --- parts ------------------------------------------------------------------------------------
 
     @property
     def checks_head(self) -> bool:
         """True if something behind the start, in front of the payload, is looked at."""
-        d = self.decoder
-        indices = [item.index for item in d.head_literals] + [n.last for n in d.head_numbers]
-        return any(index >= d.first_head for index in indices)
+        indices = [item.index for item in self.head_literals] + [n.last for n in self.head_numbers]
+        return any(index >= self.first_head for index in indices)
 
     def declares(self, number: NumberView) -> bool:
         """True if the case of a number has variables."""
@@ -121,27 +115,26 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
     @property
     def shows_tail(self) -> bool:
         """True if events show a part from behind the payload."""
-        return any(not part.placed.in_head for part in self.decoder.parts)
+        return any(not part.placed.in_head for part in self.parts)
 
     # --- messages ---------------------------------------------------------------------------------
 
     @property
     def always_known(self) -> bool:
         """True if every frame that gets to its end is a message."""
-        messages = [message for group in self.decoder.groups for message in group.messages]
-        return self.decoder.known_by_identity and not any(message.checks for message in messages)
+        messages = [message for group in self.groups for message in group.messages]
+        return self.known_by_identity and not any(message.checks for message in messages)
 
     @property
     def tells_by_key(self) -> bool:
         """True if the identity has to be looked at again."""
-        d = self.decoder
-        return d.identified and not (d.known_by_identity and len(d.groups) == 1)
+        return self.identified and not (self.known_by_identity and len(self.groups) == 1)
 
     def size_is_certain(self, group: GroupView) -> bool:
         """True if a payload of that identity has a size that its message can have."""
         if self.only_size is not None:
             return True
-        if self.decoder.known_by_identity and group.fixed is not None:
+        if self.known_by_identity and group.fixed is not None:
             return True
         message = group.messages[0]
         return len(group.messages) == 1 and bool(message.checks) and not message.fixed
@@ -150,43 +143,41 @@ class FlatDecoder(msgspec.Struct, frozen=True, dict=True):
 
     def branches(self, node: Node) -> tuple[Branch, ...]:
         """The branches of a node that a byte can get to."""
-        d = self.decoder
-        return tuple(b for b in node.branches if d.escape_starts or b.byte not in d.never_passed)
+        return tuple(
+            b for b in node.branches if self.escape_starts or b.byte not in self.never_passed
+        )
 
     @property
     def refused(self) -> tuple[int, ...]:
         """Bytes that never stand for themselves, and are no delimiters."""
-        d = self.decoder
-        assert d.stuffing is not None
-        refused = d.stuffing.nodes[0].refused
-        return tuple(b for b in refused if d.escape_starts or b not in d.never_passed)
+        assert self.stuffing is not None
+        refused = self.stuffing.nodes[0].refused
+        return tuple(b for b in refused if self.escape_starts or b not in self.never_passed)
 
     @property
     def further_branches(self) -> Iterator[tuple[str, Branch]]:
         """The conditions of the branches behind the first byte of a sequence."""
-        assert self.decoder.stuffing is not None
-        for node in self.decoder.stuffing.nodes[1:]:
+        assert self.stuffing is not None
+        for node in self.stuffing.nodes[1:]:
             for branch in self.branches(node):
                 yield f"byte == {byte(branch.byte)}{self._and_at(node)}", branch
 
     def _and_at(self, node: Node) -> str:
-        assert self.decoder.stuffing is not None
-        is_only = len(self.decoder.stuffing.nodes) <= 2
+        assert self.stuffing is not None
+        is_only = len(self.stuffing.nodes) <= 2
         return "" if is_only else f" && decoder->node == {node.number}U"
 
     @property
     def is_second_of_start(self) -> str:
         """The condition that a byte behind a delimiter's first is the start's second."""
-        d = self.decoder
-        assert d.stuffing is not None
-        condition = f"byte == {byte(d.literal[1])}"
-        if len(d.escape_nodes) == len(d.stuffing.nodes) - 1:
+        assert self.stuffing is not None
+        condition = f"byte == {byte(self.plan.start_bytes[1])}"
+        if len(self.escape_nodes) == len(self.stuffing.nodes) - 1:
             return condition
-        places = " || ".join(f"decoder->node == {node.number}U" for node in d.escape_nodes)
+        places = " || ".join(f"decoder->node == {node.number}U" for node in self.escape_nodes)
         return f"{condition} && ({places})"
 
     @property
     def is_second_of_end(self) -> str:
         """The same of the end."""
-        d = self.decoder
-        return f"byte == {byte(d.end[1])}{self._and_at(d.escape_nodes[0])}"
+        return f"byte == {byte(self.plan.end_bytes[1])}{self._and_at(self.escape_nodes[0])}"

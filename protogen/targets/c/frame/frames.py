@@ -116,13 +116,13 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         """Bytes behind the payload."""
         d = self.decoder
         if not d.optional_size:
-            return f"{d.tail_size}U"
-        return f"(payload == 0U ? {d.tail_size - d.optional_size}U : {d.tail_size}U)"
+            return f"{d.plan.tail_size}U"
+        return f"(payload == 0U ? {d.plan.tail_size - d.optional_size}U : {d.plan.tail_size}U)"
 
     @property
     def content_size(self) -> str:
         """Bytes of content."""
-        return f"{self.decoder.head_size}U + payload + {self.tail_size}"
+        return f"{self.decoder.plan.head_size}U + payload + {self.tail_size}"
 
     @property
     def length(self) -> str:

@@ -72,7 +72,7 @@ class FramingView(msgspec.Struct, frozen=True):
     @property
     def finds_high(self) -> bool:
         """True if some of these frames have bytes that carry seven bits alone."""
-        return any(d.whole and d.seven_bit for d in self.decoders)
+        return any(d.whole and d.plan.seven_bit for d in self.decoders)
 
 
 def framing_view(

@@ -101,7 +101,7 @@ def _counters(view: DecoderView) -> Iterator[Member]:
         "next": view.keeps_wire,
         "failed": view.keeps_wire or push.decides_later,
         "extra": push.decides_later,
-        "due": view.can_measure,
+        "due": view.plan.measures,
         "open_from": view.ends_at_start,
         "passed": push.wire_ends,
     }
@@ -116,10 +116,10 @@ def _states(view: DecoderView) -> Iterator[Member]:
         "state": is_push,
         "reason": view.all_events and (view.keeps_wire or push.decides_later),
         "flags": is_push and push.has_flags,
-        "group": view.can_measure,
+        "group": view.plan.measures,
         "behind": is_push and push.keeps_behind,
         "match": is_push and push.keeps_match,
-        "shared": view.shares,
+        "shared": view.plan.shares_delimiter,
         "held": is_push and push.searches and push.holds_delimiter,
         "end_left": push.awaits_end,
         "region": push.crosses_region,
@@ -134,6 +134,6 @@ def _states(view: DecoderView) -> Iterator[Member]:
 def _buffers(view: DecoderView) -> Iterator[Member]:
     yield Member("uint8_t", "buffer", view.buffer_size)
     if view.keeps_both:
-        yield Member("uint8_t", "unstuffed", view.greatest)
+        yield Member("uint8_t", "unstuffed", view.plan.greatest)
     if view.push.wire_ends:
-        yield Member(view.counter, "ends", view.greatest)
+        yield Member(view.counter, "ends", view.plan.greatest)

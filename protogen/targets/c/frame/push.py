@@ -33,13 +33,12 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         return self._known("==", "<", "false")
 
     def _known(self, equality: str, order: str, otherwise: str) -> str:
-        d = self.decoder
-        if not d.simple:
+        if not self.simple:
             return f"{self._flag('KNOWN')} {equality} 0U"
-        return f"decoder->content {order} {d.known_from}U" if d.known_from else otherwise
+        return f"decoder->content {order} {self.known_from}U" if self.known_from else otherwise
 
     def _flag(self, name: str) -> str:
-        return f"(decoder->flags & {self.decoder.protocol_upper}_{name})"
+        return f"(decoder->flags & {self.protocol_upper}_{name})"
 
     @property
     def open(self) -> str:
@@ -59,46 +58,43 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @cached_property
     def limit(self) -> str:
         """Bytes of content, as far as their number is known."""
-        d = self.decoder
-        if not d.simple:
+        if not self.simple:
             return "decoder->limit"
-        if not d.optional_size:
-            return f"decoder->payload + {d.around}U"
-        around = f"(decoder->payload == 0U ? {d.least_around}U : {d.around}U)"
+        if not self.optional_size:
+            return f"decoder->payload + {self.around}U"
+        around = f"(decoder->payload == 0U ? {self.least_around}U : {self.around}U)"
         return f"(decoder->payload + {around})"
 
     @cached_property
     def full(self) -> str:
         """The condition that all content is there."""
-        if self.decoder.simple:
+        if self.simple:
             return f"decoder->content == {self.limit}"
         return f"({self.known} && decoder->content == decoder->limit)"
 
     @property
     def surplus_is_plain(self) -> bool:
         """True if one reason stands for every byte too many."""
-        d = self.decoder
-        return d.announced == "SIZE" or (d.simple and not d.known_from)
+        return self.announced == "SIZE" or (self.simple and not self.known_from)
 
     @property
     def finds_size_early(self) -> bool:
         """True if the size is looked up as soon as the identity is there."""
-        return self._finds_size and self.decoder.plan.identity_is_early
+        return self._finds_size and self.plan.identity_is_early
 
     @property
     def finds_size_at_once(self) -> bool:
         """True if the size is known before the first byte, or how it will be."""
-        return self._finds_size and not self.decoder.identified
+        return self._finds_size and not self.identified
 
     @property
     def _finds_size(self) -> bool:
-        return bool(self.decoder.groups) and self.decoder.length is None
+        return bool(self.groups) and self.length is None
 
     def greatest_content(self, group: GroupView) -> int:
         """Bytes of content that a frame of the group has at most."""
-        d = self.decoder
-        around = d.around if group.greatest else d.least_around
-        return min(around + group.greatest, d.greatest)
+        around = self.around if group.greatest else self.least_around
+        return min(around + group.greatest, self.plan.greatest)
 
     # --- messages ---------------------------------------------------------------------------------
 
@@ -115,7 +111,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def checks_payloads(self) -> bool:
         """True if the bytes of some payload are looked at."""
-        return any(item.checks for group in self.decoder.groups for item in group.messages)
+        return any(item.checks for group in self.groups for item in group.messages)
 
     # --- bytes on the wire ------------------------------------------------------------------------
 
@@ -127,7 +123,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def wire_without_shared(self) -> str:
         """Bytes of a candidate without those of the frame before."""
-        return "decoder->wire" + (" - decoder->shared" if self.decoder.shares else "")
+        return "decoder->wire" + (" - decoder->shared" if self.plan.shares_delimiter else "")
 
     @property
     def own_wire(self) -> str:
@@ -142,7 +138,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def has_own_bytes(self) -> str:
         """The condition that a candidate has bytes that are nobody else's."""
-        if self.decoder.shares:
+        if self.plan.shares_delimiter:
             return "decoder->wire > decoder->shared"
         return "decoder->wire != 0U" if self.counts_wire else "decoder->content != 0U"
 
@@ -151,40 +147,39 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def crosses_region(self) -> bool:
         """True if the stuffed region ends before the frame does."""
-        return self.decoder.stuffing is not None and not self.decoder.region_to_end
+        return self.stuffing is not None and not self.region_to_end
 
     @property
     def is_always_inside(self) -> bool:
         """True if all content is stuffed."""
-        region = self.decoder.plan.region
+        region = self.plan.region
         is_first = region is not None and region.first.side is Side.HEAD and not region.first.offset
-        return self.decoder.region_to_end and is_first
+        return self.region_to_end and is_first
 
     @property
     def inside(self) -> str:
         """The condition that the next byte is stuffed."""
-        if self.decoder.region_to_end:
+        if self.region_to_end:
             return f"decoder->content >= {self.region_begin}"
-        return f"decoder->region == {self.decoder.protocol_upper}_INSIDE"
+        return f"decoder->region == {self.protocol_upper}_INSIDE"
 
     @property
     def region_begin(self) -> str:
         """Bytes of content in front of the region."""
-        assert self.decoder.plan.region is not None
-        return Index(self.decoder.plan.region.first, self.decoder.head_size).of(self.payload)
+        assert self.plan.region is not None
+        return Index(self.plan.region.first, self.plan.head_size).of(self.payload)
 
     @property
     def region_end(self) -> str:
         """Bytes of content up to the region's end."""
-        assert self.decoder.plan.region is not None
-        return Index(self.decoder.plan.region.end, self.decoder.head_size).of(self.payload)
+        assert self.plan.region is not None
+        return Index(self.plan.region.end, self.plan.head_size).of(self.payload)
 
     @property
     def sees_empty_region(self) -> bool:
         """True if a region of no content has bytes on the wire."""
-        d = self.decoder
-        can_be_empty = d.plan.region is not None and d.plan.region.can_be_empty
-        return can_be_empty and d.stuffing is not None and d.stuffing.is_cobs
+        can_be_empty = self.plan.region is not None and self.plan.region.can_be_empty
+        return can_be_empty and self.stuffing is not None and self.stuffing.is_cobs
 
     @property
     def _is_not_empty(self) -> list[str]:
@@ -193,9 +188,9 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def region_opens(self) -> str:
         """The condition that the region begins here."""
-        region = self.decoder.plan.region
+        region = self.plan.region
         assert region is not None
-        found = [f"decoder->region == {self.decoder.protocol_upper}_BEFORE"]
+        found = [f"decoder->region == {self.protocol_upper}_BEFORE"]
         if region.first.side is Side.TAIL:
             found.append(self.known)
         if self.region_begin != "0U":
@@ -205,37 +200,35 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def region_closes(self) -> str:
         """The condition that the region ends here."""
-        d = self.decoder
-        assert d.plan.region is not None
-        found = [f"decoder->region == {d.protocol_upper}_INSIDE"]
-        if d.plan.region.end.side is Side.TAIL:
+        assert self.plan.region is not None
+        found = [f"decoder->region == {self.protocol_upper}_INSIDE"]
+        if self.plan.region.end.side is Side.TAIL:
             found.append(self.known)
         found += [f"decoder->content >= {self.region_end}", *self._is_not_empty]
         if self.searches:
-            looked_for = "" if d.end_protected else f" && {self.searching}"
+            looked_for = "" if self.plan.end_is_unique else f" && {self.searching}"
             found.append(f"!({self.full}{looked_for})")
         return " && ".join(found)
 
     @property
     def finishes_region(self) -> bool:
         """True if it is looked at whether the region can end where it does."""
-        d = self.decoder
-        if d.stuffing is None:
+        if self.stuffing is None:
             return False
-        is_lenient = d.stuffing.kind is StuffingKind.LENIENT_CODES
-        return not d.region_to_end or (self.searches and not is_lenient)
+        is_lenient = self.stuffing.kind is StuffingKind.LENIENT_CODES
+        return not self.region_to_end or (self.searches and not is_lenient)
 
     @property
     def cobs_is_cut(self) -> str:
         """The condition that a group of COBS is not complete."""
-        assert self.decoder.stuffing is not None
-        nothing = "" if self.decoder.stuffing.lenient else " || decoder->code == 0U"
+        assert self.stuffing is not None
+        nothing = "" if self.stuffing.lenient else " || decoder->code == 0U"
         return f"decoder->node != 0U{nothing}"
 
     @property
     def region_reason(self) -> str:
         """The reason why the region can't end here, if it can't."""
-        stuffing, upper = self.decoder.stuffing, self.decoder.protocol_upper
+        stuffing, upper = self.stuffing, self.protocol_upper
         assert stuffing is not None
         refused, fine = f"{upper}_{stuffing.reason}", f"{upper}_NO_REASON"
         if not stuffing.is_cobs:
@@ -251,10 +244,10 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def held_beginnings(self) -> list[str]:
         """The conditions that what is held is the beginning of a sequence."""
-        assert self.decoder.stuffing is not None
+        assert self.stuffing is not None
         return [
             f"(decoder->node == {size}U && {equals(code.sequence[:size], 'held')})"
-            for code in self.decoder.stuffing.codes
+            for code in self.stuffing.codes
             for size in range(1, len(code.sequence))
         ]
 
@@ -268,168 +261,163 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def search_begins(self) -> str:
         """The condition that from now on a delimiter has to be looked for."""
-        looked_for = [] if self.decoder.end_protected else [self.not_searching]
+        looked_for = [] if self.plan.end_is_unique else [self.not_searching]
         return " && ".join([self.open, self.unknown, *looked_for])
 
     @property
     def in_payload(self) -> str:
         """The condition that a byte is the payload's, behind the head."""
-        d = self.decoder
-        known = "" if d.simple else f"{self.unknown} || "
-        head = f"{d.head_size}U + " if d.head_size else ""
+        known = "" if self.simple else f"{self.unknown} || "
+        head = f"{self.plan.head_size}U + " if self.plan.head_size else ""
         return f"{known}index < {head}decoder->payload"
 
     @property
     def payload_ends(self) -> str:
         """The condition that a byte is the payload's last."""
-        known = "" if self.decoder.simple else f"{self.known} && "
-        return f"{known}index + 1U == {self.decoder.head_size}U + decoder->payload"
+        known = "" if self.simple else f"{self.known} && "
+        return f"{known}index + 1U == {self.plan.head_size}U + decoder->payload"
 
     @property
     def payload_byte_is_high(self) -> str:
         """The condition that a byte of the payload has a bit that it must not have."""
-        d = self.decoder
-        if not (d.tail_size and d.can_open):
+        if not (self.plan.tail_size and self.can_open):
             return "byte > 0x7FU"
-        measuring = f" || {self._flag('MEASURING')} != 0U" if d.can_measure else ""
+        measuring = f" || {self._flag('MEASURING')} != 0U" if self.plan.measures else ""
         return f"byte > 0x7FU && ({self.known}{measuring})"
 
     # --- start and end ----------------------------------------------------------------------------
 
     def follow(self, at: str) -> str:
         """Bytes of the tracked literal that the input ends with behind a byte."""
-        d = self.decoder
         if len(self.matches) == 1:
             return f"({at} == {byte(self.matches[0])}) ? (uint8_t)1U : (uint8_t)0U"
-        name = "end" if d.start is StartRule.AFTER_END else "start"
-        return f"{d.prefix}_follow_{name}(decoder->match, {at})"
+        name = "end" if self.plan.start is StartRule.AFTER_END else "start"
+        return f"{self.prefix}_follow_{name}(decoder->match, {at})"
 
     @property
     def tracks(self) -> bool:
         """True if a candidate's bytes are looked at for a start."""
-        return self.keeps_match and (bool(self.decoder.literal) or not self.decoder.keeps_wire)
+        return self.keeps_match and (bool(self.plan.start_bytes) or not self.keeps_wire)
 
     @property
     def start(self) -> str:
         """The condition that a start ends with this byte."""
-        d = self.decoder
-        if d.start is StartRule.SET or not self.keeps_match:
-            return d.is_start("byte")
-        return f"decoder->match == {d.start_size}U"
+        if self.plan.start is StartRule.SET or not self.keeps_match:
+            return self.is_start("byte")
+        return f"decoder->match == {self.start_size}U"
 
     @property
     def judges_byte(self) -> bool:
         """True if the last byte of a candidate may be a start of one byte."""
-        is_literal = bool(self.decoder.literal) and not self.keeps_match
-        return is_literal or self.decoder.start is StartRule.SET
+        is_literal = bool(self.plan.start_bytes) and not self.keeps_match
+        return is_literal or self.plan.start is StartRule.SET
 
     @property
     def behind_start(self) -> str:
         """The condition that a start here is not the candidate's own."""
         counted = "wire >" if self.counts_wire else "content >="
-        return f"decoder->{counted} {self.decoder.first_head}U"
+        return f"decoder->{counted} {self.first_head}U"
 
     @property
     def starts_inside(self) -> bool:
         """True if a start inside a candidate ends it."""
-        d = self.decoder
-        is_marked = d.start in (StartRule.LITERAL, StartRule.SET)
-        return is_marked and not d.shares and (d.start_protected or d.ends_at_start)
+        is_marked = self.plan.start in (StartRule.LITERAL, StartRule.SET)
+        return (
+            is_marked
+            and not self.plan.shares_delimiter
+            and (self.plan.start_is_unique or self.ends_at_start)
+        )
 
     @property
     def start_inside(self) -> str:
         """The condition that this is a start that ends the candidate."""
-        may_close = [] if self.decoder.start_protected else [self.may_close]
+        may_close = [] if self.plan.start_is_unique else [self.may_close]
         return " && ".join([self.start, self.behind_start, *may_close])
 
     @property
     def may_close(self) -> str:
         """The condition that a start may end a frame here."""
-        return (
-            f"{self.searching} && decoder->wire >= decoder->open_from + {self.decoder.first_head}U"
-        )
+        return f"{self.searching} && decoder->wire >= decoder->open_from + {self.first_head}U"
 
     @property
     def idles(self) -> bool:
         """True if an end right behind a start, or behind an end, is an idle line."""
-        return self.decoder.shares or self.decoder.start is StartRule.AFTER_END
+        return self.plan.shares_delimiter or self.plan.start is StartRule.AFTER_END
 
     @property
     def is_idle_line(self) -> str:
         """The condition that an end comes where nothing of a frame is in front of it."""
-        d = self.decoder
         found = [
-            f"decoder->wire == {d.start_size + d.end_size}U",
-            f"byte == {byte(d.end[-1])}",
+            f"decoder->wire == {self.start_size + self.end_size}U",
+            f"byte == {byte(self.plan.end_bytes[-1])}",
         ]
-        if d.end_size > 1 and d.keeps_wire:
-            found.append(equals(d.end[:-1], "decoder->buffer", d.start_size))
-        elif d.end_size > 1:
-            found.append(f"decoder->held == {d.end_size - 1}U")
+        if self.end_size > 1 and self.keeps_wire:
+            found.append(equals(self.plan.end_bytes[:-1], "decoder->buffer", self.start_size))
+        elif self.end_size > 1:
+            found.append(f"decoder->held == {self.end_size - 1}U")
         return " && ".join(found)
 
     @property
     def search(self) -> str:
         """Call that looks at a byte inside a candidate: the search, or none."""
-        d = self.decoder
-        passed, sought = f"{d.prefix}_pass(decoder, byte)", f"{d.prefix}_search(decoder, byte)"
+        passed, sought = (
+            f"{self.prefix}_pass(decoder, byte)",
+            f"{self.prefix}_search(decoder, byte)",
+        )
         if not self.searches:
             return passed
-        conditions = [] if d.end_protected else [self.searching]
-        conditions += [self.behind_start] if d.start_size else []
+        conditions = [] if self.plan.end_is_unique else [self.searching]
+        conditions += [self.behind_start] if self.start_size else []
         if not conditions:
             return sought
         condition = " && ".join(conditions)
-        return f"{f'({condition})' if d.start_size else condition} ? {sought} : {passed}"
+        return f"{f'({condition})' if self.start_size else condition} ? {sought} : {passed}"
 
     @property
     def looks_back(self) -> bool:
         """True if parts are checked when only the end has told where they lie."""
-        d = self.decoder
-        return bool(d.seven_bit and d.tail_size) or d.checks_tail
+        return bool(self.plan.seven_bit and self.plan.tail_size) or self.checks_tail
 
     @property
     def tail_is_there(self) -> str:
         """The condition that no part is absent."""
-        optional = self.decoder.optional_tail
+        optional = self.optional_tail
         names = [f"!absent{number}" for number in range(1, len(optional) + 1)]
         return " && ".join(names) or "true"
 
     @property
     def compares_at_once(self) -> bool:
         """True if one byte tells a start, so that none has to be waited for."""
-        return self.decoder.start_size == 1 and not self.decoder.shares
+        return self.start_size == 1 and not self.plan.shares_delimiter
 
     @property
     def start_arguments(self) -> tuple[str, ...]:
         """The bytes of a start that was seen."""
-        return tuple(map(byte, self.decoder.literal)) or ("byte",)
+        return tuple(map(byte, self.plan.start_bytes)) or ("byte",)
 
     @property
     def counts_held_start(self) -> bool:
         """True if the first bytes of a start become noise when no more of it comes."""
-        d = self.decoder
-        return bool(d.literal) and d.all_events and self.keeps_match
+        return bool(self.plan.start_bytes) and self.all_events and self.keeps_match
 
     @property
     def opening(self) -> Iterator[tuple[str, str]]:
         """The members that a candidate begins with, and their values."""
-        d = self.decoder
-        stuffing = d.stuffing
+        stuffing = self.stuffing
         if self.counts_wire:
             yield "wire", "0"
         yield "content", "0"
-        yield "payload", d.unlimited if d.simple else "0"
+        yield "payload", self.unlimited if self.simple else "0"
         named = {
-            "limit": d.unlimited if not d.simple else "",
+            "limit": self.unlimited if not self.simple else "",
             "flags": "0" if self.has_flags else "",
             "behind": "0" if self.keeps_behind else "",
-            "match": "0" if self.keeps_match and d.literal else "",
-            "shared": "0" if d.shares else "",
+            "match": "0" if self.keeps_match and self.plan.start_bytes else "",
+            "shared": "0" if self.plan.shares_delimiter else "",
             "held": "0" if self.searches and self.holds_delimiter else "",
             "end_left": "0" if self.awaits_end else "",
             "passed": "0" if self.wire_ends else "",
-            "region": f"{d.protocol_upper}_BEFORE" if self.crosses_region else "",
+            "region": f"{self.protocol_upper}_BEFORE" if self.crosses_region else "",
             "node": "0" if stuffing is not None else "",
             "code": "0" if stuffing is not None and stuffing.is_cobs else "",
         }

@@ -62,27 +62,12 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     # --- sizes ------------------------------------------------------------------------------------
 
-    @property
-    def greatest(self) -> int:
-        """Wire bytes that no frame exceeds."""
-        return self.plan.greatest
-
     @cached_property
     def counter(self) -> str:
         """The type of what counts bytes of a candidate, and a few bytes behind it."""
-        most = self.greatest + self.around + self.start_size + self.end_size
+        most = self.plan.greatest + self.around + self.start_size + self.end_size
         bits = next(bits for bits in (8, 16, 32) if most < (1 << bits) - 4)
         return f"uint{bits}_t"
-
-    @cached_property
-    def head_size(self) -> int:
-        """Bytes in front of the payload."""
-        return self.plan.head_size
-
-    @cached_property
-    def tail_size(self) -> int:
-        """Bytes behind a payload."""
-        return self.plan.tail_size
 
     @cached_property
     def optional_size(self) -> int:
@@ -97,7 +82,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def around(self) -> int:
         """Bytes around a payload that is not empty."""
-        return self.head_size + self.tail_size
+        return self.plan.head_size + self.plan.tail_size
 
     @property
     def least_around(self) -> int:
@@ -107,64 +92,36 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def tail_for(self, size: str) -> str:
         """Bytes behind a payload of that size."""
         if not self.optional_size:
-            return f"{self.tail_size}U"
-        return f"({size} == 0U ? {self.tail_size - self.optional_size}U : {self.tail_size}U)"
+            return f"{self.plan.tail_size}U"
+        return (
+            f"({size} == 0U ? {self.plan.tail_size - self.optional_size}U : {self.plan.tail_size}U)"
+        )
 
     @property
     def start_size(self) -> int:
         """Bytes of the start literal."""
-        return len(self.literal)
+        return len(self.plan.start_bytes)
 
     @property
     def end_size(self) -> int:
         """Bytes of the end literal."""
-        return len(self.end)
+        return len(self.plan.end_bytes)
 
     @property
     def buffer_size(self) -> int:
         """Bytes of the buffer."""
         if self.keeps_wire:
-            return self.greatest + max(self.start_size - 1, 0)
+            return self.plan.greatest + max(self.start_size - 1, 0)
         content = self.around + self.plan.payload.greatest
-        return self.greatest if self.length is None else min(self.greatest, content)
+        return self.plan.greatest if self.length is None else min(self.plan.greatest, content)
 
     @property
     def unlimited(self) -> str:
         """Bound of a payload or all content while its size is unknown: the room for it."""
-        size = self.greatest if self.keeps_both else self.buffer_size
+        size = self.plan.greatest if self.keeps_both else self.buffer_size
         return f"{size - self.around if self.simple else size}U"
 
     # --- start and end ----------------------------------------------------------------------------
-
-    @property
-    def start(self) -> StartRule:
-        """Rule that marks the start of a frame."""
-        return self.plan.start
-
-    @property
-    def literal(self) -> bytes:
-        """The start literal; empty where something else marks the start."""
-        return self.plan.start_bytes
-
-    @property
-    def end(self) -> bytes:
-        """The end literal; empty where there is none."""
-        return self.plan.end_bytes
-
-    @property
-    def start_protected(self) -> bool:
-        """True if a start occurs nowhere else in a frame."""
-        return self.plan.start_is_unique
-
-    @property
-    def end_protected(self) -> bool:
-        """True if the end literal occurs nowhere else in a frame."""
-        return self.plan.end_is_unique
-
-    @property
-    def shares(self) -> bool:
-        """True if an end may be the next frame's start."""
-        return self.plan.shares_delimiter
 
     @property
     def first_head(self) -> int:
@@ -173,8 +130,8 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     def is_start(self, at: str) -> str:
         """The condition that a byte is a start of one byte."""
-        if self.literal:
-            return f"{at} == {byte(self.literal[0])}"
+        if self.plan.start_bytes:
+            return f"{at} == {byte(self.plan.start_bytes[0])}"
         first, last = self.plan.start_set[0], self.plan.start_set[-1]
         found = [f"{at} >= {byte(first)}"] if first > 0 else []
         found += [f"{at} <= {byte(last)}"] if last < 255 else []
@@ -267,11 +224,6 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return checksums_of(self.plan, self.protocol)
 
     @property
-    def seven_bit(self) -> bool:
-        """True if every payload byte has its most significant bit clear."""
-        return self.plan.seven_bit
-
-    @property
     def announced(self) -> str:
         """The reason where a frame has not the size that was announced."""
         return "SIZE" if self.length is None else "LENGTH"
@@ -303,19 +255,16 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return style.can_open(self.plan, self.events)
 
     @property
-    def can_measure(self) -> bool:
-        """True if the size of some payload follows from its first bytes alone."""
-        return self.plan.measures
-
-    @property
     def simple(self) -> bool:
         """True if the payload's size is known before the payload begins."""
-        return not self.can_open and not self.can_measure
+        return not self.can_open and not self.plan.measures
 
     @property
     def ends_at_start(self) -> bool:
         """True if some frame ends where the next starts, and nothing else tells."""
-        return self.can_open and not self.end and self.start is not StartRule.ANYWHERE
+        return (
+            self.can_open and not self.plan.end_bytes and self.plan.start is not StartRule.ANYWHERE
+        )
 
     @property
     def known_from(self) -> int:
