@@ -102,7 +102,7 @@ def _messages(unit: Unit) -> list[_Owner]:
     owners = []
     for message in unit.module.messages:
         roles = [("encode", message.encode), ("decode", message.decode)]
-        own = [frame for frame in frames if frame.name == message.name]
+        own = [frame for frame in frames if frame.message.name == message.name]
         roles += [("frame", frame.function) for frame in own]
         roles += [("send", frame.send) for frame in own if frame.sends]
         owners.append(_Owner(message.name, tuple(roles), message.struct))

@@ -90,7 +90,7 @@ def framing_view(
     frames = _frames(senders, decoders)
     distinct = _distinct(frames)
     message_frames = tuple(_message_frames(protocol, frames, decoders, views))
-    puts = tuple(dict.fromkeys(item.put_function for item in message_frames if item.sends))
+    puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.sends))
     used = _used(sinks, list(puts))
     return FramingView(
         decoders=decoders,

@@ -30,11 +30,6 @@ class MessageFrame(msgspec.Struct, frozen=True):
     # --- names ------------------------------------------------------------------------------------
 
     @property
-    def name(self) -> str:
-        """Name of the message."""
-        return self.message.name
-
-    @property
     def function(self) -> str:
         """The function that fills a buffer."""
         return f"{self.view.prefix}_frame{self.suffix}"
@@ -49,42 +44,12 @@ class MessageFrame(msgspec.Struct, frozen=True):
         """Prefix of its macros."""
         return f"{self.view.upper}{self.suffix.upper()}"
 
-    @property
-    def struct(self) -> str:
-        """The message's struct."""
-        return self.view.struct
-
     # --- the payload ------------------------------------------------------------------------------
 
     @property
     def validate(self) -> str:
         """The function that refuses values; empty where none is out of range."""
         return self.view.validate if self.view.validates else ""
-
-    @property
-    def measure(self) -> str:
-        """The function that says the payload's size."""
-        return self.view.measure
-
-    @property
-    def store(self) -> str:
-        """The function that fills the payload."""
-        return self.view.store
-
-    @property
-    def put(self) -> str:
-        """The function that hands the payload to a writer."""
-        return self.view.put
-
-    @property
-    def put_function(self) -> str:
-        """The text of that function."""
-        return self.view.put_function
-
-    @property
-    def fixed(self) -> int | None:
-        """Bytes of payload, if they are always as many."""
-        return self.message.sizes.fixed
 
     @property
     def no_frame_has(self) -> str:
@@ -155,7 +120,7 @@ class MessageFrame(msgspec.Struct, frozen=True):
 
     def _given(self) -> tuple[str, ...]:
         parts = (f"{item.type} {item.name}" for item in self.frame.arguments)
-        return (f"const {self.struct} *message", *parts)
+        return (f"const {self.view.struct} *message", *parts)
 
 
 def message_frame(

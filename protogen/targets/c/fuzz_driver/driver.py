@@ -96,7 +96,7 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
     return tuple(
         DrivenFrame(
             index,
-            indices[item.name],
+            indices[item.message.name],
             item.function,
             item.send if item.sends else "",
             _frame_parts(item),
@@ -117,11 +117,10 @@ def _frame_parts(item: MessageFrame) -> tuple[DrivenPart, ...]:
 
 def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, str], DrivenFrame]:
     return {
-        (sender.name, item.name): frame
+        (sender.name, item.message.name): frame
         for frame, item in zip(frames, unit.framing.messages, strict=True)
         for sender in unit.protocol.senders
-        if any(message.name == item.name for message in sender.messages)
-        and sender.frame == item.frame.plan.frame
+        if item.message in sender.messages and sender.frame == item.frame.plan.frame
     }
 
 

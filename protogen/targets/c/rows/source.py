@@ -89,13 +89,13 @@ def rows_source(
 def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
     return [
         _Spelling(
-            tables.index(item.name),
+            tables.index(item.message.name),
             item.function,
             f"{item.upper}_FRAME_ROOM",
             tuple(argument.part for argument in item.frame.arguments),
         )
         for item in unit.framing.messages
-        if item.name in tables
+        if item.message.name in tables
     ]
 
 
