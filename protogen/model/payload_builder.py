@@ -287,6 +287,5 @@ def _is_number_refusable(field: Field, type_: Integer) -> bool:
     if type_.role == "bool" and not field.ranged:
         return False
     least, greatest = allowed(field, type_)
-    machine_greatest = (1 << (type_.width - type_.signed)) - 1
-    machine_least = -machine_greatest - 1 if type_.signed else 0
+    machine_least, machine_greatest = type_.machine_bounds
     return least > machine_least or greatest < machine_greatest

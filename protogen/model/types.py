@@ -90,6 +90,12 @@ class Integer(_Number, frozen=True, kw_only=True):
         return storage_bits(self.bits)
 
     @property
+    def machine_bounds(self) -> tuple[int, int]:
+        """The least and the greatest value of the machine integer that holds the value."""
+        greatest = (1 << (self.width - self.signed)) - 1
+        return (-greatest - 1 if self.signed else 0), greatest
+
+    @property
     def is_named(self) -> bool:
         """True if its values or its bits have names of their own type."""
         return self.enum is not None or self.flags is not None

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import msgspec
 
-from protogen.model.meanings import BitField, Enum, Flags
+from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
 from protogen.model.types import Field, Float
 from protogen.targets import descriptions
@@ -48,32 +48,25 @@ def enum_view(item: Enum, names: Names) -> EnumView:
     fits = all(_LEAST_INT <= entry.value <= _GREATEST_INT for entry in item.values)
     unsigned_ones = all(entry.value >= 0 for entry in item.values)
     write = unsigned if unsigned_ones and not fits else number
-    values = tuple(
-        Macro(
-            names.claim_macro(item.name, entry.name),
-            write(entry.value),
-            _remark(entry.about, INDENT),
-        )
-        for entry in item.values
-    )
-    tag = names.claim(item.name)
-    return EnumView(
-        tag, comments.comment(descriptions.of_named(item.name, item.about)), values, not fits
-    )
+    values = tuple(_named(item, entry, write(entry.value), names, INDENT) for entry in item.values)
+    return EnumView(names.claim(item.name), _doc_of(item), values, not fits)
 
 
 def flags_view(item: Flags, names: Names) -> EnumView:
     """A set of flags."""
-    values = tuple(
-        Macro(
-            names.claim_macro(item.name, entry.name),
-            hexadecimal(1 << entry.bit),
-            _remark(entry.about),
-        )
-        for entry in item.bits
-    )
-    doc = comments.comment(descriptions.of_named(item.name, item.about))
-    return EnumView(item.name, doc, values, True)
+    values = tuple(_named(item, entry, hexadecimal(1 << entry.bit), names) for entry in item.bits)
+    return EnumView(item.name, _doc_of(item), values, True)
+
+
+def _named(
+    item: Enum | Flags, entry: NamedValue | NamedBit, value: str, names: Names, indent: int = 0
+) -> Macro:
+    name = names.claim_macro(item.name, entry.name)
+    return Macro(name, value, _remark(entry.about, indent))
+
+
+def _doc_of(item: Enum | Flags) -> tuple[str, ...]:
+    return comments.comment(descriptions.of_named(item.name, item.about))
 
 
 def _remark(item: About, indent: int = 0) -> tuple[str, ...]:

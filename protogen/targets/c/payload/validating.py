@@ -34,19 +34,15 @@ def _outside(step: IntegerStep, expression: str) -> str:
     if type_.role == "bool" and not step.field.ranged:
         return ""
     least, greatest = step.bounds
-    types_greatest = (1 << (type_.width - type_.signed)) - 1
-    types_least = -types_greatest - 1 if type_.signed else 0
-    tests = []
-    if least > types_least:
-        tests.append(f"{expression} < {constant(least, type_)}")
-    if greatest < types_greatest:
-        tests.append(f"{expression} > {constant(greatest, type_)}")
-    both = " || ".join(tests)
+    machine_least, machine_greatest = type_.machine_bounds
+    below = f"{expression} < {constant(least, type_)}" if least > machine_least else ""
+    above = f"{expression} > {constant(greatest, type_)}" if greatest < machine_greatest else ""
+    outside = " || ".join(filter(None, (below, above)))
     special = [item.value for item in step.field.special if not least <= item.value <= greatest]
-    if not tests or not special:
-        return both
+    if not outside or not special:
+        return outside
     others = [f"{expression} != {constant(value, type_)}" for value in special]
-    return " && ".join([f"({both})" if len(tests) > 1 else both, *others])
+    return " && ".join([f"({outside})" if below and above else outside, *others])
 
 
 def _is_bounded_by_bits(step: IntegerStep) -> bool:
