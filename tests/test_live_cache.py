@@ -82,7 +82,7 @@ def test_a_schema_that_changed_is_compiled(folder: Path) -> None:
 
 def test_an_error_is_told_though_the_schema_was_good(folder: Path) -> None:
     decode(folder)
-    (folder / "link.yaml").write_text(STATUS.replace("{type: uint8}}", "{type: byte}}"))
+    (folder / "link.yaml").write_text(STATUS.replace("{type: uint8}}", "{type: nonsense}}"))
     result = decode(folder)
     assert result.returncode == 1
     assert "error[" in result.stderr
