@@ -16,7 +16,7 @@ from protogen.copying import replace
 from protogen.model.frame import NumberPart
 from protogen.model.meanings import Enum, Flags, NamedValue
 from protogen.model.messages import Message
-from protogen.model.types import Field, Float, Integer, Type
+from protogen.model.types import Field, NumberType, Type
 from protogen.runtime.errors import Reason
 
 Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]
@@ -152,22 +152,22 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
         return None if self.part is None else self.part.type
 
     @property
-    def element(self) -> Integer | Float | None:
+    def element(self) -> NumberType | None:
         """The type of the number, or of each one of the array; None if it holds no numbers."""
         type_ = self.type
-        while type_ is not None and not isinstance(type_, Integer | Float):
+        while type_ is not None and not isinstance(type_, NumberType):
             type_ = getattr(type_, "element", None)
         return type_
 
     @property
     def enum(self) -> Enum | None:
         """The names of raw values, where they have some."""
-        return self.element.enum if isinstance(self.element, Integer) else None
+        return self.element.enum if self.element else None
 
     @property
     def flags(self) -> Flags | None:
         """The names of bits, where they have some."""
-        return self.element.flags if isinstance(self.element, Integer) else None
+        return self.element.flags if self.element else None
 
     @property
     def unit(self) -> str | None:
