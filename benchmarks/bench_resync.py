@@ -27,7 +27,7 @@ import compiled  # noqa: E402
 import corpus  # noqa: E402
 import recovery_oracle  # noqa: E402
 
-from protogen.runtime.frame import FrameSpec  # noqa: E402
+from protogen.runtime.framing.frame import FrameSpec  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
 
 OUT = Path(__file__).with_name("resync.md")

@@ -17,9 +17,9 @@ from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, P
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
-from protogen.runtime.assembly import join_parts
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
+from protogen.runtime.framing.assembly import join_parts
 from protogen.schema.syntax.octets import to_octets
 
 

@@ -27,7 +27,7 @@ from protogen.model.types import (
     Type,
 )
 from protogen.runtime.errors import ByteError
-from protogen.runtime.number import Number
+from protogen.runtime.payload.number import Number
 
 Scope = dict[str, int]
 

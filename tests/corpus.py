@@ -19,7 +19,7 @@ from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.frame import LiteralPart, StartSet
+from protogen.runtime.framing.frame import LiteralPart, StartSet
 
 WHOLE = "whole"
 """The kind of a piece that is an undamaged frame."""

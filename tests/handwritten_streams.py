@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from protogen.runtime import api as rt
-from protogen.runtime.assembly import encode_frame
+from protogen.runtime.framing.assembly import encode_frame
 
 
 def telling_bytes(sender: Any) -> bytes:

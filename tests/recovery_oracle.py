@@ -20,7 +20,7 @@ from typing import Any
 
 from corpus import Stream
 
-from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 
 
 class Fate(StrEnum):

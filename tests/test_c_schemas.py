@@ -27,7 +27,7 @@ from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.frame import LiteralPart
+from protogen.runtime.framing.frame import LiteralPart
 from protogen.targets.c.options import COptions
 
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"

@@ -31,11 +31,11 @@ from hypothesis import strategies as st
 
 from protogen.runtime import bulk_cut, fast, pairs
 from protogen.runtime import decoder as runtime_decoder
-from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
-from protogen.runtime.machine import Candidate, Cut, verdict_on
-from protogen.runtime.number import Number
-from protogen.runtime.pairs import NeedsReference, PairLists, Pairs, pair_codes
+from protogen.runtime.framing.assembly import encode_frame
+from protogen.runtime.framing.machine import Candidate, Cut, verdict_on
+from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.pairs import NeedsReference, PairLists, Pairs, pair_codes
 from protogen.runtime.values import replace
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from protogen.runtime.constructs import PayloadError
 from protogen.runtime.errors import DecodeError, EncodeError
-from protogen.runtime.message import build_payload
+from protogen.runtime.payload.message import build_payload
 
 EVERY_SCHEMA = pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
 
@@ -67,8 +67,8 @@ def test_the_reference_is_not_asked(path: Path, monkeypatch: pytest.MonkeyPatch)
     zero = [
         kind for kind in kinds if isinstance(read_as_reference(kind, bytes(kind.SIZES.least)), str)
     ]
-    monkeypatch.setattr("protogen.runtime.message.build_payload", never)
-    monkeypatch.setattr("protogen.runtime.message.Message.parse_payload", never)
+    monkeypatch.setattr("protogen.runtime.payload.message.build_payload", never)
+    monkeypatch.setattr("protogen.runtime.payload.message.Message.parse_payload", never)
     assert zero
     for kind in zero:
         payload = bytes(kind.SIZES.least)

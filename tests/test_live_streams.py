@@ -28,10 +28,10 @@ from corpus import (
 from hypothesis import settings
 
 from protogen.runtime import decoder as runtime_decoder
-from protogen.runtime.machine import Candidate
-from protogen.runtime.prefix import prefix_of
-from protogen.runtime.sender import Cutter
-from protogen.runtime.starts import starts_of
+from protogen.runtime.framing.machine import Candidate
+from protogen.runtime.framing.prefix import prefix_of
+from protogen.runtime.framing.sender import Cutter
+from protogen.runtime.framing.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(4, settings().max_examples // 20))

@@ -48,7 +48,7 @@ from protogen.native import build as building
 from protogen.native import cache, compiler
 from protogen.native.errors import NativeError
 from protogen.native.library import Decoder, Library
-from protogen.runtime.assembly import encode_frame
+from protogen.runtime.framing.assembly import encode_frame
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))

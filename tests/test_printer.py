@@ -44,7 +44,7 @@ from protogen.native.print_steps import (  # noqa: E402
     quoted,
 )
 from protogen.native.printer import PrintedRows, Printer, build_printer  # noqa: E402
-from protogen.runtime.assembly import encode_frame  # noqa: E402
+from protogen.runtime.framing.assembly import encode_frame  # noqa: E402
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 SENDERS = [(path, it.name) for path in SAMPLERS for it in protocol_of(path).senders]

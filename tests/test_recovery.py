@@ -34,7 +34,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recovery_oracle import Fate, fates, is_protected
 
-from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))

@@ -14,7 +14,7 @@ import pytest
 from generated.python import matty, rn1
 from protogen.runtime.api import InvalidEvent, MessageEvent, UnknownEvent, as_dict, replace
 from protogen.runtime.checksum import Crc
-from protogen.runtime.number import Number
+from protogen.runtime.payload.number import Number
 from protogen.runtime.transparency import Substitution
 
 # --- generated messages -------------------------------------------------------------------------

@@ -14,7 +14,7 @@ import protogen
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.values import raw_values
 from protogen.model.protocol import Protocol
-from protogen.runtime.nearest import nearest_reading
+from protogen.runtime.payload.nearest import nearest_reading
 from protogen.targets.python.emit import source
 
 SCHEMA = """\

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from protogen.runtime import api as rt
 from protogen.runtime.errors import ByteError
-from protogen.runtime.number import ByteOrder
-from protogen.runtime.pairs import pair_values
+from protogen.runtime.payload.number import ByteOrder
+from protogen.runtime.payload.pairs import pair_values
 
 Mode = matty.RobotMode
 Status = matty.StatusStatus

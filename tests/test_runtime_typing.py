@@ -44,7 +44,7 @@ from typing import assert_type
 from generated.python import rn1
 from protogen.runtime.api import FrameFormat, as_dict, replace
 from protogen.runtime.constructs import Struct
-from protogen.runtime.records import FieldRules
+from protogen.runtime.payload.records import FieldRules
 
 gyro = rn1.Gyro(status=1, int_x=2, int_y=3, int_z=4)
 assert_type(replace(gyro, status=2), rn1.Gyro)

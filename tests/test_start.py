@@ -15,7 +15,7 @@ SLOW = (
 )  # fmt: skip
 """Modules that take longer to import than a generated module may."""
 
-REFERENCE = ("constructs", "frame_format", "records", "rules")
+REFERENCE = ("constructs", "framing.frame_format", "payload.records", "payload.rules")
 """Modules of the runtime that only the reference needs, and that import what takes long."""
 
 USES = {
@@ -84,7 +84,7 @@ events = rn1.Decoder("host").feed(bytes.fromhex("80 00 FF"))
 assert [event.reason for event in events] == ["size"], events
 """
     modules = imported(code.format(path=sys.path), project_root)
-    assert {"protogen.runtime.machine", "protogen.runtime.content"} <= modules
+    assert {"protogen.runtime.framing.machine", "protogen.runtime.framing.content"} <= modules
 
 
 @pytest.mark.parametrize("name", ["api", "fast"])

@@ -24,7 +24,7 @@ from protogen.runtime.decoder import Decoder
 
 if TYPE_CHECKING:
     from protogen.capture.tables import Rows
-    from protogen.runtime.sender import SenderSpec
+    from protogen.runtime.framing.sender import SenderSpec
 
 Values = Sequence[Any]
 Scope = ChainMap[str, Values]

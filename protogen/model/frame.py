@@ -7,7 +7,7 @@ import msgspec
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
 from protogen.model.types import Integer
-from protogen.runtime.number import Number
+from protogen.runtime.payload.number import Number
 
 PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""

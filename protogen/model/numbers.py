@@ -7,7 +7,7 @@ from functools import cache
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import Constant, Field, Fixed, NumberType, Text, Type
 from protogen.runtime import checksum as sums
-from protogen.runtime.number import Number
+from protogen.runtime.payload.number import Number
 
 
 def codec(type_: NumberType) -> Number:

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from protogen.runtime.codec import Encoder, Protocol
 from protogen.runtime.decoder import BytesLike, Decoder, Engine
-from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import CodecError, DecodeError, EncodeError, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEvent
-from protogen.runtime.frame import (
+from protogen.runtime.framing.frame import (
     AfterEnd,
     Anywhere,
     ChecksumPart,
@@ -25,10 +24,12 @@ from protogen.runtime.frame import (
     StartSet,
     ValuePart,
 )
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.lazy import importer, lazily
-from protogen.runtime.message import Message, Record, Sizes
-from protogen.runtime.number import Number
-from protogen.runtime.physical import (
+from protogen.runtime.payload.enums import Flags, OpenEnum
+from protogen.runtime.payload.message import Message, Record, Sizes
+from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.physical import (
     BitRange,
     EnumRange,
     Physical,
@@ -36,7 +37,6 @@ from protogen.runtime.physical import (
     PhysicalListOrNone,
     PhysicalOrNone,
 )
-from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.values import OMITTED, Frozen, as_dict, replace
 
 __all__ = [
@@ -103,9 +103,9 @@ __all__ = [
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from protogen.runtime.frame_format import FrameFormat
-    from protogen.runtime.records import ArrayRule, FieldRules, StructRule, SwitchRule
-    from protogen.runtime.rules import (
+    from protogen.runtime.framing.frame_format import FrameFormat
+    from protogen.runtime.payload.records import ArrayRule, FieldRules, StructRule, SwitchRule
+    from protogen.runtime.payload.rules import (
         BoolRule,
         FloatRule,
         IntegerRule,
@@ -118,14 +118,14 @@ else:
         globals(),
         {
             "fractions": ("Fraction",),
-            ".frame_format": ("FrameFormat",),
-            ".records": (
+            ".framing.frame_format": ("FrameFormat",),
+            ".payload.records": (
                 "ArrayRule",
                 "FieldRules",
                 "StructRule",
                 "SwitchRule",
             ),
-            ".rules": (
+            ".payload.rules": (
                 "BoolRule",
                 "FloatRule",
                 "IntegerRule",

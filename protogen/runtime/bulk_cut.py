@@ -14,8 +14,8 @@ from zlib import adler32
 from protogen.runtime.checksum import are_sound
 from protogen.runtime.errors import ANYTHING, NeedsReference
 from protogen.runtime.events import MessageEvent
-from protogen.runtime.number import BYTES
-from protogen.runtime.sender import Cutter
+from protogen.runtime.framing.sender import Cutter
+from protogen.runtime.payload.number import BYTES
 
 MIN_DATA = 2048
 """Bytes of input below which no run is looked for."""

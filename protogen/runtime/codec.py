@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Generic
 
-from protogen.runtime.assembly import encode_frame
 from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import FrameEvent, UnknownEvent
-from protogen.runtime.frame import CounterPart
-from protogen.runtime.lines import encode_line as line_to_bytes
-from protogen.runtime.lines import split_parts
-from protogen.runtime.message import Message, build_payload
-from protogen.runtime.reading import read_frame
-from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.assembly import encode_frame
+from protogen.runtime.framing.frame import CounterPart
+from protogen.runtime.framing.lines import encode_line as line_to_bytes
+from protogen.runtime.framing.lines import split_parts
+from protogen.runtime.framing.reading import read_frame
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.payload.message import Message, build_payload
 
 
 class Protocol(Generic[MessageT_co, PartsT_co]):

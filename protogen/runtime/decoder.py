@@ -6,11 +6,11 @@ from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
-from protogen.runtime.frame import AfterEnd, Anywhere
-from protogen.runtime.machine import Candidate, Cut, Failure
-from protogen.runtime.prefix import Prefix, prefix_of
-from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.starts import starts_of
+from protogen.runtime.framing.frame import AfterEnd, Anywhere
+from protogen.runtime.framing.machine import Candidate, Cut, Failure
+from protogen.runtime.framing.prefix import Prefix, prefix_of
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.starts import starts_of
 
 Engine = Literal["fast", "construct"]
 """What decodes and encodes. `construct` is the reference: byte by byte, and construct's own parser.

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, Literal, Self
 
 from protogen.runtime.errors import EncodeError, Reason
-from protogen.runtime.extraction import payload_of
-from protogen.runtime.lines import encode_line
-from protogen.runtime.machine import Cut
-from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.extraction import payload_of
+from protogen.runtime.framing.lines import encode_line
+from protogen.runtime.framing.machine import Cut
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.values import Frozen, Value
 
 

@@ -12,20 +12,20 @@ from typing import Any, Literal, Protocol, TypeVar
 
 from protogen.runtime.bulk_cut import BulkCutter
 from protogen.runtime.decoder import octets
-from protogen.runtime.enums import KEPT, Flags, OpenEnum
 from protogen.runtime.errors import ANYTHING, NeedsReference
 from protogen.runtime.events import UnknownEvent
-from protogen.runtime.extraction import payload_of
 from protogen.runtime.formats import frame_formats
-from protogen.runtime.message import Message
-from protogen.runtime.number import BYTES, ByteOrder, Number
-from protogen.runtime.pairs import (
+from protogen.runtime.framing.extraction import payload_of
+from protogen.runtime.framing.sender import Cutter, SenderSpec
+from protogen.runtime.payload.enums import KEPT, Flags, OpenEnum
+from protogen.runtime.payload.message import Message
+from protogen.runtime.payload.number import BYTES, ByteOrder, Number
+from protogen.runtime.payload.pairs import (
     PairLists,
     Pairs,
     pair_codes,
     pair_values,
 )
-from protogen.runtime.sender import Cutter, SenderSpec
 from protogen.runtime.values import Frozen
 
 AnyT = TypeVar("AnyT")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from protogen.runtime.constructs import *  # noqa: F403 - its `__all__` says which
     from protogen.runtime.constructs import Struct
-    from protogen.runtime.sender import SenderSpec
+    from protogen.runtime.framing.sender import SenderSpec
 
 
 def empty() -> Struct:
@@ -32,7 +32,7 @@ def frame_formats(
         sender = senders.get(name)
         if sender is None:
             raise AttributeError(f"module {namespace['__name__']!r} has no attribute {name!r}")
-        from protogen.runtime.frame_format import FrameFormat
+        from protogen.runtime.framing.frame_format import FrameFormat
 
         namespace[name] = made = FrameFormat(sender)
         return made

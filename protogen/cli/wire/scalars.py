@@ -15,7 +15,7 @@ from protogen.model.payload_plan import IntegerStep
 from protogen.model.readings import decimal
 from protogen.model.types import Field
 from protogen.problems import did_you_mean, hint_for
-from protogen.runtime.nearest import nearest_reading
+from protogen.runtime.payload.nearest import nearest_reading
 
 
 def integer_value(step: IntegerStep, written: Any, path: str) -> int:

@@ -15,7 +15,7 @@ from protogen.convert.columns.rows import Rows
 from protogen.convert.columns.tables import Column, Table, Tables
 from protogen.convert.inputs.chunks import Chunk, Clock
 from protogen.runtime.decoder import Decoder
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.sender import SenderSpec
 
 _ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 from protogen.convert.columns.batches import BatchDecoder, EventDecoder
 from protogen.convert.columns.tables import Tables
 from protogen.convert.formats import OutputFormat
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.sender import SenderSpec
 
 if TYPE_CHECKING:
     from protogen.convert.columns.column_batches import ColumnDecoder, Readings

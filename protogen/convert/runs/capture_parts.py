@@ -28,7 +28,7 @@ from protogen.convert.runs.journal import marker_of
 from protogen.convert.writers.format_writers import write_all
 from protogen.convert.writers.pending_files import Pending, name_place, write_whole
 from protogen.model.protocol import Protocol
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.sender import SenderSpec
 
 _LEAST_LEAD = 1 << 14
 """A decoder that is to guess an entry begins at least so many bytes before the range."""

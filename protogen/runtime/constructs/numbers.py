@@ -10,7 +10,7 @@ from construct import Construct
 
 from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read, short
 from protogen.runtime.errors import ByteError
-from protogen.runtime.number import ByteOrder, Number
+from protogen.runtime.payload.number import ByteOrder, Number
 
 
 class _Codec(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import binascii
 from collections.abc import Iterator
 
-from protogen.runtime.number import BYTES
+from protogen.runtime.payload.number import BYTES
 from protogen.runtime.transparency.regions import TransparencyError, Unstuffer, decode_by_byte
 from protogen.runtime.values import Frozen
 

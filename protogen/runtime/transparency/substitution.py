@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 
-from protogen.runtime.number import BYTES
+from protogen.runtime.payload.number import BYTES
 from protogen.runtime.transparency.regions import (
     EscapeTransform,
     TransparencyError,

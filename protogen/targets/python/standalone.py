@@ -61,6 +61,6 @@ def _modules(folder: Traversable, path: PurePosixPath) -> Iterator[tuple[PurePos
 
 
 def _relative(text: str, module: PurePosixPath) -> str:
-    """`from protogen.runtime.frame import ...` -> `from .frame import ...`."""
+    """`from protogen.runtime.framing.frame import ...` -> `from .frame import ...`."""
     dots = "." * len(module.parts)
     return _IMPORT.sub(lambda found: f"{found[1]}{dots}" + (" " if found[2] == " " else ""), text)

@@ -1,7 +1,7 @@
 """Frames as a decoder receives them: what the templates of every style need to know.
 
-The C code follows `protogen/runtime/machine.py` and `decoder.py`, with everything that a frame does
-not need left out. What is a fact of the frame is in its plan; here is what C makes of it.
+The C code follows the runtime's `framing/machine.py` and `decoder.py`, with everything that a frame
+does not need left out. What is a fact of the frame is in its plan; here is what C makes of it.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from protogen.runtime.frame import (
+from protogen.runtime.framing.frame import (
     AfterEnd,
     ChecksumPart,
     FrameSpec,

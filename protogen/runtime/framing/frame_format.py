@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, BinaryIO
 
-from protogen.runtime.assembly import check_cut, encode_frame
 from protogen.runtime.constructs import Container, PayloadError, Piece
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.lines import split_parts
-from protogen.runtime.machine import Candidate, Cut, Failure
-from protogen.runtime.reading import may_start
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.assembly import check_cut, encode_frame
+from protogen.runtime.framing.lines import split_parts
+from protogen.runtime.framing.machine import Candidate, Cut, Failure
+from protogen.runtime.framing.reading import may_start
+from protogen.runtime.framing.sender import SenderSpec
 
 
 class FrameFormat(Piece):

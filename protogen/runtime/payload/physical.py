@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast, overload
 
 if TYPE_CHECKING:
-    from protogen.runtime.rules import FloatRule, IntegerRule
+    from protogen.runtime.payload.rules import FloatRule, IntegerRule
 
 EnumT = TypeVar("EnumT", bound=int)
 ValueT = TypeVar("ValueT")

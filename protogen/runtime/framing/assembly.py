@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any, Self
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.frame import (
+from protogen.runtime.framing.frame import (
     ChecksumPart,
     CounterPart,
     LengthPart,
@@ -17,10 +17,10 @@ from protogen.runtime.frame import (
     PayloadPart,
     ValuePart,
 )
-from protogen.runtime.layout import Layout, is_optional
-from protogen.runtime.machine import Cut, verdict_on
-from protogen.runtime.number import as_integer
-from protogen.runtime.sender import Identity, SenderSpec
+from protogen.runtime.framing.layout import Layout, is_optional
+from protogen.runtime.framing.machine import Cut, verdict_on
+from protogen.runtime.framing.sender import Identity, SenderSpec
+from protogen.runtime.payload.number import as_integer
 
 
 def encode_frame(

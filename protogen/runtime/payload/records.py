@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.rules import OctetsRule, Rule, Scope, Violation
+from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, Violation
 
 FieldRules = tuple[tuple[str, Rule], ...]
 """Name and rule of each field, in wire order."""

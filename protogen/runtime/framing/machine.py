@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from protogen.runtime.content import Content, Rejected
 from protogen.runtime.errors import Reason
-from protogen.runtime.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
-from protogen.runtime.layout import Slice
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.content import Content, Rejected
+from protogen.runtime.framing.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
+from protogen.runtime.framing.layout import Slice
+from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from protogen.runtime.layout import Layout, is_optional
-from protogen.runtime.machine import Cut, verdict_on
-from protogen.runtime.sender import SenderSpec
+from protogen.runtime.framing.layout import Layout, is_optional
+from protogen.runtime.framing.machine import Cut, verdict_on
+from protogen.runtime.framing.sender import SenderSpec
 
 
 def payload_of(sender: SenderSpec[Any, Any], raw: bytes) -> bytes:

@@ -10,8 +10,8 @@ from binascii import unhexlify
 from itertools import accumulate
 from typing import Any
 
-from protogen.runtime.content import Content, Rejected
-from protogen.runtime.frame import (
+from protogen.runtime.framing.content import Content, Rejected
+from protogen.runtime.framing.frame import (
     AfterEnd,
     Anywhere,
     ChecksumPart,
@@ -21,10 +21,10 @@ from protogen.runtime.frame import (
     StartLiteral,
     StartSet,
 )
-from protogen.runtime.layout import is_optional
-from protogen.runtime.number import BYTES
-from protogen.runtime.sender import SenderSpec
-from protogen.runtime.starts import starts_of
+from protogen.runtime.framing.layout import is_optional
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.framing.starts import starts_of
+from protogen.runtime.payload.number import BYTES
 from protogen.runtime.transparency import Base16Upper, Cobs, TransparencyError
 from protogen.runtime.values import Frozen, replace
 

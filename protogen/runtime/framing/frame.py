@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
-from protogen.runtime.number import Number
+from protogen.runtime.payload.number import Number
 from protogen.runtime.transparency import Transparency
 from protogen.runtime.values import Frozen
 

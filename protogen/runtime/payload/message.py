@@ -11,8 +11,8 @@ from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
     from protogen.runtime.constructs import Construct
-    from protogen.runtime.records import FieldRules, StructRule
-    from protogen.runtime.rules import Scope, Violation
+    from protogen.runtime.payload.records import FieldRules, StructRule
+    from protogen.runtime.payload.rules import Scope, Violation
 
 
 def _rule(record: type[Record]) -> tuple[StructRule, Scope]:
@@ -20,8 +20,8 @@ def _rule(record: type[Record]) -> tuple[StructRule, Scope]:
 
     It is imported where values have to be looked at one by one.
     """
-    from protogen.runtime.records import StructRule
-    from protogen.runtime.rules import Scope
+    from protogen.runtime.payload.records import StructRule
+    from protogen.runtime.payload.rules import Scope
 
     return StructRule(record), Scope()
 

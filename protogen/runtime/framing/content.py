@@ -9,7 +9,7 @@ import sys
 from typing import Any
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
-from protogen.runtime.frame import (
+from protogen.runtime.framing.frame import (
     ChecksumPart,
     LengthPart,
     LiteralPart,
@@ -17,8 +17,8 @@ from protogen.runtime.frame import (
     Part,
     PayloadPart,
 )
-from protogen.runtime.layout import Slice, is_optional
-from protogen.runtime.sender import IdentityGroup, SenderSpec
+from protogen.runtime.framing.layout import Slice, is_optional
+from protogen.runtime.framing.sender import IdentityGroup, SenderSpec
 
 _UNLIMITED = sys.maxsize
 

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
-from protogen.runtime.enums import Flags, OpenEnum
 from protogen.runtime.errors import EncodeError, join_path
-from protogen.runtime.nearest import nearest_reading
-from protogen.runtime.number import as_integer
+from protogen.runtime.payload.enums import Flags, OpenEnum
+from protogen.runtime.payload.nearest import nearest_reading
+from protogen.runtime.payload.number import as_integer
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from protogen.runtime.assembly import encode_frame
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.number import as_integer
-from protogen.runtime.sender import Identity, SenderSpec
+from protogen.runtime.framing.assembly import encode_frame
+from protogen.runtime.framing.sender import Identity, SenderSpec
+from protogen.runtime.payload.number import as_integer
 
 _EVENTS = ("message", "unknown", "invalid")
 

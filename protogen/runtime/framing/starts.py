@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from protogen.runtime.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 
 
 class Starts:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from protogen.runtime.errors import NeedsReference
-from protogen.runtime.number import ByteOrder, Number
+from protogen.runtime.payload.number import ByteOrder, Number
 
 
 class Pairs(dict[int, int]):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from protogen.runtime.errors import DecodeError, PayloadFault
 from protogen.runtime.events import FrameEvent, frame_event
-from protogen.runtime.frame import StartLiteral, StartSet
-from protogen.runtime.layout import Layout
-from protogen.runtime.machine import Candidate, Cut, Failure, verdict_on
-from protogen.runtime.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.frame import StartLiteral, StartSet
+from protogen.runtime.framing.layout import Layout
+from protogen.runtime.framing.machine import Candidate, Cut, Failure, verdict_on
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 
 
 def read_frame(

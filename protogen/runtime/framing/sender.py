@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
-from protogen.runtime.frame import FrameSpec
-from protogen.runtime.layout import Layout
-from protogen.runtime.message import Message
+from protogen.runtime.framing.frame import FrameSpec
+from protogen.runtime.framing.layout import Layout
+from protogen.runtime.payload.message import Message
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)

@@ -1,0 +1,1 @@
+"""Payloads: messages, their fields, and what the values of fields mean."""
