@@ -9,10 +9,10 @@ from protogen.copying import replace
 from protogen.evolution.change import Change
 from protogen.evolution.compare import Comparison
 from protogen.model.messages import Message
-from protogen.model.nesting import fields_inside, is_integer
+from protogen.model.nesting import fields_inside
 from protogen.model.origin import About
 from protogen.model.protocol import Protocol
-from protogen.model.types import Array, Field
+from protogen.model.types import Array, Field, is_integer
 from protogen.problems.span import Span
 
 

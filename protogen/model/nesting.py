@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeGuard
 
 from protogen.copying import replace
-from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, Fill, Struct, Switch, Type, is_integer
 
 
 def inner_types(type_: Type) -> tuple[Type, ...]:
@@ -28,11 +27,6 @@ def fields_inside(type_: Type) -> Iterator[Field]:
         return
     for inner in inner_types(type_):
         yield from fields_inside(inner)
-
-
-def is_integer(type_: Type) -> TypeGuard[Integer]:
-    """True if the values are integers, whatever they mean."""
-    return isinstance(type_, Integer)
 
 
 def is_composite(type_: Type) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
 from fractions import Fraction
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, TypeGuard
 
 import msgspec
 
@@ -378,6 +378,11 @@ NumberType = Integer | Float
 Scalar = Integer | Float | Text | Octets
 """A type of single values."""
 Type = Scalar | Struct | Array | Switch
+
+
+def is_integer(type_: Type) -> TypeGuard[Integer]:
+    """True if the values are integers, whatever they mean."""
+    return isinstance(type_, Integer)
 
 
 class Field(msgspec.Struct, frozen=True, kw_only=True):

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from protogen.model.nesting import is_integer
-from protogen.model.types import Array, Field, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.types.constants import named_raw_value
 from protogen.schema.syntax.octets import to_octets
 

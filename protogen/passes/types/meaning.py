@@ -5,8 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from protogen.model.meanings import NamedValue
-from protogen.model.nesting import is_integer
-from protogen.model.types import Array, Constant, Field, NumberType, Type
+from protogen.model.types import Array, Constant, Field, NumberType, Type, is_integer
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective

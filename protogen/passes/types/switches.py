@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from protogen.copying import replace
-from protogen.model.nesting import is_integer
-from protogen.model.types import Case, Field, Struct, Switch
+from protogen.model.types import Case, Field, Struct, Switch, is_integer
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.constants import named_raw_value
 from protogen.passes.types.declared import Effective

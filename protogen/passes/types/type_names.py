@@ -8,6 +8,7 @@ from typing import Literal
 
 import msgspec
 
+from protogen.copying import replace
 from protogen.model.types import ByteOrder, Float, Integer
 from protogen.problems import hint_for
 
@@ -83,9 +84,9 @@ def integer(name: str, layout: Layout) -> Integer | None:
     """
     width = integer_width(name)
     if width is not None and has_width(name):
-        return _ordered(
-            Integer(bits=width, signed=name[0] == "s", byte_bits=layout.byte_bits), layout
-        )
+        plain = Integer(bits=width, signed=name[0] == "s", byte_bits=layout.byte_bits)
+        order = layout.byte_order if plain.size > 1 else None
+        return plain if order is None else replace(plain, byte_order=order)
     if name == "byte":
         return Integer(bits=8, byte_bits=8, role="byte")
     if name == "char":
@@ -93,17 +94,6 @@ def integer(name: str, layout: Layout) -> Integer | None:
     if name == "bool":
         return Integer(bits=1, byte_bits=layout.byte_bits, role="bool")
     return None
-
-
-def _ordered(type_: Integer, layout: Layout) -> Integer:
-    if type_.size == 1 or layout.byte_order is None:
-        return type_
-    return Integer(
-        bits=type_.bits,
-        signed=type_.signed,
-        byte_bits=type_.byte_bits,
-        byte_order=layout.byte_order,
-    )
 
 
 def float_type(name: str, layout: Layout) -> Float | None:

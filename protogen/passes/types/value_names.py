@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from protogen.copying import replace
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
-from protogen.model.nesting import is_integer
-from protogen.model.types import NumberType
+from protogen.model.types import NumberType, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.types.declared import VALUE_NAMES, Effective
 from protogen.schema.syntax.fields import NamedBits
