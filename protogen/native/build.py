@@ -61,7 +61,7 @@ def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
 
 
 def _machine() -> tuple[str, ...]:
-    """What loads a library: of several machines that share a cache, each has its own."""
+    """Words for what loads a library: of several machines that share a cache, each has its own."""
     # A word such as `x86_64-linux-musl`: other C libraries, and fewer bits, are others, too.
     return sys.platform, platform.machine(), getattr(sys.implementation, "_multiarch", "")
 

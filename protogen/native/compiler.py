@@ -26,7 +26,7 @@ _HELP = "pip install 'protogen-serial[compiler]' brings a C compiler"
 
 
 class Compiler(msgspec.Struct, frozen=True):
-    """How the compiler is called."""
+    """Call of a compiler."""
 
     command: tuple[str, ...]
     flags: tuple[str, ...] = FLAGS

@@ -1,4 +1,4 @@
-"""Why there is no native library."""
+"""Errors of native libraries that can't be had."""
 
 from __future__ import annotations
 

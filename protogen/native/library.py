@@ -24,7 +24,7 @@ _FEW = 1 << 12
 
 
 class State(ctypes.Structure):
-    """What stands in `struct protogen_capture` in front of the tables."""
+    """Members of `struct protogen_capture` in front of the tables."""
 
     _fields_ = (
         ("offset", ctypes.c_uint64),
@@ -161,7 +161,7 @@ class Decoder:
 
     @property
     def is_joined(self) -> bool:
-        """Whether `join` came about."""
+        """True if `join` came about."""
         return bool(self._state.is_joined)
 
     @property
@@ -185,7 +185,7 @@ class Decoder:
 
     @property
     def is_full(self) -> bool:
-        """Whether a table is."""
+        """True if a table is."""
         return bool(self._state.is_full)
 
     @property

@@ -11,12 +11,9 @@ import msgspec
 import numpy as np
 
 from protogen.capture.engines import Engine
-from protogen.capture.schema import CaptureSchema, InvalidReason, Record, TableSchema
-from protogen.capture.schema import Column as Held
-from protogen.capture.schema import Number as NumberShape
-from protogen.capture.schema import Text as TextShape
+from protogen.capture.schema import CaptureSchema, InvalidReason, TableSchema
 from protogen.capture.tables import Tables as Filled
-from protogen.convert.columns.arrays import Array, Codes, Lists, Nothing, Numbers, Octets, Spans
+from protogen.convert.columns.arrays import Array, Codes, Nothing, Numbers, Spans
 from protogen.convert.columns.batches import Tally
 from protogen.convert.columns.composite_arrays import Same, Scattered
 from protogen.convert.columns.nested_columns import nested
@@ -25,10 +22,6 @@ from protogen.convert.columns.python_values import Values
 from protogen.convert.columns.rows import Rows
 from protogen.convert.columns.tables import REASONS, Column, Naming, Physical, Table, Tables
 from protogen.convert.inputs.chunks import Chunk
-from protogen.model.types import Field, Fixed
-from protogen.model.types import Octets as OctetsType
-from protogen.model.types import Struct as StructType
-from protogen.model.types import Text as TextType
 
 
 class BatchPrinter(Protocol):
@@ -90,11 +83,11 @@ def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
             for item in held.columns
             if (item.role, item.source) == (("part", source) if role == "@" else (role, source))
         )
-        yield _number_reader(name)
+        yield partial(_number, name)
 
 
-def _number_reader(name: str) -> Reader:
-    return lambda rows: Numbers(np.ascontiguousarray(rows[name]))
+def _number(name: str, rows: Any) -> Numbers:
+    return Numbers(np.ascontiguousarray(rows[name]))
 
 
 # --- the columns of fields ------------------------------------------------------------------------
@@ -102,7 +95,7 @@ def _number_reader(name: str) -> Reader:
 
 def _field_reader(column: Column, held: TableSchema) -> Reader:
     """Reader of a column."""
-    raw = _flat_reader(column, held) or _nested_reader(column, held)
+    raw = partial(nested, column.path, held)
     match column.derived:
         case Physical() as meaning:
             return lambda rows: _derived(raw(rows), meaning, partial(physical, meaning))
@@ -119,82 +112,6 @@ def _derived(raw: Values, meaning: Physical | Naming, derive: Callable[[Any], Va
         case Same(value=value, count=count):
             return Same(meaning.of(value), count)
     return derive(raw)
-
-
-def _flat_reader(column: Column, held: TableSchema) -> Reader | None:
-    """The raw values of a column that is there in every row; None for others."""
-    assert held.message is not None
-    return _raw_reader(column.path, held.message.fields, [held.row])
-
-
-def _nested_reader(column: Column, held: TableSchema) -> Reader:
-    return lambda rows: nested(column.path, held, rows)
-
-
-def _raw_reader(
-    path: Sequence[str], fields: Sequence[Field], records: Sequence[Record]
-) -> Reader | None:
-    """Reader of the raw values at a path, through structs alone.
-
-    `records` are those on the way, the innermost one last; each but the first is a member.
-    """
-    item = next(item for item in fields if item.name == path[0])
-    inner = records[-1]
-    column = next((c for c in inner.columns if c.role == "field" and c.source == path[0]), None)
-    if column is None or (column.dimensions and len(records) > 1):
-        return None
-    if len(path) == 1:
-        return _leaf_reader(item, column)
-    if not isinstance(column.shape, Record) or not isinstance(item.type, StructType):
-        return None
-    deeper = _raw_reader(path[1:], item.type.fields, [*records, column.shape])
-    name = column.name
-    return None if deeper is None else lambda rows: deeper(rows[name])
-
-
-def _leaf_reader(item: Field, column: Held) -> Reader | None:
-    name = column.name
-    if not column.dimensions:
-        if not isinstance(column.shape, NumberShape):
-            return None
-        return _number_reader(name)
-    counted_by = column.dimensions[0].counted_by
-    if len(column.dimensions) > 1:
-        return None
-    if isinstance(item.type, TextType):
-        return _text_reader(column, item.type, counted_by)
-    if not isinstance(column.shape, NumberShape):
-        return None
-    size = _fixed_count(item)
-    if isinstance(item.type, OctetsType):
-        return lambda rows: Octets(rows[name][:, :size], _counts(rows, counted_by))
-    return lambda rows: Lists(np.ascontiguousarray(rows[name][:, :size]), _counts(rows, counted_by))
-
-
-def _fixed_count(item: Field) -> int | None:
-    extent = getattr(item.type, "extent", None)
-    return extent.count if isinstance(extent, Fixed) else None
-
-
-def _counts(rows: Any, counted_by: str | None) -> Array | None:
-    return None if counted_by is None else np.ascontiguousarray(rows[counted_by]).astype("i4")
-
-
-def _text_reader(column: Held, type: TextType, counted_by: str | None) -> Reader:
-    assert isinstance(column.shape, TextShape)
-    name = column.name
-
-    def read(rows: Any) -> Values:
-        padded = np.ascontiguousarray(rows[name])
-        if isinstance(type.extent, Fixed):
-            return [text.decode("latin-1") for text in padded.tolist()]
-        counts = _counts(rows, counted_by)
-        if counts is None:
-            counts = np.full(len(padded), padded.dtype.itemsize)
-        pairs = zip(padded.tolist(), counts.tolist(), strict=True)
-        return [text.decode("latin-1").ljust(count, "\0") for text, count in pairs]
-
-    return read
 
 
 # --- batches --------------------------------------------------------------------------------------

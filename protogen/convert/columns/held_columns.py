@@ -19,6 +19,11 @@ def held(
     return ((item, known.get(item.name)) for item in fields)
 
 
+def held_by(item: Field, columns: Iterable[Column]) -> Column | None:
+    """The column of a field."""
+    return next((it for it in columns if it.role == "field" and it.source == item.name), None)
+
+
 def members_of(column: Column | None) -> Sequence[Column]:
     """The columns inside of a struct's."""
     shape = column and column.shape

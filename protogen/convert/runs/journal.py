@@ -30,13 +30,13 @@ def marker_of(folder: Path, part: str) -> Path:
 
 def is_unfinished(folder: Path, capture: str) -> bool:
     """True if a fleet has begun with a capture, and not finished."""
-    return _note(folder, capture).exists()
+    return _journal(folder, capture).exists()
 
 
 def begin(folder: Path, capture: str, parts: int) -> None:
-    """Take note that files of so many parts of a capture are ours from now on. Raises OSError."""
+    """Write down that files of so many parts of a capture are ours from now on. Raises OSError."""
     most = max(parts, _parts(folder, capture))
-    write_whole(_note(folder, capture), str(most).encode())
+    write_whole(_journal(folder, capture), str(most).encode())
 
 
 def finish(folder: Path, captures: Mapping[str, Iterable[str]], files: Iterable[str]) -> None:
@@ -45,11 +45,11 @@ def finish(folder: Path, captures: Mapping[str, Iterable[str]], files: Iterable[
     `captures` has the names of the parts of this run; those of earlier ones are known. All of them
     at once, as it takes a look at everything that is in the folders.
     """
-    names, notes = set[str](), list[str]()
+    names, journals = set[str](), list[str]()
     for capture, parts in captures.items():
         names.update(parts)
         names.update(part_name(capture, number) for number in range(_parts(folder, capture)))
-        notes.append(_note(folder, capture).name)
+        journals.append(_journal(folder, capture).name)
     if not captures:
         return
     # A capture that could not be cut was a part itself, but its files may be another's.
@@ -57,18 +57,18 @@ def finish(folder: Path, captures: Mapping[str, Iterable[str]], files: Iterable[
     sweep(folder, [f"{name}{_SUFFIX}" for name in names], files, torn=torn)
     # A worker that was killed may have left a marker that is not whole.
     markers = [marker_of(folder, name).name for name in (*names, *captures)]
-    sweep(folder, [*markers, *notes], within=MARKERS)
+    sweep(folder, [*markers, *journals], within=MARKERS)
     with suppress(OSError):  # It is not there, or has markers of other captures.
         (folder / MARKERS).rmdir()
 
 
-def _note(folder: Path, capture: str) -> Path:
-    return folder / MARKERS / f"{capture}.begun"
+def _journal(folder: Path, capture: str) -> Path:
+    return folder / MARKERS / f"{capture}.journal"
 
 
 def _parts(folder: Path, capture: str) -> int:
     """Most parts that a capture had in any run that began with it."""
     try:
-        return int(_note(folder, capture).read_bytes() or b"0")
+        return int(_journal(folder, capture).read_bytes() or b"0")
     except (OSError, ValueError):
         return 0

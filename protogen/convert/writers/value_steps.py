@@ -136,12 +136,10 @@ class ValueSteps(ABC):
                 yield from self.members(fields, members_of(column), at)
             case Switch():
                 yield from self._choice(item, type, column, at)
-            case Array(element=Struct() | Switch() | Array()):
+            case Array(element=element) if column or not element.holds_values:
                 yield from self._array(item, type, column, left, at)
             case _ if column is None:
                 yield literal("[]")  # Nothing else holds nothing.
-            case Array():
-                yield from self._array(item, type, column, left, at)
             case Text():
                 yield from _in_quotes(text_of(type, column, left[0], at, self.spelling))
             case Octets(extent=extent):
