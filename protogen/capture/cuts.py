@@ -102,7 +102,7 @@ def _place(rows: Rows, column: str, least: int) -> int:
 
 
 def _cut(tables: Tables, cut: Callable[[Rows], Rows]) -> dict[str, Any]:
-    """What becomes of the tables of events, by their names."""
+    """Tables of events after the cut, by their names."""
     return {
         "messages": {
             name: cut(rows) if len(rows) else rows for name, rows in tables.messages.items()

@@ -33,7 +33,7 @@ Maker = Callable[..., Any]
 
 
 def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Maker, bool]:
-    """What makes engines of that name, and whether several can read parts of a capture at once.
+    """Maker of engines of that name, and whether several can read parts of a capture at once.
 
     Without a name they are the fastest that there are. Raises CaptureError if there is no such
     engine, or it can't be had.
@@ -70,7 +70,7 @@ def _warn(why: str) -> None:
 
 
 def reading_of(protocol: Model, sender: Sender) -> Reading:
-    """What Python reads the bytes of `sender` with."""
+    """Schema and specification by which Python reads the bytes of `sender`."""
     for model, name, found in _READINGS:
         if model is protocol and name == sender.name:
             return found

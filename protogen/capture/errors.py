@@ -1,4 +1,4 @@
-"""What goes wrong with captures, as exceptions whose text a user can read."""
+"""Errors about captures, as exceptions whose text a user can read."""
 
 from __future__ import annotations
 

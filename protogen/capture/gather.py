@@ -122,7 +122,7 @@ class Gathering:
 
     @property
     def _whole(self) -> float:
-        """How many times as much as there is now there will be."""
+        """Ratio of what there will be to what there is now."""
         return (self._total or 2 * self._size) / max(1, self._size)
 
     @property
@@ -155,7 +155,7 @@ def gathered(pieces: Iterable[Tables], total: int | None, workers: int) -> Table
 
 
 def _is_done(copy: Future[None]) -> bool:
-    """Whether it is; raises what it raised."""
+    """True if it is; raises what it raised."""
     if not copy.done():
         return False
     copy.result()
@@ -167,7 +167,7 @@ def _all(tables: Tables) -> tuple[Rows, ...]:
 
 
 _Work = tuple["Rows", "Rows", str, int]
-"""What `_copy` needs."""
+"""Arguments of `_copy`."""
 
 
 def _copied(work: _Work, pool: ThreadPoolExecutor | None) -> list[Future[None]]:

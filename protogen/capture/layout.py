@@ -15,7 +15,6 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
-from protogen.copying import replace
 from protogen.model.frame import CounterPart, IdentityPart, NumberPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
@@ -26,11 +25,12 @@ from protogen.model.payload_plan import (
     FloatStep,
     IntegerStep,
     RecordStep,
+    Reference,
     RepeatStep,
     RestStep,
 )
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Float, Integer, counting_bits
+from protogen.model.types import NumberType, counting_bits
 from protogen.model.types import Text as TextType
 
 _BYTE = Number("u1", 1)
@@ -80,54 +80,21 @@ def _place(name: str, shape: Number, others: Iterable[Column]) -> Column:
 
 
 def _table(framed: Sequence[Column], message: Message) -> TableSchema:
-    inner = message_record(message)
     base = record(framed)
+    inner = message_record(message, [item.name for item in framed])
     start = _aligned(_end(base.columns), inner.alignment)
-    taken = [item.name for item in framed]
-    renamed = {item.name: _free(item.name, taken) for item in inner.columns}
-    fields = [
-        replace(
-            _counted_anew(item, renamed), name=renamed[item.name], position=start + item.position
-        )
-        for item in inner.columns
-    ]
+    fields = [item.at(start + item.position) for item in inner.columns]
     alignment = max(base.alignment, inner.alignment)
     size = _aligned(start + inner.size, alignment)
     return TableSchema(row=Record((*base.columns, *fields), size, alignment), message=message)
 
 
-def message_record(message: Message) -> Record:
-    """The message's own columns, under the names that the schema and C give them."""
-    return record(_columns(message.plan.steps))
+def message_record(message: Message, taken: Sequence[str] = ()) -> Record:
+    """The message's own columns, under the names that the schema and C give them.
 
-
-def _counted_anew(column: Column, renamed: dict[str, str]) -> Column:
-    """The column, where what counts or selects in it has got another name.
-
-    Only the message's own columns get other names; what lies deeper finds them by these.
+    Where one of the names is taken, `_` stands behind it.
     """
-    if all(old == new for old, new in renamed.items()):
-        return column
-    dimensions = tuple(
-        replace(item, counted_by=renamed.get(item.counted_by or "", item.counted_by))
-        for item in column.dimensions
-    )
-    return replace(column, dimensions=dimensions, shape=_chosen_anew(column.shape, renamed))
-
-
-def _chosen_anew(shape: Shape, renamed: dict[str, str]) -> Shape:
-    match shape:
-        case Record(columns=columns):
-            inside, found = dict(renamed), []
-            for item in columns:
-                found.append(_counted_anew(item, inside))
-                inside.pop(item.name, None)  # What is behind it finds this one.
-            return replace(shape, columns=tuple(found))
-        case Choice(selector=str(selector)):
-            cases = tuple((value, _counted_anew(case, renamed)) for value, case in shape.cases)
-            return replace(shape, selector=renamed.get(selector, selector), cases=cases)
-        case _:
-            return shape
+    return record(_columns(message.plan.steps, taken, taken))
 
 
 def _free(name: str, taken: Sequence[str]) -> str:
@@ -137,70 +104,76 @@ def _free(name: str, taken: Sequence[str]) -> str:
 
 
 # --- fields ---------------------------------------------------------------------------------------
+# `outer` are names that the message's own columns can't have, `taken` those of the same record.
 
 
-def _columns(steps: Sequence[AnyStep]) -> Iterator[Column]:
+def _columns(
+    steps: Sequence[AnyStep], outer: Sequence[str], taken: Sequence[str] = ()
+) -> Iterator[Column]:
     for step in steps:
         if isinstance(step, BytesStep | RepeatStep) and step.fills:
             yield Column(
-                name=step.count.member,
+                name=_free(step.count.member, taken),
                 role="count",
                 source=step.name,
                 shape=_counting(step.count.greatest),
                 field=step.field,
             )
         if step.holds_values:
-            yield _column(step)
+            yield _column(step, outer, taken)
 
 
-def _column(step: AnyStep) -> Column:
+def _column(step: AnyStep, outer: Sequence[str], taken: Sequence[str] = ()) -> Column:
     dimensions: list[Dimension] = []
-    name, element = step.name, step
+    element = step
     while isinstance(element, RepeatStep):
-        dimensions.append(_dimension(element.count))
+        dimensions.append(_dimension(element.count, outer, taken))
         element = element.element
     if isinstance(element, BytesStep):
-        dimensions.append(_dimension(element.count))
+        dimensions.append(_dimension(element.count, outer, taken))
     return Column(
-        name=name,
+        name=_free(step.name, taken),
         role="field",
-        source=name,
-        shape=_shape(element),
+        source=step.name,
+        shape=_shape(element, outer),
         dimensions=tuple(dimensions),
         field=step.field,
     )
 
 
-def _dimension(count: Count) -> Dimension:
+def _dimension(count: Count, outer: Sequence[str], taken: Sequence[str]) -> Dimension:
     """C has no empty arrays, so there is room for one element at least."""
     capacity = max(1, count.greatest)
     if count.fills:
-        return Dimension(capacity, count.member)
-    return Dimension(capacity, None if count.by is None else count.by.name)
+        return Dimension(capacity, _free(count.member, taken))
+    return Dimension(capacity, None if count.by is None else _referred(count.by, outer))
 
 
-def _shape(step: AnyStep) -> Shape:
+def _referred(number: Reference, outer: Sequence[str]) -> str:
+    """Name of the column of a number that counts or selects."""
+    return _free(number.name, outer) if number.level == 0 else number.name
+
+
+def _shape(step: AnyStep, outer: Sequence[str]) -> Shape:
     match step:
-        case IntegerStep():
+        case IntegerStep() | FloatStep():
             return _number(step.type)
-        case FloatStep(type=Float(bits=bits)):
-            return Number(f"f{bits // 8}", bits // 8)
         case BytesStep():
             is_text = isinstance(step.type, TextType)
             return Text(max(1, step.count.greatest)) if is_text else _BYTE
         case RecordStep():
-            return record(_columns(step.steps))
+            return record(_columns(step.steps, outer))
         case ChooseStep():
-            return _choice(step)
+            return _choice(step, outer)
         case _:
             raise AssertionError("an array is a dimension, and a constant has no column")
 
 
-def _number(type_: Integer) -> Number:
-    if type_.role == "bool":
+def _number(type_: NumberType) -> Number:
+    if type_.kind == "bool":
         return Number("?", 1)
     size = type_.width // 8
-    return Number(f"{'i' if type_.signed else 'u'}{size}", size)
+    return Number(f"{type_.kind[0]}{size}", size)
 
 
 def _counting(greatest: int) -> Number:
@@ -208,15 +181,16 @@ def _counting(greatest: int) -> Number:
     return Number(f"u{size}", size)
 
 
-def _choice(step: ChooseStep) -> Choice:
+def _choice(step: ChooseStep, outer: Sequence[str]) -> Choice:
     held = [case for case in step.cases if case.step.holds_values]
-    cases = tuple((case.value, _column(case.step)) for case in held)
+    cases = tuple((case.value, _column(case.step, outer)) for case in held)
     empty = tuple(case.value for case in step.cases if not case.step.holds_values)
     rest = None if step.rest is None else _rest(step.rest)
     every = [column for _, column in cases] + ([] if rest is None else [rest])
     alignment = max(item.shape.alignment for item in every)
     size = _aligned(max(item.size for item in every), alignment)
-    selector = step.selector if isinstance(step.selector, int) else step.selector_name
+    chosen_by = step.selector
+    selector = chosen_by if isinstance(chosen_by, int) else _referred(chosen_by, outer)
     return Choice(selector, cases, empty, rest, size, alignment)
 
 

@@ -29,7 +29,7 @@ class Lender(Protocol):
 
 
 class _Holder:
-    """What refers to memory."""
+    """Holder of a reference to memory."""
 
     __slots__ = ("memory",)
 
@@ -38,12 +38,12 @@ class _Holder:
 
     @property
     def references(self) -> int:
-        """How many there are to the memory, as Python counts."""
+        """References to the memory, as Python counts."""
         return sys.getrefcount(self.memory)
 
 
 _UNUSED = _Holder(bytearray()).references
-"""What is counted where nobody else uses memory. From 3.14 on, Python counts fewer."""
+"""References that are counted where nobody else uses memory. From 3.14 on, Python counts fewer."""
 
 
 class _Block(_Holder):
@@ -59,7 +59,7 @@ class _Block(_Holder):
 
     @property
     def is_used(self) -> bool:
-        """Whether anybody refers to it."""
+        """True if anybody refers to it."""
         return self.references > _UNUSED
 
     def lent(self, size: int) -> Rows | None:
@@ -111,7 +111,7 @@ class Blocks:
 
 
 KEPT = Blocks()
-"""What readings of this process use one after another."""
+"""Blocks that readings of this process use one after another."""
 MOST_KEPT = 96 << 20
 """Bytes that are kept for the next reading."""
 

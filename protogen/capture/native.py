@@ -37,7 +37,7 @@ def library_of(protocol: Protocol, sender: Sender) -> Library:
 
 
 def address_of(data: bytes | memoryview) -> int:
-    """Where the bytes lie, which have to stay there."""
+    """Address of the bytes, which have to stay there."""
     found: int = numpy().frombuffer(data, "u1").ctypes.data
     return found
 
@@ -120,7 +120,7 @@ class NativeEngine:
 
     @property
     def is_full(self) -> bool:
-        """Whether a table is, so that `run` took fewer bytes than it could."""
+        """True if a table is, so that `run` took fewer bytes than it could."""
         return self._decoder.is_full
 
     def join(self, front: NativeEngine) -> bool:
@@ -136,7 +136,7 @@ class NativeEngine:
 
     @property
     def is_joined(self) -> bool:
-        """Whether that was done."""
+        """True if that was done."""
         return self._decoder.is_joined
 
     @property
@@ -145,7 +145,7 @@ class NativeEngine:
         return self._decoder.offset, self._decoder.sequence
 
     def take(self) -> Tables:
-        """What was held."""
+        """Tables that were held."""
         lent, self._held = self._held, {}
         self._offset, self._sequence = self._decoder.joined or (self._offset, self._sequence)
         return self._tables(lent, self._decoder.offset - self._offset)

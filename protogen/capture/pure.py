@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Values = Sequence[Any]
 Scope = ChainMap[str, Values]
-"""What the columns in front hold, for each row: it counts and selects."""
+"""Contents of the columns in front, for each row: it counts and selects."""
 
 
 class Reading:
@@ -175,7 +175,7 @@ def _array(column: Column, dimensions: Sequence[Dimension], values: Values, scop
 
 
 def _around(shape: Shape, scope: Scope, sizes: Values) -> Scope:
-    """What each element sees of the row around it."""
+    """Columns that each element sees of the row around it."""
     if isinstance(shape, Number | Text):
         return Scope()
     return Scope({name: _repeated(item, sizes) for name, item in scope.items()})

@@ -1,4 +1,4 @@
-"""What the columns of a capture's tables are: where they lie in a row, and what they mean.
+"""Columns of a capture's tables: where they lie in a row, and what they mean.
 
 A row is what generated C would hold of an event: `offset`, `sequence` and `size`, the frame's
 parts, then the struct of the message. Its members lie as a C compiler lays them out.
@@ -20,8 +20,8 @@ from protogen.model.types import Field, NumberType, Type
 from protogen.runtime.errors import Reason
 
 Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]
-"""What a column is: about the event, a part of the frame, a field, the number of elements or bytes
-of the field behind it, the reason of invalid bytes, or the place of an unknown payload."""
+"""Contents of a column: about the event, a part of the frame, a field, the number of elements or
+bytes of the field behind it, the reason of invalid bytes, or the place of an unknown payload."""
 
 
 class InvalidReason(IntEnum):
@@ -147,17 +147,15 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def type(self) -> Type | None:
         """The type on the wire; None for what is not on it as a number or field."""
-        if self.role == "field" and self.field is not None:
-            return self.field.type
+        if self._meaning is not None:
+            return self._meaning.type
         return None if self.part is None else self.part.type
 
     @property
     def element(self) -> NumberType | None:
         """The type of the number, or of each one of the array; None if it holds no numbers."""
-        type_ = self.type
-        while type_ is not None and not isinstance(type_, NumberType):
-            type_ = getattr(type_, "element", None)
-        return type_
+        type_ = self.type if self._meaning is None else self._meaning.element
+        return type_ if isinstance(type_, NumberType) else None
 
     @property
     def enum(self) -> Enum | None:
@@ -176,7 +174,7 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def scaled(self) -> bool:
-        """Whether the physical value differs from the raw one."""
+        """True if the physical value differs from the raw one."""
         return self._meaning is not None and self._meaning.scaled
 
     @property
@@ -186,7 +184,7 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def doc(self) -> str:
-        """What the schema says about it."""
+        """Documentation in the schema."""
         about = self._meaning or self.part
         return about.about.doc if about else ""
 

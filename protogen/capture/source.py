@@ -1,4 +1,4 @@
-"""Where the bytes of a capture come from."""
+"""Sources of the bytes of a capture."""
 
 from __future__ import annotations
 

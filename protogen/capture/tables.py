@@ -24,9 +24,9 @@ class Tables(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     schema: CaptureSchema
-    """What the columns mean."""
+    """Meaning of the columns."""
     engine: str
-    """What filled them: `native` or `python`."""
+    """Engine that filled them: `native` or `python`."""
     messages: dict[str, Rows]
     """A table for every message: the parts of its frame, then its fields as raw values."""
     invalid: Rows
@@ -38,11 +38,11 @@ class Tables(msgspec.Struct, frozen=True, kw_only=True):
     offset: int
     """Of the first byte that these events cover."""
     size: int
-    """How many bytes they cover: without gaps."""
+    """Number of bytes that they cover, without gaps."""
     sequence: int
     """The number of the first event."""
     events: int
-    """How many there are."""
+    """Number of events."""
 
     @property
     def nbytes(self) -> int:

@@ -1,1 +1,1 @@
-"""What the targets print, used at once: Python imported from memory, C that fills rows."""
+"""Output of the targets, used at once: Python imported from memory, C that fills rows."""

@@ -21,6 +21,8 @@ from protogen.model.sizes import SizeSet
 
 ByteOrder = Literal["little", "big"]
 IntegerRole = Literal["number", "byte", "char", "bool"]
+MachineKind = Literal["bool", "int", "uint", "float"]
+"""Kind of the machine number that holds a value."""
 Constant = int | float | str | bytes | tuple[int, ...]
 """A raw value: a number, a text, bytes, or the numbers of an array."""
 
@@ -54,6 +56,11 @@ class _Number(msgspec.Struct, frozen=True, kw_only=True):
         return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
 
     @property
+    def width(self) -> int:
+        """Bits of the smallest machine number that holds the value."""
+        return storage_bits(self.bits)
+
+    @property
     def size(self) -> int:
         """Wire bytes."""
         return -(-self.bits // self.byte_bits)
@@ -85,9 +92,11 @@ class Integer(_Number, frozen=True, kw_only=True):
         return self.name if self.size == 1 else f"{self.name} {self.byte_order}"
 
     @property
-    def width(self) -> int:
-        """Bits of the smallest machine integer that holds the value."""
-        return storage_bits(self.bits)
+    def kind(self) -> MachineKind:
+        """Kind of the machine number that holds the value."""
+        if self.role == "bool":
+            return "bool"
+        return "int" if self.signed else "uint"
 
     @property
     def machine_bounds(self) -> tuple[int, int]:
@@ -136,6 +145,7 @@ class Float(_Number, frozen=True, kw_only=True):
     bits: Literal[32, 64]
     signed: ClassVar[bool] = False
     role: ClassVar[IntegerRole] = "number"
+    kind: ClassVar[MachineKind] = "float"
     enum: ClassVar[None] = None
     flags: ClassVar[None] = None
     bit_fields: ClassVar[tuple[()]] = ()
