@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from protogen.cli.console import echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
-from protogen.cli.options import Quiet
+from protogen.cli.options import Quiet, SchemaPaths
 from protogen.cli.schemas import schema_files
 
 if TYPE_CHECKING:
@@ -19,21 +19,12 @@ if TYPE_CHECKING:
 EXAMPLE = "Example: protogen check schemas"
 
 
-class ProblemFormat(StrEnum):
-    """Format in which problems are printed."""
-
-    TEXT = "text"
-    JSON = "json"
-    GITHUB = "github"
-
-
 def check(
-    schemas: Annotated[
-        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
-    ],
+    schemas: SchemaPaths,
     format: Annotated[
-        ProblemFormat, typer.Option(help="How to print: for people, programs, or GitHub Actions.")
-    ] = ProblemFormat.TEXT,
+        Literal["text", "json", "github"],
+        typer.Option(help="How to print: for people, programs, or GitHub Actions."),
+    ] = "text",
     quiet: Quiet = False,
 ) -> int:
     """Report problems, verify examples, analyse framing.
@@ -43,11 +34,11 @@ def check(
     """
     compilations = _compile(schema_files(schemas))
     match format:
-        case ProblemFormat.TEXT:
+        case "text":
             _print_text(compilations, quiet=quiet)
-        case ProblemFormat.JSON:
+        case "json":
             _print_json(compilations, quiet=quiet)
-        case ProblemFormat.GITHUB:
+        case "github":
             _print_github(compilations)
     return FINDINGS if any(map(_has_findings, compilations)) else CLEAN
 
@@ -97,8 +88,6 @@ def _counted(number: int, thing: str) -> str:
 
 
 def _print_json(compilations: Sequence[Compilation], *, quiet: bool) -> None:
-    import json
-
     from protogen.cli.analysis import analysis
     from protogen.cli.schemas import distinct
     from protogen.problems import to_json
@@ -110,7 +99,7 @@ def _print_json(compilations: Sequence[Compilation], *, quiet: bool) -> None:
             for compilation in compilations
             if compilation.protocol is not None
         ]
-    typer.echo(json.dumps(report, indent=2, ensure_ascii=False))
+    echo_json(report)
 
 
 def _print_github(compilations: Sequence[Compilation]) -> None:

@@ -54,6 +54,15 @@ def print_table(console: Console, heads: Sequence[str], rows: Iterable[Sequence[
         console.print(line)
 
 
+def echo_json(data: object) -> None:
+    """Print data as JSON, for programs and for people who look."""
+    import json
+
+    import typer
+
+    typer.echo(json.dumps(data, indent=2, ensure_ascii=False))
+
+
 def _text(cell: Cell) -> Text:
     from rich.text import Text
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
+from protogen.cli.options import SchemaPaths
 from protogen.convert.formats import OutputFormat
 
 if TYPE_CHECKING:
@@ -20,9 +21,7 @@ CLEAN_EXAMPLE = "Example: protogen native clean"
 
 
 def build(
-    schemas: Annotated[
-        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
-    ],
+    schemas: SchemaPaths,
 ) -> int:
     """Compile what reads captures of these schemas fast, ahead of its first use.
 

@@ -9,6 +9,9 @@ import typer
 
 SchemaFile = Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")]
 
+SchemaPaths = Annotated[
+    list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
+]
 CaptureFile = Annotated[
     Path, typer.Argument(metavar="FILE|-", help="The capture; - is standard input.")
 ]

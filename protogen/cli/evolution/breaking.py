@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from protogen.cli.console import console, echo_json
 from protogen.cli.evolution.diff import print_findings
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Against, Versions
@@ -19,14 +19,6 @@ if TYPE_CHECKING:
     from protogen.project.read import Project
 
 EXAMPLE = "Example: protogen breaking schemas --against git:main"
-
-
-class BreakingFormat(StrEnum):
-    """Format in which findings are printed."""
-
-    TEXT = "text"
-    JSON = "json"
-    GITHUB = "github"
 
 
 def breaking(
@@ -48,8 +40,9 @@ def breaking(
         typer.Option(metavar="[RULE=]PLACE", help="Places that do not count, as in rn1.gyro.*."),
     ] = None,
     format: Annotated[
-        BreakingFormat, typer.Option(help="For people, programs, or GitHub Actions.")
-    ] = BreakingFormat.TEXT,
+        Literal["text", "json", "github"],
+        typer.Option(help="For people, programs, or GitHub Actions."),
+    ] = "text",
 ) -> int:
     """Refuse changes that the other end of the wire would misread or lose.
 
@@ -59,9 +52,6 @@ def breaking(
     With nothing given, in a project: its schemas, against those of the last commit (git:HEAD); a
     gate for pull requests names the branch that they go to, as in --against git:origin/main.
     """
-    import json
-
-    from protogen.cli.console import console
     from protogen.cli.evolution.versions import LAST_COMMIT, compared
     from protogen.evolution.report import as_json
 
@@ -77,15 +67,15 @@ def breaking(
                 continue
             comparison, found = _judged(pair.name, pair.old, pair.new, gate)
             stopped = stopped or bool(found)
-            if format is BreakingFormat.JSON:
+            if format == "json":
                 reports.append({"schema": pair.name} | as_json(comparison, found))
-            elif format is BreakingFormat.GITHUB:
+            elif format == "github":
                 _print_github(comparison, found)
             elif found:
                 print_findings(out, comparison, found)
-    if format is BreakingFormat.JSON:
-        typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
-    elif format is BreakingFormat.TEXT and not stopped:
+    if format == "json":
+        echo_json(reports)
+    elif format == "text" and not stopped:
         since = "" if versions else f" since {held or LAST_COMMIT}"
         out.print(f"nothing is broken{since}", style="bold")
     return FINDINGS if stopped else CLEAN

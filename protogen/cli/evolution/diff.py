@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from protogen.cli.console import console, echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Against, Versions
 from protogen.cli.schemas import open_project
@@ -20,20 +20,13 @@ if TYPE_CHECKING:
 EXAMPLE = "Example: protogen diff git:main:schemas/rn1.yaml schemas/rn1.yaml"
 
 
-class DiffFormat(StrEnum):
-    """Format in which changes are printed."""
-
-    TEXT = "text"
-    MARKDOWN = "markdown"
-    JSON = "json"
-
-
 def diff(
     versions: Versions = None,
     against: Against = None,
     format: Annotated[
-        DiffFormat, typer.Option(help="For people, a changelog entry, or for programs.")
-    ] = DiffFormat.TEXT,
+        Literal["text", "markdown", "json"],
+        typer.Option(help="For people, a changelog entry, or for programs."),
+    ] = "text",
 ) -> int:
     """Say what changed between two versions, and show it with frames.
 
@@ -42,9 +35,6 @@ def diff(
 
     With nothing given, in a project: its schemas, against those of the last commit (git:HEAD).
     """
-    import json
-
-    from protogen.cli.console import console
     from protogen.cli.evolution.versions import compared
     from protogen.evolution.findings import findings
     from protogen.evolution.report import as_json, markdown
@@ -58,19 +48,19 @@ def diff(
                 changed = True
                 words = "is new" if before is None else "is gone"
                 reports.append({"schema": name, "text": words})
-                if format is not DiffFormat.JSON:
+                if format != "json":
                     out.print(f"{name} {words}")
                 continue
             comparison, found = findings(before, after)
             changed = changed or bool(found)
-            if format is DiffFormat.JSON:
+            if format == "json":
                 reports.append({"schema": name} | as_json(comparison, found))
-            elif format is DiffFormat.MARKDOWN:
+            elif format == "markdown":
                 typer.echo(markdown(comparison, found))
             else:
                 print_findings(out, comparison, found)
-    if format is DiffFormat.JSON:
-        typer.echo(json.dumps(reports, indent=2, ensure_ascii=False))
+    if format == "json":
+        echo_json(reports)
     return FINDINGS if changed else CLEAN
 
 

@@ -9,14 +9,13 @@ from typing import Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.options import SchemaPaths
 
 EXAMPLE = "Example: protogen lock schemas && protogen breaking schemas --against-lock protogen.lock"
 
 
 def lock(
-    schemas: Annotated[
-        list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
-    ],
+    schemas: SchemaPaths,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="The lock file.")
     ] = Path("protogen.lock"),

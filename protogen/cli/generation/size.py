@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from protogen.cli.console import console, echo_json, print_table
 from protogen.cli.exits import CLEAN, UsageError
 from protogen.cli.generation import c_options
 from protogen.cli.options import SchemaFile
@@ -16,46 +16,27 @@ from protogen.cli.schemas import find_message, find_sender, open_protocol
 if TYPE_CHECKING:
     from protogen.footprint.report import Cost, Report
     from protogen.model.protocol import Protocol
-    from protogen.targets.c.options import COptions
+    from protogen.targets.c.options import COptions, Events
 
 EXAMPLE = "Example: protogen size schemas/rn1.yaml --mcu atmega328p --events messages --only gyro"
+Mcu = Literal["atmega328p", "cortex-m0", "host"]
+"""The machines of `protogen.footprint.machines`."""
 _ROLES = ("encode", "decode", "frame", "send")
 _DECODER_ROLES = ("init", "push", "feed", "flush")
 
 
-class Mcu(StrEnum):
-    """The machines of `protogen.footprint.machines`."""
-
-    ATMEGA328P = "atmega328p"
-    CORTEX_M0 = "cortex-m0"
-    HOST = "host"
-
-
-class CEvents(StrEnum):
-    """The events that decoders of C deliver."""
-
-    ALL = "all"
-    MESSAGES = "messages"
-
-
-class SizeFormat(StrEnum):
-    """Format in which sizes are printed."""
-
-    TEXT = "text"
-    JSON = "json"
-
-
 def size(
     schema: SchemaFile,
-    mcu: Annotated[Mcu, typer.Option(help="The machine to compile for.")] = Mcu.ATMEGA328P,
+    mcu: Annotated[Mcu, typer.Option(help="The machine to compile for.")] = "atmega328p",
     events: Annotated[
-        CEvents, typer.Option(help="messages: without events for invalid and unknown frames.")
-    ] = CEvents.ALL,
+        Literal["all", "messages"],
+        typer.Option(help="messages: without events for invalid and unknown frames."),
+    ] = "all",
     only: c_options.Only = None,
     sender: c_options.Senders = None,
     format: Annotated[
-        SizeFormat, typer.Option(help="How to print: for people or programs.")
-    ] = SizeFormat.TEXT,
+        Literal["text", "json"], typer.Option(help="How to print: for people or programs.")
+    ] = "text",
 ) -> int:
     """Print what the generated C of a schema takes: flash, RAM and stack.
 
@@ -64,15 +45,15 @@ def size(
     """
     protocol = open_protocol(schema)
     report = _measure(protocol, _options(protocol, events, only, sender), mcu)
-    if format is SizeFormat.JSON:
-        _print_json(report)
+    if format == "json":
+        echo_json(_object(report))
     else:
         _print_text(report)
     return CLEAN
 
 
 def _options(
-    protocol: Protocol, events: CEvents, only: Sequence[str] | None, senders: Sequence[str] | None
+    protocol: Protocol, events: Events, only: Sequence[str] | None, senders: Sequence[str] | None
 ) -> COptions:
     from protogen.targets.c.options import COptions
 
@@ -81,7 +62,7 @@ def _options(
     for name in senders or ():
         find_sender(protocol, name)
     options = COptions(
-        events=events.value,
+        events=events,
         only=tuple(only) if only else None,
         senders=tuple(senders) if senders else None,
     )
@@ -99,14 +80,12 @@ def _measure(protocol: Protocol, options: COptions, mcu: Mcu) -> Report:
     from protogen.footprint.report import report
 
     try:
-        return report(protocol, options, MACHINES[mcu.value])
+        return report(protocol, options, MACHINES[mcu])
     except NoCompilerError as error:
         raise UsageError(str(error), error.hint) from None
 
 
 def _print_text(report: Report) -> None:
-    from protogen.cli.console import console, print_table
-
     out = console()
     out.print(f"{report.protocol} on {report.machine.title}, {report.compiler} -Os; bytes")
     out.print()
@@ -145,12 +124,6 @@ def _totals(report: Report) -> Iterator[tuple[str, ...]]:
 
 def _number(value: int) -> str:
     return f"{value:,}"
-
-
-def _print_json(report: Report) -> None:
-    import json
-
-    typer.echo(json.dumps(_object(report), indent=2, ensure_ascii=False))
 
 
 def _object(report: Report) -> dict[str, object]:

@@ -8,10 +8,9 @@ import stat
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from enum import StrEnum
 from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, cast
+from typing import BinaryIO, Literal, cast
 
 from protogen.cli.exits import UsageError
 from protogen.cli.progress import progress
@@ -19,21 +18,13 @@ from protogen.cli.wire.hexinput import HexError, HexReader, parse_hex
 from protogen.cli.wire.tagged import Piece
 
 STANDARD_INPUT = Path("-")
+InputFormat = Literal["raw", "hex", "tagged"]
+"""Format of a capture: bytes, hex digits, or lines of hex digits behind the name of the sender."""
+
 _PIECE = 1 << 16
 """The most bytes that are read at once."""
 _LONGEST_LINE = 1 << 24
 """Characters; no line of JSON is longer."""
-
-
-class InputFormat(StrEnum):
-    """Format in which a capture is written."""
-
-    RAW = "raw"
-    """The bytes themselves."""
-    HEX = "hex"
-    """Hex digits, in any of the usual ways."""
-    TAGGED = "tagged"
-    """Lines of hex digits behind the name of the sender."""
 
 
 @contextmanager

@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -39,15 +38,9 @@ Tagged = Annotated[
     ),
 ]
 
+EventFormat = Literal["text", "jsonl"]
 Show = Callable[[Any], None]
 """Print an event."""
-
-
-class EventFormat(StrEnum):
-    """Format in which events are printed."""
-
-    TEXT = "text"
-    JSONL = "jsonl"
 
 
 def decode(  # noqa: PLR0913 - each option is one argument
@@ -57,11 +50,11 @@ def decode(  # noqa: PLR0913 - each option is one argument
     hex: HexText = None,
     input: Annotated[
         InputFormat, typer.Option("--input", help="What the file is written in.")
-    ] = InputFormat.RAW,
+    ] = "raw",
     tagged: Tagged = False,
     format: Annotated[
         EventFormat, typer.Option(help="One readable line for each event, or one of JSON.")
-    ] = EventFormat.TEXT,
+    ] = "text",
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if any byte belongs to no valid frame.")
     ] = False,
@@ -75,7 +68,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
     kind = _input_format(input, tagged=tagged, has_text=hex is not None)
     codec = open_codec(schema)
-    both_ways = kind is InputFormat.TAGGED and sender is None
+    both_ways = kind == "tagged" and sender is None
     senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
     complaints = Complaints()
     has_invalid = False
@@ -95,12 +88,12 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
     """Return what the capture is written in. Raises UsageError where two options disagree."""
-    if tagged and given is InputFormat.HEX:
+    if tagged and given == "hex":
         raise UsageError("--tagged and --input hex exclude each other", "leave one of them out")
-    if has_text and (tagged or given is InputFormat.TAGGED):
+    if has_text and (tagged or given == "tagged"):
         hint = "leave out --tagged and give --sender NAME, or give the lines in a file"
         raise UsageError("--hex is bytes of one sender, --tagged is for lines that name it", hint)
-    return InputFormat.TAGGED if tagged else given
+    return "tagged" if tagged else given
 
 
 @contextmanager
@@ -115,11 +108,11 @@ def _capture(
         return
     with opened(file) as pieces:
         match kind:
-            case InputFormat.RAW:
+            case "raw":
                 yield raw_pieces(pieces, sender)
-            case InputFormat.HEX:
+            case "hex":
                 yield hex_pieces(pieces, sender)
-            case InputFormat.TAGGED:
+            case "tagged":
                 yield tagged_pieces(pieces, codec.senders, complain)
 
 
@@ -145,7 +138,7 @@ def _printer(codec: Codec, format: EventFormat, *, show_sender: bool) -> Show:
     from protogen.cli.console import console
     from protogen.cli.wire.event_lines import EventLines, json_line
 
-    if format is EventFormat.JSONL:
+    if format == "jsonl":
         return lambda event: typer.echo(json_line(event))
     from rich.text import Text
 

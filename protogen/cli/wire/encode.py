@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -33,13 +32,6 @@ Write = Callable[[bytes], None]
 """Print the bytes of a frame or of another span."""
 
 
-class BytesFormat(StrEnum):
-    """Format in which bytes are printed."""
-
-    HEX = "hex"
-    RAW = "raw"
-
-
 def encode(
     schema: SchemaFile,
     message: Annotated[
@@ -51,8 +43,9 @@ def encode(
     ] = None,
     values: Assignments = None,
     format: Annotated[
-        BytesFormat, typer.Option(help="Hex digits, one line for each frame, or the bytes.")
-    ] = BytesFormat.HEX,
+        Literal["hex", "raw"],
+        typer.Option(help="Hex digits, one line for each frame, or the bytes."),
+    ] = "hex",
     sender: Annotated[
         str | None,
         typer.Option(
@@ -68,7 +61,7 @@ def encode(
     from protogen.cli.wire.codec import open_codec
 
     codec = open_codec(schema)
-    write = _write_raw if format is BytesFormat.RAW else _write_hex
+    write = _write_raw if format == "raw" else _write_hex
     if message is None:
         _encode_lines(codec, sender, write)
     else:
