@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
@@ -11,10 +10,11 @@ import typer
 from protogen.cli.console import echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet, SchemaPaths
-from protogen.cli.schemas import schema_files
+from protogen.cli.schemas import compile_files, each_once, schema_files
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
+    from protogen.problems import Problem
 
 EXAMPLE = "Example: protogen check schemas"
 
@@ -32,7 +32,7 @@ def check(
     Every problem of every schema is reported. Exits with 0 if there is nothing to fix, 1 if there
     is.
     """
-    compilations = _compile(schema_files(schemas))
+    compilations = compile_files(schema_files(schemas), "checking")
     match format:
         case "text":
             _print_text(compilations, quiet=quiet)
@@ -41,18 +41,6 @@ def check(
         case "github":
             _print_github(compilations)
     return FINDINGS if any(map(_has_findings, compilations)) else CLEAN
-
-
-def _compile(files: Sequence[Path]) -> list[Compilation]:
-    from protogen.cli.progress import progress
-    from protogen.compiler import compile_file
-
-    compilations = []
-    with progress("checking", len(files)) as advance:
-        for file in files:
-            compilations.append(compile_file(file, examples=True))
-            advance(1)
-    return compilations
 
 
 def _has_findings(compilation: Compilation) -> bool:
@@ -67,16 +55,15 @@ def _print_text(compilations: Sequence[Compilation], *, quiet: bool) -> None:
     from protogen.problems import render_rich
 
     out = console()
-    shown = set()
-    for compilation in compilations:
-        for problem in compilation.problems:
-            if problem not in shown:
-                out.print(render_rich(problem, compilation.sources))
-            shown.add(problem)
+    shown = 0
+    for compilation, problems in each_once(compilations):
+        for problem in problems:
+            out.print(render_rich(problem, compilation.sources))
+        shown += len(problems)
         if compilation.protocol is not None and not quiet:
             print_analysis(out, compilation.path, compilation.protocol)
     if shown or not quiet:
-        out.print(_summary(len(compilations), len(shown)), style="bold")
+        out.print(_summary(len(compilations), shown), style="bold")
 
 
 def _summary(files: int, problems: int) -> str:
@@ -89,10 +76,9 @@ def _counted(number: int, thing: str) -> str:
 
 def _print_json(compilations: Sequence[Compilation], *, quiet: bool) -> None:
     from protogen.cli.analysis import analysis
-    from protogen.cli.schemas import distinct
     from protogen.problems import to_json
 
-    report: dict[str, object] = {"problems": to_json(distinct(compilations))}
+    report: dict[str, object] = {"problems": to_json(_distinct(compilations))}
     if not quiet:
         report["protocols"] = [
             analysis(compilation.path, compilation.protocol)
@@ -103,8 +89,11 @@ def _print_json(compilations: Sequence[Compilation], *, quiet: bool) -> None:
 
 
 def _print_github(compilations: Sequence[Compilation]) -> None:
-    from protogen.cli.schemas import distinct
     from protogen.problems import to_github
 
-    for problem in distinct(compilations):
+    for problem in _distinct(compilations):
         typer.echo(to_github(problem))
+
+
+def _distinct(compilations: Sequence[Compilation]) -> tuple[Problem, ...]:
+    return tuple(problem for _, problems in each_once(compilations) for problem in problems)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -56,13 +56,25 @@ def protocol_of(compilation: Compilation) -> Protocol:
     return compilation.protocol
 
 
+def compile_files(files: Collection[Path], title: str) -> list[Compilation]:
+    """Compile schemas and verify their examples, with a progress bar."""
+    from protogen.cli.progress import progress
+    from protogen.compiler import compile_file
+
+    compilations: list[Compilation] = []
+    with progress(title, len(files)) as advance:
+        for file in files:
+            compilations.append(compile_file(file, examples=True))
+            advance(1)
+    return compilations
+
+
 def open_project() -> Project | None:
     """Return the project around the working directory, if there is one.
 
     With a mistake in its file, prints the problems and ends the command.
     """
-    from protogen.cli.console import error_console
-    from protogen.problems import Problems, SourceMap, render_rich
+    from protogen.problems import Problems, SourceMap
     from protogen.project.find import find_project
     from protogen.project.read import read_project
 
@@ -71,11 +83,7 @@ def open_project() -> Project | None:
         return None
     problems, sources = Problems(), SourceMap()
     project = read_project(file, problems, sources)
-    if problems.errors:
-        console = error_console()
-        for problem in problems:
-            console.print(render_rich(problem, sources))
-        raise typer.Exit(USAGE)
+    _end_if_wrong(problems, sources)
     return project
 
 
@@ -95,42 +103,44 @@ def own_schemas() -> tuple[Path, ...]:
     problems, sources = Problems(), SourceMap()
     sources.add(str(project.file), project.text)
     found = schema_files(named_paths(project, "schemas", project.settings.schemas, problems))
-    if problems.errors:
-        print_found(problems, sources)
-        raise typer.Exit(USAGE)
+    _end_if_wrong(problems, sources)
     return found
 
 
-def print_problems(compilations: Iterable[Compilation]) -> None:
-    """Print every problem to standard error, once, with its source line."""
-    from protogen.cli.console import error_console
-    from protogen.problems import render_rich
-
-    console = error_console()
-    shown: set[Problem] = set()
-    for compilation in compilations:
-        for problem in compilation.problems:
-            if problem not in shown:
-                console.print(render_rich(problem, compilation.sources))
-            shown.add(problem)
+def _end_if_wrong(problems: Problems, sources: SourceMap) -> None:
+    if problems.errors:
+        print_found(problems, sources)
+        raise typer.Exit(USAGE)
 
 
-def print_found(problems: Problems, sources: SourceMap) -> None:
-    """Print problems of other files than schemas to standard error."""
-    if not len(problems):
+def print_found(problems: Iterable[Problem], sources: SourceMap) -> None:
+    """Print problems to standard error, with their source lines."""
+    found = tuple(problems)
+    if not found:
         return
     from protogen.cli.console import error_console
     from protogen.problems import render_rich
 
     console = error_console()
-    for problem in problems:
+    for problem in found:
         console.print(render_rich(problem, sources))
 
 
-def distinct(compilations: Iterable[Compilation]) -> tuple[Problem, ...]:
-    """Return every problem once: a base's problems are found again by each dialect."""
-    problems = (problem for compilation in compilations for problem in compilation.problems)
-    return tuple(dict.fromkeys(problems))
+def print_problems(compilations: Iterable[Compilation]) -> None:
+    """Print every problem of schemas to standard error, once."""
+    for compilation, problems in each_once(compilations):
+        print_found(problems, compilation.sources)
+
+
+def each_once(
+    compilations: Iterable[Compilation],
+) -> Iterator[tuple[Compilation, tuple[Problem, ...]]]:
+    """Yield each with its own problems: those of a base are found again by each dialect."""
+    seen: set[Problem] = set()
+    for compilation in compilations:
+        found = tuple(item for item in dict.fromkeys(compilation.problems) if item not in seen)
+        seen.update(found)
+        yield compilation, found
 
 
 def find_sender(protocol: Protocol, name: str) -> Sender:

@@ -15,7 +15,7 @@ from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
 from protogen.cli.generation.depfile import write_depfile
 from protogen.cli.generation.jobs import Job, check, print_diff, say_current, write
 from protogen.cli.generation.plan import Given, Plan, plan
-from protogen.cli.schemas import print_found, print_problems
+from protogen.cli.schemas import compile_files, print_found, print_problems
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -119,7 +119,9 @@ def _without_garbage_collection() -> Iterator[None]:
 
 
 def _compile_and_act(planned: Plan, mode: Mode, keeper: Keeper | None, reads: Reads) -> int:
-    compilations = _compile(planned.schemas)
+    # Pages show the examples as verified, so they are verified before anything is written.
+    compilations = compile_files(planned.schemas, "compiling")
+    print_problems(compilations)
     reads.files |= {Path(file) for item in compilations for file in item.sources.files}
     protocols = [item.protocol for item in compilations if item.protocol is not None]
     if len(protocols) < len(compilations):
@@ -142,23 +144,6 @@ def _compile_and_act(planned: Plan, mode: Mode, keeper: Keeper | None, reads: Re
         filled = {page.path: page.new.decode("utf-8").removeprefix("\ufeff") for page in pages}
         keeper.keep([item.sources for item in compilations], made, filled)
     return code
-
-
-def _compile(files: Sequence[Path]) -> list[Compilation]:
-    """Compile the schemas and print their problems.
-
-    Pages show the examples as verified, so they are verified before anything is written.
-    """
-    from protogen.cli.progress import progress
-    from protogen.compiler import compile_file
-
-    compilations: list[Compilation] = []
-    with progress("compiling", len(files)) as advance:
-        for file in files:
-            compilations.append(compile_file(file, examples=True))
-            advance(1)
-    print_problems(compilations)
-    return compilations
 
 
 def _bases(compilations: Sequence[Compilation]) -> set[Path]:

@@ -15,10 +15,10 @@ from protogen.cli.schemas import schema_files
 if TYPE_CHECKING:
     from protogen.problems import Problems
     from protogen.project.read import Project
+    from protogen.project.settings import CSettings
     from protogen.targets import Target
 
 SCHEMAS = Path("schemas")
-OUTPUT = Path("generated")
 _PYTHON = "python"
 _MARKDOWN = "markdown"
 
@@ -79,14 +79,18 @@ def plan(given: Given, project: Project | None, problems: Problems) -> Plan:
 
     Marked blocks are part of a whole run only, where all schemas and targets are at hand.
     """
+    from protogen.project.settings import Settings
+
+    settings = Settings() if project is None else project.settings
+    folder = Path() if project is None else project.folder
     is_whole = project is not None and not given.schemas and not given.targets
-    targets = _targets(given, project)
+    by_default = settings.python.standalone
     return Plan(
+        targets=_targets(given, settings.targets),
         schemas=_schemas(given, project, problems),
-        output=_output(given, project),
-        targets=targets,
-        standalone=_standalone(given, project),
-        c=_c(given, project),
+        output=given.output or folder / settings.output,
+        standalone=by_default if given.standalone is None else given.standalone,
+        c=_c(given.c, settings.c),
         pages=_pages(project, problems) if project is not None and is_whole else (),
         prune=_is_complete(given, project),
     )
@@ -95,7 +99,7 @@ def plan(given: Given, project: Project | None, problems: Problems) -> Plan:
 # --- options --------------------------------------------------------------------------------------
 
 
-def _targets(given: Given, project: Project | None) -> tuple[str, ...]:
+def _targets(given: Given, configured: Sequence[str] | None) -> tuple[str, ...]:
     from protogen.problems import hint_for
     from protogen.targets import TARGETS
 
@@ -103,7 +107,6 @@ def _targets(given: Given, project: Project | None) -> tuple[str, ...]:
         if name not in TARGETS:
             message = f"there is no target `{name}`; there are {', '.join(TARGETS)}"
             raise UsageError(message, hint_for(name, TARGETS))
-    configured = project.settings.targets if project is not None else None
     names = tuple(given.targets or (TARGETS if configured is None else configured))
     if given.standalone and _PYTHON not in names:
         raise UsageError(f"--standalone is for the target {_PYTHON}")
@@ -112,28 +115,13 @@ def _targets(given: Given, project: Project | None) -> tuple[str, ...]:
     return names
 
 
-def _output(given: Given, project: Project | None) -> Path:
-    if given.output is not None or project is None:
-        return given.output or OUTPUT
-    return project.folder / project.settings.output
-
-
-def _standalone(given: Given, project: Project | None) -> bool:
-    if given.standalone is not None or project is None:
-        return bool(given.standalone)
-    return project.settings.python.standalone
-
-
-def _c(given: Given, project: Project | None) -> c_options.Choice:
-    if project is None:
-        return given.c
-    settings = project.settings.c
+def _c(given: c_options.Choice, settings: CSettings) -> c_options.Choice:
     return c_options.Choice(
-        style=given.c.style or settings.style,
-        events=given.c.events or settings.events,
-        only=given.c.only or settings.only or None,
-        senders=given.c.senders or settings.sender or None,
-        stubs=settings.stubs if given.c.stubs is None else given.c.stubs,
+        style=given.style or settings.style,
+        events=given.events or settings.events,
+        only=given.only or settings.only or None,
+        senders=given.senders or settings.sender or None,
+        stubs=settings.stubs if given.stubs is None else given.stubs,
     )
 
 
