@@ -179,6 +179,6 @@ def test_depth_of_a_graph_by_hand() -> None:
     assert graph.stack("a") == 301
     assert graph.stack("b") == 20
     assert graph.stack("d") == 0
-    assert graph.reach([3]) == {3, 4}
-    assert graph.flash(graph.reach([1])) == 10 + 20 + 30 + 7
+    assert graph.reach("c") == {3, 4}
+    assert graph.flash(graph.reach("a")) == 10 + 20 + 30 + 7
     assert graph.external == {"d"}

@@ -50,10 +50,10 @@ class Graph:
         """The section of a function; None where the program has no such function."""
         return self._places.get(function)
 
-    def reach(self, roots: Iterable[int]) -> frozenset[int]:
-        """These sections and everything that they need."""
+    def reach(self, function: str) -> frozenset[int]:
+        """The section of a function and all that it needs; none where the program lacks it."""
         found: set[int] = set()
-        waiting = list(roots)
+        waiting = [self._places[function]] if function in self._places else []
         while waiting:
             section = waiting.pop()
             if section not in found:

@@ -6,11 +6,12 @@ counts as shared there; what messages and decoders have in common has a row of i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import msgspec
 
 from protogen.footprint.build import Build, build
+from protogen.footprint.elf import Section
 from protogen.footprint.graph import Graph
 from protogen.footprint.machines import Machine
 from protogen.model.protocol import Protocol
@@ -80,7 +81,7 @@ class Report(msgspec.Struct, frozen=True):
 
 
 class _Owner(msgspec.Struct, frozen=True):
-    """A message, a decoder or all handlers, before anything is measured."""
+    """A message or a decoder, before anything is measured."""
 
     name: str
     roles: tuple[tuple[str, str], ...]
@@ -91,10 +92,35 @@ class _Owner(msgspec.Struct, frozen=True):
 def report(protocol: Protocol, options: COptions, machine: Machine) -> Report:
     """Compile a protocol and say what it costs. Raises what `build` raises."""
     unit = unit_of(protocol, options)
-    messages, decoders = _messages(unit), _decoders(unit)
-    structs = [owner.struct for owner in (*messages, *decoders) if owner.struct is not None]
+    owners, handlers = (_messages(unit), _decoders(unit)), _handlers(unit)
+    structs = [owner.struct for kind in owners for owner in kind if owner.struct is not None]
     made = build(protocol, options, machine, structs)
-    return _Account(made, messages, decoders, _handlers(unit)).report(unit, machine)
+    account = _Account(made, [*owners[0], *owners[1]])
+    messages, decoders = (tuple(map(account.cost, kind)) for kind in owners)
+    graph = account.graph
+    flash = graph.flash(graph.sections)
+    # What handlers need and neither a message nor a decoder does.
+    own = frozenset().union(*map(graph.reach, handlers)) - account.users.keys()
+    dispatching = graph.flash(own)
+    owned = sum(cost.flash for cost in (*messages, *decoders))
+    in_ram = (item for item in graph.sections.values() if _is_in_ram(item, machine))
+    return Report(
+        protocol=protocol.name,
+        machine=machine,
+        compiler=made.compiler,
+        messages=messages,
+        decoders=decoders,
+        shared=flash - dispatching - owned,
+        handlers=dispatching,
+        flash=flash,
+        static=sum(item.size for item in in_ram),
+        external=tuple(sorted(graph.external - {*handlers, ""})),
+    )
+
+
+def _is_in_ram(section: Section, machine: Machine) -> bool:
+    is_constant = section.name.startswith(".rodata")
+    return section.is_writable or (machine.constants_in_ram and is_constant)
 
 
 def _messages(unit: Unit) -> list[_Owner]:
@@ -121,93 +147,35 @@ def _decoders(unit: Unit) -> list[_Owner]:
     ]
 
 
-def _handlers(unit: Unit) -> _Owner:
+def _handlers(unit: Unit) -> list[str]:
+    """The generated `dispatch` functions and the empty handlers."""
     dispatches = unit.framing.dispatches
     functions = [f"{dispatch.decoder.prefix}_dispatch" for dispatch in dispatches]
-    functions += [item.function for dispatch in dispatches for item in dispatch.handlers]
-    return _Owner("handlers", tuple(("handler", function) for function in functions))
+    return functions + [item.function for dispatch in dispatches for item in dispatch.handlers]
 
 
 class _Account:
     """Divides the sections among those who need them."""
 
-    def __init__(
-        self,
-        made: Build,
-        messages: Sequence[_Owner],
-        decoders: Sequence[_Owner],
-        handlers: _Owner,
-    ) -> None:
-        self.made = made
+    def __init__(self, made: Build, owners: Sequence[_Owner]) -> None:
         self.graph = Graph(made)
-        self.messages = messages
-        self.decoders = decoders
-        self.handlers = handlers
-        self.users: dict[int, set[tuple[str, str]]] = {}
-        for kind, owner in self._counted():
+        self.users: dict[int, set[_Owner]] = {}
+        self._sizes = made.sizes
+        for owner in owners:
             for _, function in owner.roles:
-                self._claim((kind, owner.name), function)
+                for section in self.graph.reach(function):
+                    self.users.setdefault(section, set()).add(owner)
 
-    def _counted(self) -> Iterable[tuple[str, _Owner]]:
-        yield from (("message", owner) for owner in self.messages)
-        yield from (("decoder", owner) for owner in self.decoders)
-
-    def _claim(self, user: tuple[str, str], function: str) -> None:
-        for section in self._reach(function):
-            self.users.setdefault(section, set()).add(user)
-
-    def _reach(self, function: str) -> frozenset[int]:
-        place = self.graph.place(function)
-        return frozenset() if place is None else self.graph.reach([place])
-
-    def report(self, unit: Unit, machine: Machine) -> Report:
+    def cost(self, owner: _Owner) -> Cost:
+        """Cost of what nobody else needs."""
         graph = self.graph
-        flash = graph.flash(graph.sections)
-        messages = tuple(self._cost("message", owner) for owner in self.messages)
-        decoders = tuple(self._cost("decoder", owner) for owner in self.decoders)
-        handlers = graph.flash(self._handler_sections())
-        own = sum(cost.flash for cost in (*messages, *decoders))
-        return Report(
-            protocol=unit.protocol.name,
-            machine=machine,
-            compiler=self.made.compiler,
-            messages=messages,
-            decoders=decoders,
-            shared=flash - handlers - own,
-            handlers=handlers,
-            flash=flash,
-            static=self._static(machine),
-            external=tuple(sorted(graph.external - _handler_names(self.handlers))),
-        )
-
-    def _cost(self, kind: str, owner: _Owner) -> Cost:
-        own = {section for section, users in self.users.items() if users == {(kind, owner.name)}}
-        reaches = [self._reach(function) & own for _, function in owner.roles]
+        own = {section for section, users in self.users.items() if users == {owner}}
+        reaches = [graph.reach(function) & own for _, function in owner.roles]
         functions = []
-        taken = 0
         for index, (role, name) in enumerate(owner.roles):
             others = frozenset().union(*(reaches[:index] + reaches[index + 1 :]))
-            place = self.graph.place(name)
-            alone = (reaches[index] - others) | ({place} & own if place is not None else set())
-            flash = self.graph.flash(alone)
-            taken += flash
-            functions.append(FunctionCost(role, name, flash, self.graph.stack(name)))
-        struct = 0 if owner.struct is None else self.made.sizes[owner.struct]
-        return Cost(owner.name, tuple(functions), self.graph.flash(own) - taken, struct)
-
-    def _handler_sections(self) -> frozenset[int]:
-        """Sections that handlers need and neither a message nor a decoder does."""
-        reached = (self._reach(function) for _, function in self.handlers.roles)
-        return frozenset().union(*reached) - self.users.keys()
-
-    def _static(self, machine: Machine) -> int:
-        sections = self.graph.sections.values()
-        return sum(item.size for item in sections if _in_ram(item.name, machine, item.is_writable))
-
-
-def _in_ram(name: str, machine: Machine, is_writable: bool) -> bool:
-    return is_writable or (machine.constants_in_ram and name.startswith(".rodata"))
-
-
-def _handler_names(handlers: _Owner) -> set[str]:
-    return {function for _, function in handlers.roles} | {""}
+            alone = own & {*(reaches[index] - others), graph.place(name)}
+            functions.append(FunctionCost(role, name, graph.flash(alone), graph.stack(name)))
+        shared = graph.flash(own) - sum(function.flash for function in functions)
+        struct = 0 if owner.struct is None else self._sizes[owner.struct]
+        return Cost(owner.name, tuple(functions), shared, struct)
