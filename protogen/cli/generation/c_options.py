@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from protogen.model.protocol import Protocol
     from protogen.targets.output import File
 
-PANEL = "C"
 NAME = "c"
 _Word = TypeVar("_Word", bound=str)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import os
 import stat
 import sys
@@ -14,8 +13,9 @@ from typing import BinaryIO, Literal, cast
 
 from protogen.cli.exits import UsageError
 from protogen.cli.progress import progress
-from protogen.cli.wire.hexinput import HexError, HexReader, parse_hex
 from protogen.cli.wire.tagged import Piece
+from protogen.convert.inputs.hex_digits import HexError, HexReader, parse_hex
+from protogen.convert.inputs.text_lines import decoded
 
 STANDARD_INPUT = Path("-")
 InputFormat = Literal["raw", "hex", "tagged"]
@@ -76,11 +76,10 @@ def hex_bytes(text: str) -> bytes:
 
 def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     """Bytes that the pieces say in hex. Raises UsageError with line and column."""
-    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     reader = HexReader()
     try:
-        for piece in pieces:
-            yield Piece(sender, reader.feed(decode(piece)))
+        for text in decoded(pieces):
+            yield Piece(sender, reader.feed(text))
         yield Piece(sender, reader.finish())
     except HexError as error:
         raise UsageError(str(error)) from None
@@ -91,10 +90,9 @@ def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
 
 def text_lines(pieces: Iterator[bytes]) -> Iterator[str]:
     """The lines of a text. Raises UsageError if one is so long that it is none."""
-    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     rest = ""
-    for piece in pieces:
-        *whole, rest = (rest + decode(piece)).split("\n")
+    for text in decoded(pieces):
+        *whole, rest = (rest + text).split("\n")
         yield from whole
         if len(rest) > _LONGEST_LINE:
             raise UsageError(f"a line has over {_LONGEST_LINE} characters: this is no text")

@@ -10,7 +10,7 @@ from operator import or_
 from typing import Any
 
 from protogen.cli.exits import UsageError
-from protogen.cli.wire.hexinput import HexError, parse_hex
+from protogen.convert.inputs.hex_digits import HexError, parse_hex
 from protogen.model.payload_plan import IntegerStep
 from protogen.model.readings import decimal
 from protogen.model.types import Field

@@ -9,12 +9,12 @@ pieces, so that a log of one endless line takes no more memory than any other.
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from protogen.cli.wire.hexinput import HexError, HexReader
+from protogen.convert.inputs.hex_digits import HexError, HexReader
+from protogen.convert.inputs.text_lines import decoded
 
 _LONG = 1 << 16
 """Characters; a longer line is read in pieces."""
@@ -56,10 +56,9 @@ def tagged_pieces(
 
 
 def _line_pieces(pieces: Iterator[bytes]) -> Iterator[_LinePiece]:
-    decode = codecs.getincrementaldecoder("utf-8-sig")("replace").decode
     number, rest, begins = 1, "", True
-    for piece in pieces:
-        *whole, rest = (rest + decode(piece)).split("\n")
+    for decoded_piece in decoded(pieces):
+        *whole, rest = (rest + decoded_piece).split("\n")
         for text in whole:
             yield _LinePiece(number, text, begins, ends=True)
             number, begins = number + 1, True

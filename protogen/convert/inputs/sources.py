@@ -31,6 +31,7 @@ from protogen.convert.errors import ConvertError, needed
 from protogen.convert.formats import InputKind
 from protogen.convert.inputs.chunks import PIECE, Chunk, joined
 from protogen.convert.inputs.compression import SUFFIXES, Packing, packing_of, unpacking
+from protogen.convert.inputs.hex_digits import HexError, HexReader
 from protogen.convert.inputs.recordings import record_pieces
 from protogen.convert.inputs.remote_files import asked, open_stored
 from protogen.convert.inputs.text_lines import decoded, encoding_of, lines_of
@@ -349,9 +350,6 @@ def _named(chunks: Iterator[Chunk], place: str) -> Iterator[Chunk]:
 
 
 def _hex(pieces: Iterable[bytes], place: str) -> Iterator[bytes]:
-    # The package of the command line imports this module.
-    from protogen.cli.wire.hexinput import HexError, HexReader
-
     reader = HexReader()
     try:
         for text in decoded(pieces):

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protogen.cli.wire.hexinput import HexError, HexReader, parse_hex
+from protogen.convert.inputs.hex_digits import HexError, HexReader, parse_hex
 
 GOOD = [
     ("", ""),
