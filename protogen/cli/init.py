@@ -85,10 +85,12 @@ def _ask_framing() -> Framing:
 
     out = console()
     print_table(out, ("framing", ""), [(item.value, item.summary) for item in Framing])
-    names = [item.value for item in Framing]
+    named = {item.value: item for item in Framing}
     default = Framing.COBS.value
-    chosen = Prompt.ask("Framing", choices=names, show_choices=False, default=default, console=out)
-    return Framing(chosen)
+    choices = list(named)
+    return named[
+        Prompt.ask("Framing", choices=choices, show_choices=False, default=default, console=out)
+    ]
 
 
 def _checked(name: str) -> str:
