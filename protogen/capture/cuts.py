@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import numpy
@@ -71,15 +71,11 @@ def renumbered(tables: Tables, more: int) -> Tables:
     """The same tables, whose events have numbers that are greater by `more`. Changes the rows."""
     if not more:
         return tables
-    for rows in each(tables):
+    *events, _ = tables.every
+    for rows in events:
         if len(rows):
             rows["sequence"] += numpy().uint64(more % (1 << 64))
     return replace(tables, sequence=tables.sequence + more)
-
-
-def each(tables: Tables) -> Iterable[Rows]:
-    """All tables of events."""
-    return (*tables.messages.values(), tables.invalid, tables.unknown)
 
 
 def _behind(rows: Rows, number: int) -> int:

@@ -108,12 +108,12 @@ class Gathering:
         """Take a piece. What threads copy, if there are some, has to be waited for."""
         if self._first is None:
             self._first = piece
-            self._columns = [_Column(rows.dtype) for rows in _all(piece)]
+            self._columns = [_Column(rows.dtype) for rows in piece.every]
         self._size += piece.size
         self._events += piece.events
         payloads, column = self._columns[-1].count, payload_column(piece.schema)
         copies = []
-        for rows, table in zip(_all(piece), self._columns, strict=True):
+        for rows, table in zip(piece.every, self._columns, strict=True):
             if len(rows):
                 more = payloads if rows is piece.unknown else 0
                 work = (table.add(len(rows), self._whole), rows, column, more)
@@ -160,10 +160,6 @@ def _is_done(copy: Future[None]) -> bool:
         return False
     copy.result()
     return True
-
-
-def _all(tables: Tables) -> tuple[Rows, ...]:
-    return (*tables.messages.values(), tables.invalid, tables.unknown, tables.payloads)
 
 
 _Work = tuple["Rows", "Rows", str, int]

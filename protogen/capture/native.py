@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
 from protogen.capture.memory import Lender, Memory
-from protogen.capture.schema import CaptureSchema
 from protogen.capture.tables import Tables
 from protogen.live.rows import driver_of
 from protogen.model.protocol import Protocol, Sender
@@ -42,15 +41,6 @@ def address_of(data: bytes | memoryview) -> int:
     return found
 
 
-class Dtypes:
-    """The dtypes of all tables, in the library's order, and empty tables."""
-
-    def __init__(self, schema: CaptureSchema) -> None:
-        tables = [*schema.messages.values(), schema.invalid, schema.unknown]
-        self.each: list[np.dtype[Any]] = [*map(dtype_of, tables), numpy().dtype("u1")]
-        self.empty: list[Rows] = [numpy().zeros(0, dtype) for dtype in self.each]
-
-
 _FEW = 1 << 12
 """Bytes of a capture, or of rows, that are sooner copied than memory is found for rows."""
 _TELLING = 1 << 13
@@ -70,7 +60,10 @@ class NativeEngine:
     ) -> None:
         self._schema = library.schema
         self._decoder = Decoder(library, budget)
-        self._dtypes = Dtypes(library.schema)
+        tables = [*library.schema.messages.values(), library.schema.invalid, library.schema.unknown]
+        # In the library's order.
+        self._dtypes: list[np.dtype[Any]] = [*map(dtype_of, tables), numpy().dtype("u1")]
+        self._empty: list[Rows] = [numpy().zeros(0, dtype) for dtype in self._dtypes]
         self._budget = budget
         self.memory: Lender = memory or Memory()
         self._held: dict[int, Rows] = {}
@@ -159,7 +152,7 @@ class NativeEngine:
         """Memory for what so many bytes may bring."""
         found: dict[int, Rows] = {}
         for number, rate in self.memory.rates.items():
-            dtype = self._dtypes.each[number]
+            dtype = self._dtypes[number]
             if rate * size * dtype.itemsize > _FEW:
                 most = max(1, self._budget // dtype.itemsize)
                 count = min(most, int(rate * size * 1.1) + 8)
@@ -169,7 +162,7 @@ class NativeEngine:
 
     def _tables(self, lent: dict[int, Rows], taken: int) -> Tables:
         decoder = self._decoder
-        every = list(self._dtypes.empty)
+        every = list(self._empty)
         rates: dict[int, float] = {}
         for number, in_lent, in_own, own in decoder.filled():
             rows = lent[number][in_lent] if number in lent else every[number]
@@ -181,34 +174,22 @@ class NativeEngine:
             rates[number] = len(rows) / max(1, taken)
         if taken >= _TELLING:
             self.memory.rates = rates
-        found = tables_of(
-            self._schema,
-            every,
-            (self._offset, decoder.offset),
-            (self._sequence, decoder.sequence),
+        *messages, invalid, unknown, payloads = every
+        found = Tables(
+            schema=self._schema,
+            engine=self.name,
+            messages=dict(zip(self._schema.messages, messages, strict=True)),
+            invalid=invalid,
+            unknown=unknown,
+            payloads=payloads,
+            offset=self._offset,
+            size=decoder.offset - self._offset,
+            sequence=self._sequence,
+            events=decoder.sequence - self._sequence,
         )
         self._offset, self._sequence = decoder.offset, decoder.sequence
         decoder.clear()
         return found
-
-
-def tables_of(
-    schema: CaptureSchema, every: list[Rows], offsets: tuple[int, int], numbers: tuple[int, int]
-) -> Tables:
-    """Tables in the library's order: first and next offset, first and next number."""
-    *messages, invalid, unknown, payloads = every
-    return Tables(
-        schema=schema,
-        engine=NativeEngine.name,
-        messages=dict(zip(schema.messages, messages, strict=True)),
-        invalid=invalid,
-        unknown=unknown,
-        payloads=payloads,
-        offset=offsets[0],
-        size=offsets[1] - offsets[0],
-        sequence=numbers[0],
-        events=numbers[1] - numbers[0],
-    )
 
 
 def appended(rows: Rows, address: int, count: int) -> Rows:

@@ -45,10 +45,14 @@ class Tables(msgspec.Struct, frozen=True, kw_only=True):
     """Number of events."""
 
     @property
+    def every(self) -> tuple[Rows, ...]:
+        """All rows: of messages, of invalid and unknown frames, and the payloads of these."""
+        return (*self.messages.values(), self.invalid, self.unknown, self.payloads)
+
+    @property
     def nbytes(self) -> int:
         """Bytes of all rows."""
-        every = (*self.messages.values(), self.invalid, self.unknown, self.payloads)
-        return sum(rows.nbytes for rows in every)
+        return sum(rows.nbytes for rows in self.every)
 
     def payload(self, row: Any) -> bytes:
         """The payload of a row of `unknown`."""
