@@ -30,25 +30,21 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
 
     def fits(self, size: str) -> str:
         """The condition that a payload of that size can be its."""
-        if self.fixed:
-            return f"{size} == {self.least}U"
-        found = [f"{size} >= {self.least}U"] if self.least else []
-        found.append(f"{size} <= {self.greatest}U")
-        if self.step > 1:
-            above = f"({size} - {self.least}U)" if self.least else size
-            found.append(f"{above} % {self.step}U == 0U")
-        return " && ".join(found)
+        return self._compared(size, "==", ">=", "<=", " && ")
 
     def misfits(self, size: str) -> str:
         """The opposite condition."""
+        return self._compared(size, "!=", "<", ">", " || ")
+
+    def _compared(self, size: str, equal: str, least: str, greatest: str, word: str) -> str:
         if self.fixed:
-            return f"{size} != {self.least}U"
-        found = [f"{size} < {self.least}U"] if self.least else []
-        found.append(f"{size} > {self.greatest}U")
+            return f"{size} {equal} {self.least}U"
+        found = [f"{size} {least} {self.least}U"] if self.least else []
+        found.append(f"{size} {greatest} {self.greatest}U")
         if self.step > 1:
             above = f"({size} - {self.least}U)" if self.least else size
-            found.append(f"{above} % {self.step}U != 0U")
-        return " || ".join(found)
+            found.append(f"{above} % {self.step}U {equal} 0U")
+        return word.join(found)
 
 
 class GroupView(msgspec.Struct, frozen=True):

@@ -15,11 +15,12 @@ from protogen.targets.c.frame import style
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.groups import GroupView, key_from, key_type
-from protogen.targets.c.frame.length import LengthView, length_of
 from protogen.targets.c.frame.numbers import (
+    LengthView,
     LiteralView,
     NumberView,
     PartView,
+    length_of,
     literals_of,
     numbers_of,
 )
