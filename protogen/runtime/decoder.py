@@ -13,12 +13,12 @@ from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.framing.starts import starts_of
 
 Engine = Literal["fast", "construct"]
-"""What decodes and encodes. `construct` is the reference: byte by byte, and construct's own parser.
-`fast` does the same with generated straight-line code wherever bytes and values are in order."""
+"""Engine that decodes and encodes. `construct` is the reference: byte by byte, and construct's own
+parser. `fast` does the same with generated straight-line code wherever all is in order."""
 
 
 BytesLike = bytes | bytearray | memoryview
-"""What bytes are taken from; other objects with a buffer are taken as well."""
+"""Objects that bytes are taken from; others with a buffer are taken as well."""
 
 _LOOKED = 4096
 """So many bytes are looked through in the time that a candidate takes to be given one."""
@@ -78,7 +78,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     @property
     def pending(self) -> int:
-        """How many bytes were taken that no event covers yet."""
+        """Bytes that were taken and that no event covers yet."""
         return len(self._data) + len(self._behind) - self._done
 
     def feed(self, data: BytesLike) -> list[Event[MessageT_co, PartsT_co]]:
@@ -242,7 +242,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return not self._wanted
 
     def _wanted_at(self, start: int) -> int:
-        """How many bytes may come before what begins there is judged; 0: a candidate takes it."""
+        """Bytes that may come before what begins there is judged; 0: a candidate takes it."""
         if not self._judges:
             return 0
         if self._prefix is None:
@@ -303,7 +303,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return True
 
     def _share_end(self) -> None:
-        """Where one literal starts and ends frames, that of a valid frame may do both."""
+        """Begin a candidate with the end of the frame before, where it may be its start as well."""
         self._pushed = self._scan
         self._shares_start = True
         self._candidate = Candidate(self._sender, shares_start=True)

@@ -1,4 +1,4 @@
-"""What the fast engine of generated modules is made of.
+"""Parts of the generated modules' engine.
 
 Its functions take bytes and values that are in order. From anything else they raise, and the
 reference (construct, and the machine of `machine.py`) decides and says what is wrong.
@@ -166,7 +166,7 @@ def _writer(
     arguments: tuple[str, ...],
     tables: Tables | None,
 ) -> Callable[[Any], bytes]:
-    """What gives the payloads of a sender's messages."""
+    """Function that gives the payloads of a sender's messages."""
     parts: list[int | None] | None = None
 
     def write_payload(message: Message) -> bytes:
@@ -238,7 +238,7 @@ class Tables:
 
 
 class Heads(dict[bytes, tuple[Any, ...]]):
-    """What a cutter has to know of frames that begin alike, by bytes at their start.
+    """Numbers and readers of frames that begin alike, by bytes at their start.
 
     Not all are kept, as not all members are: what a wire gives must not fill the memory.
     """
@@ -281,7 +281,7 @@ _PACKED = 1 << 16
 
 
 class Packers(dict[int, Callable[..., bytes]]):
-    """What packs some values, and behind them so many records, by the number of records.
+    """Packers of some values and so many records behind them, by the number of records.
 
     Where records come in very many numbers, not all are kept: together they would take memory that
     grows with the square of the greatest number.

@@ -76,7 +76,7 @@ class Prefix:
         )
 
     def wanted(self, data: bytes, at: int) -> int:
-        """How many bytes, all plain but for the last, may follow the data without a verdict.
+        """Bytes, all plain but for the last, that may follow the data without a verdict.
 
         A verdict on what stands from `at` on, that is; 0 if there may be one as yet. That it stands
         behind an end has been seen.
@@ -142,7 +142,7 @@ class Prefix:
         return self._keeps_end_out and wire.find(self._end, len(self._start)) >= 0
 
     def _held(self, wire: bytes) -> int:
-        """How many bytes may begin an end that is looked for everywhere."""
+        """Number of bytes that may begin an end that is looked for everywhere."""
         sizes = range(len(self._end) - 1, 0, -1) if self._keeps_end_out else ()
         own = wire[len(self._start) :]
         return next((size for size in sizes if own.endswith(self._end[:size])), 0)
@@ -211,7 +211,7 @@ class _Region:
 
 
 class _Head(Frozen):
-    """What the first bytes of a frame's content tell of the rest."""
+    """Facts of a frame that the first bytes of its content tell."""
 
     __slots__ = ("due", "is_ascii", "is_open", "limit", "payload_to")
 
@@ -233,11 +233,11 @@ class _Head(Frozen):
 
 
 _UNKNOWN = _Head(0, 0, 0, is_ascii=False, is_open=False)
-"""What is known in front of the bytes that tell the payload's size."""
+"""Head in front of the bytes that tell the payload's size."""
 
 
 class _Heads:
-    """What is known of frames by the first bytes of their content."""
+    """Heads of frames by the first bytes of their content."""
 
     def __init__(self, sender: SenderSpec[Any, Any], region: _Region) -> None:
         layout = sender.layout
@@ -255,7 +255,7 @@ class _Heads:
         self._known: dict[bytes, _Head | None] = {}
 
     def of(self, content: bytes) -> _Head | None:
-        """What a beginning tells; None: there may be a verdict."""
+        """Head that a beginning tells; None: there may be a verdict."""
         if not content.startswith(self._start):
             return None
         if self._first and len(content) < self.size:

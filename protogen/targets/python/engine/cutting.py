@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
-
-from protogen.model.frame import ChecksumPart, LengthPart, LiteralPart
-from protogen.model.frame_plan import EndRule, IdentityGroup
+from protogen.model.frame import LengthPart, LiteralPart
+from protogen.model.frame_plan import EndRule
 from protogen.model.framing import AfterEnd, StartLiteral, StartSet
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python import frames as tables
-from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.checksums import ChecksumFunction
+from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
-
-_SHORT = 256
-"""So many bytes can be summed by Adler-32 without its modulus showing."""
 
 _MANY, _FIRST, _TOGETHER = 1024, 4, 64
 """Bytes from which on exclusive ors are compared together; those of how many frames at first, and
@@ -27,11 +22,8 @@ They are checked after events were made, which are dropped from the first wrong 
 done in vain is in proportion to what was not, and bounded.
 """
 
-FOLDED, _GREATEST_FOLDED = 32, 256
-"""Bytes that are always halved until one is left, and those that are halved at all."""
 
-
-def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
+def cutter(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:
     """The body of `_cut_SENDER(data, at, base, events)`.
 
     It takes whole frames from `at` on, appends their events, and gives the place of the first byte
@@ -40,81 +32,18 @@ def cutter(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
     return _Cutter(frame, Lines(constants)).body()
 
 
-def header(frame: FastFrame, constants: Constants) -> tuple[str, ...]:
-    """The body of `_head_SENDER(head)`: what a cutter remembers by the bytes with all numbers.
-
-    These are the numbers themselves, and the entry of their identity in the table of kinds.
-    """
-    return _Header(frame, Lines(constants)).body()
-
-
-def kinds(frame: FastFrame) -> str:
-    """What an identity is looked up in: readers, or with them the payload's size.
-
-    Where that varies, it is negative: the complement of the greatest.
-    """
-    entries = [_kind(frame, group) for group in frame.groups]
-    lines = [
-        f"    {identity_key(group.identity)}: {entry},"
-        for group, entry in entries_of(frame, entries)
-    ]
-    return "\n".join(["{", *lines, "}"])
-
-
-def entries_of(frame: FastFrame, entries: list[str | None]) -> list[tuple[IdentityGroup, str]]:
-    """The identities that have an entry."""
-    pairs = zip(frame.groups, entries, strict=True)
-    return [(group, entry) for group, entry in pairs if entry is not None]
-
-
-def _kind(frame: FastFrame, group: IdentityGroup) -> str | None:
-    reader = reader_of(frame, group)
-    if frame.length is not None:
-        return reader
-    size = ~group.greatest if group.fixed is None else group.fixed
-    if frame.lists_frame_sizes:
-        size += frame.head_size + frame.tail_size + len(frame.end)
-    if frame.ended_by is EndRule.IDENTITY and frame.shows_identity:
-        return f"({size}, {reader}, {tuple_of(map(str, group.identity))})"
-    return f"({size}, {reader})"
-
-
-def reader_of(frame: FastFrame, group: IdentityGroup) -> str:
-    """The name of the function that reads an identity's payloads."""
-    if len(group.messages) == 1:
-        return f"_read_{group.messages[0].name}"
-    # Begun in another way than those of messages: one of them may be called `host_77`.
-    return f"_choose_{frame.sender.name}_{'_'.join(map(str, group.identity))}"
-
-
-def identity_key(identity: tuple[int, ...]) -> str:
-    """An identity as a key: a number, or several."""
-    if len(identity) == 1:
-        return f"0x{identity[0]:02X}"
-    return tuple_of(f"0x{value:02X}" for value in identity)
-
-
-class _Cutter(FrameFunction):
+class _Cutter(ChecksumFunction):
     """Writes the body of one function."""
-
-    stop = "return at"
-    """Statement for where something is not plainly in order."""
-
-    def __init__(self, frame: FastFrame, lines: Lines) -> None:
-        super().__init__(frame, lines)
-        is_raw = not frame.stuffed and not frame.shares and not frame.end
-        self.content = "raw" if is_raw else "content"
-        """All parts before stuffing, but not the end, nor literals in front."""
 
     def body(self) -> tuple[str, ...]:
         self.lines.add("size = len(data)")
         if self.lines.constants.use("_TABLES."):
             self.lines.add("if not _TABLES.are_filled:")
             self.lines.add("    _TABLES.fill()")
-        if self.frame.has_runs:
+        if self.frame.can_cut_in_bulk:
             self._runs()
         self.lines.add("add = events.append")
-        if self._deferred is not None:
+        if self.deferred is not None:
             self.lines.add("unchecked: list[bytes] = []")
             self.lines.add(f"together = {_FIRST}")
             self.lines.add(f"are_many = size - at > {_MANY}")
@@ -125,7 +54,7 @@ class _Cutter(FrameFunction):
             with self.lines.block("except _fast.ANYTHING:  # There is nothing."):
                 self.lines.add("return at")
         with self.lines.block("try:"), self.lines.block("while at < size:"):
-            if self._deferred is not None:
+            if self.deferred is not None:
                 self.stop = "break"
             if self.frame.ended_by is not EndRule.NEXT_START:
                 self._start()
@@ -133,9 +62,9 @@ class _Cutter(FrameFunction):
             self._event()
         with self.lines.block("except _fast.ANYTHING:  # The reference looks at what is here."):
             self.lines.add("pass")
-        if self._deferred is not None:
+        if self.deferred is not None:
             with self.lines.block("if unchecked:"):
-                given = f"unchecked, {self._deferred}"
+                given = f"unchecked, {self.deferred}"
                 self.lines.add(f"at = _checksum.in_order(at, base, events, {given})")
         self.lines.add("return at")
         return self.lines.text
@@ -145,8 +74,8 @@ class _Cutter(FrameFunction):
         frame = self.frame
         (part,) = frame.checksums
         covered = frame.covered(part, self.content)
-        first = self._xors_to_nothing(part, covered)
-        if first is None and not self._sums_to_nothing(part, covered):
+        first = self.xors_to_nothing(part, covered)
+        if first is None and not self.sums_to_nothing(part, covered):
             return
         assert frame.remembered is not None
         counting = [item for item in frame.shown if item not in frame.identity]
@@ -174,25 +103,13 @@ class _Cutter(FrameFunction):
             of_sender = f"_cut_{self.name}, _{self.name.upper()}_HEADS"
             self.lines.add(f"at = {runs}.take(data, at, base, events, {of_sender})")
 
-    @property
-    def _deferred(self) -> int | None:
-        """Where an exclusive or that is compared for many frames at once begins in the content."""
-        if len(self.frame.checksums) != 1 or self.frame.optional:
-            return None
-        (part,) = self.frame.checksums
-        return self._xors_to_nothing(part, self.frame.covered(part, self.content))
-
     def _frame(self) -> None:
         """Set `payload`, and what else of the frame is wanted."""
         self._locate()
         self._content()
         self._payload()
         self._head()
-        self._checksums()
-
-    def _stop_if(self, condition: str) -> None:
-        self.lines.add(f"if {condition}:")
-        self.lines.add(f"    {self.stop}")
+        self.compare_checksums()
 
     def _place(self, offset: int) -> str:
         """So many bytes behind the start of the frame."""
@@ -216,23 +133,23 @@ class _Cutter(FrameFunction):
         start = self.frame.start
         if isinstance(start, AfterEnd) and self.frame.ended_by is not EndRule.DELIMITER:
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
-            self._stop_if(f"data.startswith({literal(self.frame.end)}, at)")
+            self.stop_if(f"data.startswith({literal(self.frame.end)}, at)")
         elif isinstance(start, StartSet) and not self._identity_starts:
             first = f"data[{self._place(0)}]"
-            self._stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
+            self.stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
         elif isinstance(start, StartLiteral):
             begins = f"data.startswith({literal(start.bytes)}, at)"
             if self.frame.shares:
                 # The place behind the start, which may be the end of the frame before.
                 self.lines.add(f"begun = at + {len(start.bytes)} * {begins}")
             elif len(start.bytes) == 1:
-                self._stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
+                self.stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
             else:
-                self._stop_if(f"not {begins}")
+                self.stop_if(f"not {begins}")
 
     @property
     def _identity_starts(self) -> bool:
-        """Whether the first byte is the identity's, which is looked up to find the end."""
+        """True if the first byte is the identity's, which is looked up to find the end."""
         return (
             self.frame.ended_by is EndRule.IDENTITY and self.frame.parts[0] in self.frame.identity
         )
@@ -251,14 +168,14 @@ class _Cutter(FrameFunction):
                 self.lines.add("end = size")
         if len(self.frame.start_bytes) > 1:
             # Two starts that overlap.
-            self._stop_if(f"end < at + {len(self.frame.start_bytes)}")
+            self.stop_if(f"end < at + {len(self.frame.start_bytes)}")
         self._raw()
 
     def _until_end(self) -> None:
         frame = self.frame
         begun = "begun" if frame.shares else self._place(len(frame.start_bytes))
         self.lines.add(f"end = data.find({literal(frame.end)}, {begun}{self._bound})")
-        self._stop_if("end < 0")
+        self.stop_if("end < 0")
         self.lines.add(f"end += {len(frame.end)}")
         self._raw()
         if not self._is_stuffed_throughout:
@@ -274,20 +191,20 @@ class _Cutter(FrameFunction):
 
     @property
     def _is_stuffed_throughout(self) -> bool:
-        """Whether all between start and end is stuffed, so that unstuffing it finds any start."""
+        """True if all between start and end is stuffed, so that unstuffing it finds any start."""
         frame = self.frame
         return frame.stuffed and frame.before == len(frame.start_bytes) > 0 and not frame.behind
 
     def _raw(self) -> None:
         if self.frame.ended_by in (EndRule.LENGTH, EndRule.IDENTITY):
-            self._stop_if("end > size")
+            self.stop_if("end > size")
         self.lines.add("raw = data[at:end]")
         if not self._length_bounds:
             self._not_too_long()
 
     @property
     def _length_bounds(self) -> bool:
-        """Whether the length bounds all frames in which nothing is stuffed."""
+        """True if the length bounds all frames in which nothing is stuffed."""
         frame = self.frame
         bare = frame.head_size + frame.framing.payload.greatest + frame.tail_size + len(frame.end)
         is_seen = not frame.stuffed or frame.specials(sending=False) is not None
@@ -302,15 +219,15 @@ class _Cutter(FrameFunction):
             size += f" + {len(self.frame.start_bytes)}"
         open_groups = any(group.fixed is None for group in self.frame.groups)
         if self.frame.ended_by is not EndRule.IDENTITY or open_groups:
-            self._stop_if(f"{size} > {self.frame.framing.greatest}")
+            self.stop_if(f"{size} > {self.frame.framing.greatest}")
 
     def _no_start_inside(self) -> None:
         """A start that can't occur inside of a frame ends it where it stands."""
         start = self.frame.start
         if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
-            self._stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
+            self.stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
         elif isinstance(start, StartSet) and start.protected and not self.is_seen_by_bits:
-            self._stop_if(f"{self.starts()}(raw, 1)")
+            self.stop_if(f"{self.starts()}(raw, 1)")
 
     def _by_length(self) -> None:
         frame, length = self.frame, self.frame.length
@@ -325,7 +242,7 @@ class _Cutter(FrameFunction):
             with self.lines.block("else:"):
                 self.lines.add(self.stop)
         else:
-            self._stop_if("count < 0")
+            self.stop_if("count < 0")
             self.lines.add(f"end = {self._place(around)} + count")
         self._sized()
 
@@ -343,7 +260,7 @@ class _Cutter(FrameFunction):
             with self.lines.block("if payload_size < 0:"):
                 behind = self._place(frame.head_size)
                 self.lines.add(f"end = data.find({literal(frame.end)}, {behind}{self._bound})")
-                self._stop_if("end < 0")
+                self.stop_if("end < 0")
                 self.lines.add(f"end += {len(frame.end)}")
             head = "elif payload_size:" if frame.optional else "else:"
             with self.lines.block(head):
@@ -353,7 +270,7 @@ class _Cutter(FrameFunction):
                     self.lines.add(f"end = {self._place(around - self.optional_size)}")
         else:
             if open_groups:
-                self._stop_if("payload_size < 0")
+                self.stop_if("payload_size < 0")
             less = f" - {self.optional_size} * (not payload_size)" if frame.optional else ""
             if less or open_groups:
                 self.lines.add(f"end = {self._place(around)} + payload_size{less}")
@@ -365,7 +282,7 @@ class _Cutter(FrameFunction):
         """Take a frame of a known size."""
         self._raw()
         if self.frame.end:
-            self._stop_if(f"not raw.endswith({literal(self.frame.end)})")
+            self.stop_if(f"not raw.endswith({literal(self.frame.end)})")
         self._no_start_inside()
 
     # --- what is in it ----------------------------------------------------------------------------
@@ -381,7 +298,7 @@ class _Cutter(FrameFunction):
             # Else what is in front of the stuffed bytes and what is behind them would overlap.
             around = len(frame.end) + frame.behind
             least = f"{first} + {around}" if frame.shares else f"{frame.before + around}"
-            self._stop_if(f"len(raw) < {least}")
+            self.stop_if(f"len(raw) < {least}")
         self.lines.add(f"content = raw[{first}:{last}]")
         if not frame.stuffed:
             return
@@ -417,7 +334,7 @@ class _Cutter(FrameFunction):
                 self._replaced()
 
     def _replaced(self) -> None:
-        """What an encoder makes of the outcome has to be what stood there."""
+        """Take codes off; encoding the outcome again must reproduce the input."""
         assert self.frame.replacements is not None
         self.lines.add("stuffed = content")
         for byte, code in reversed(self.frame.replacements):
@@ -426,38 +343,33 @@ class _Cutter(FrameFunction):
         for byte, code in self.frame.replacements:
             self.lines.add(f"again = {source}.replace({literal(byte)}, {literal(code)})")
             source = "again"
-        self._stop_if("again != stuffed")
+        self.stop_if("again != stuffed")
 
     def _payload(self) -> None:
         """Set `payload`, and check that there is room for it."""
         frame = self.frame
         around = frame.head_size - frame.skipped + frame.tail_size
-        sliced = f"payload = {self._payload_slice}"
+        sliced = f"payload = {self.payload_slice}"
         if frame.length is not None and not frame.optional:
             self._length(frame.length, around)
             if not frame.gives_content:
                 self.lines.add(sliced)
         elif frame.optional:
             with self.lines.block(f"if len({self.content}) <= {around}:"):
-                self._stop_if(f"len({self.content}) != {around - self.optional_size}")
+                self.stop_if(f"len({self.content}) != {around - self.optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
             if frame.length is not None:
-                self._stop_if(f"len(payload) > {frame.framing.payload.greatest}")
+                self.stop_if(f"len(payload) > {frame.framing.payload.greatest}")
                 self._optional_length(frame.length)
         else:
             if frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START):
-                self._stop_if(f"len({self.content}) < {max(around, 1)}")
+                self.stop_if(f"len({self.content}) < {max(around, 1)}")
             if not frame.gives_content:
                 self.lines.add(sliced)
         if frame.framing.seven_bit:
-            self._stop_if("not payload.isascii()")
-
-    @property
-    def _payload_slice(self) -> str:
-        frame = self.frame
-        return frame.slice_of(self.content, frame.head_size - frame.skipped, -frame.tail_size)
+            self.stop_if("not payload.isascii()")
 
     def _length(self, part: LengthPart, around: int) -> None:
         """A length in bounds that is right tells that all other parts are there."""
@@ -466,7 +378,7 @@ class _Cutter(FrameFunction):
         if part.type.size > 1 and (
             around < behind or self.frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START)
         ):
-            self._stop_if(f"len({self.content}) < {behind}")
+            self.stop_if(f"len({self.content}) < {behind}")
         self.lines.add(f"length = {number}")
         rest = around - counted
         due = f"length + {rest}" if rest > 0 else f"length - {-rest}" if rest else "length"
@@ -474,20 +386,20 @@ class _Cutter(FrameFunction):
         least = max(part.least, counted)
         greatest = min(part.greatest, counted + self.frame.framing.payload.greatest)
         if least > 0 or greatest < part.type.greatest:
-            self._stop_if(f"not {least + rest} <= {size} == {due} <= {greatest + rest}")
+            self.stop_if(f"not {least + rest} <= {size} == {due} <= {greatest + rest}")
         else:
-            self._stop_if(f"{size} != {due}")
+            self.stop_if(f"{size} != {due}")
 
     def _counted_optional(self, length: LengthPart) -> int:
-        """What the length counts less where the payload is empty."""
+        """Bytes that the length counts less where the payload is empty."""
         return self.frame.length_plan.optional
 
     def _optional_length(self, part: LengthPart) -> None:
         counted, number = self.counted(part), self.number(self.content, part)
-        self._stop_if(
+        self.stop_if(
             f"{number} != len(payload) + {counted} - {self._counted_optional(part)} * (not payload)"
         )
-        self._stop_if(f"not {part.least} <= {number} <= {part.greatest}")
+        self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _head(self) -> None:
         for part in self.frame.head:
@@ -495,71 +407,7 @@ class _Cutter(FrameFunction):
                 first, source = self.frame.offset(part), self.content
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"
-                self._stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
-
-    # --- checksums --------------------------------------------------------------------------------
-
-    def _checksums(self) -> None:
-        if not self.frame.checksums:
-            return
-        if self.frame.optional:
-            with self.lines.block("if payload:"):
-                self._compare()
-        else:
-            self._compare()
-
-    def _compare(self) -> None:
-        for part in self.frame.checksums:
-            covered = self.frame.covered(part, self.content)
-            if self._sums_to_nothing(part, covered):
-                self._stop_if(f"_adler32({self.content}, 0) & 0xFF")
-                continue
-            first_of_xor = self._xors_to_nothing(part, covered)
-            if first_of_xor is not None:
-                self._compare_xor(first_of_xor)
-                continue
-            if covered == self._payload_slice and not self.frame.gives_content:
-                covered = "payload"
-            due = checksum(part, covered, self.frame, self.lines.constants)
-            first = self.frame.offset(part)
-            if part.type.size == 1 and not self.has_padding(part.type):
-                self._stop_if(f"{self.content}[{first}] != {due}")
-                continue
-            last = first + part.type.size
-            found = self.frame.slice_of(self.content, first, last)
-            self._stop_if(f"{found} != {self.codec(part.type)}.encode({due})")
-
-    def _sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
-        """Whether the checksum brings the sum of the whole content to 0."""
-        all_but_last = covered == self.frame.slice_of(self.content, 0, -1)
-        return is_plain_sum(part, self.frame) and part.algorithm.negated and all_but_last
-
-    def _xors_to_nothing(self, part: ChecksumPart, covered: str) -> int | None:
-        """Where the content begins whose exclusive or the checksum brings to 0; else None."""
-        spec, runs = part.algorithm, self.frame.covered_runs(part)
-        if spec.kind != "xor" or spec.init != 0 or len(runs) != 1 or isinstance(runs[0], bytes):
-            return None
-        if part.type.size != 1 or self.has_padding(part.type):
-            return None
-        first = runs[0][0]
-        is_last = covered == self.frame.slice_of(self.content, first, -1) and first >= 0
-        return first if is_last else None
-
-    def _compare_xor(self, first: int) -> None:
-        """Compare it here where there are few frames, else for many of them together."""
-        if self._deferred is None:
-            self._fold(first)
-            return
-        with self.lines.block("if not are_many:"):
-            self._fold(first)
-
-    def _fold(self, first: int) -> None:
-        frame = self.frame
-        front = frame.head_size - frame.skipped - first
-        greatest = front + frame.framing.payload.greatest + frame.tail_size
-        data = self.frame.slice_of(self.content, first, 0)
-        are_more = f"len({self.content}) > {first + FOLDED}"
-        self._stop_if(folded(self.lines, data, are_more, greatest))
+                self.stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
 
     # --- the event --------------------------------------------------------------------------------
 
@@ -577,18 +425,18 @@ class _Cutter(FrameFunction):
     def _taken(self) -> None:
         """Go on behind a frame."""
         self.lines.add("at = end")
-        if self._deferred is None:
+        if self.deferred is None:
             return
         with self.lines.block("if are_many:"):
             self.lines.add(f"unchecked.append({self.content})")
             with self.lines.block("if len(unchecked) >= together:"):
-                self._stop_if(f"not _checksum.are_sound(unchecked, {self._deferred})")
+                self.stop_if(f"not _checksum.are_sound(unchecked, {self.deferred})")
                 self.lines.add("unchecked.clear()")
                 self.lines.add(f"together = min(2 * together, {_TOGETHER})")
 
     @property
     def _read_from(self) -> str:
-        """What readers are given."""
+        """Argument of readers."""
         return self.content if self.frame.gives_content else "payload"
 
     def _numbers(self) -> None:
@@ -616,7 +464,7 @@ class _Cutter(FrameFunction):
                 self._unknown()
         else:
             self.lines.add(f"numbers, payload_size, read = {head}")
-            self._stop_if("0 <= payload_size != len(payload)")
+            self.stop_if("0 <= payload_size != len(payload)")
 
     def _look_up(self, identity: list[str]) -> None:
         kinds = f"_{self.name.upper()}_KINDS"
@@ -627,71 +475,11 @@ class _Cutter(FrameFunction):
                 self._unknown()
             return
         self.lines.add(f"payload_size, read = {kinds}[{key}]")
-        self._stop_if("0 <= payload_size != len(payload)")
+        self.stop_if("0 <= payload_size != len(payload)")
 
     def _unknown(self) -> None:
         spec = f"{self.name.upper()}_SENDER"
-        payload = self._payload_slice if self.frame.gives_content else "payload"
+        payload = self.payload_slice if self.frame.gives_content else "payload"
         self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, {payload}))")
         self._taken()
         self.lines.add("continue")
-
-
-class _Header(FrameFunction):
-    """Writes the body of the function that reads a head."""
-
-    def body(self) -> tuple[str, ...]:
-        frame = self.frame
-        assert frame.remembered is not None
-        first, _ = frame.remembered
-        found = {
-            part: self.number_at("head", part, Place("", frame.offset(part) - first))
-            for part in frame.shown
-        }
-        identity = [found[part] for part in frame.identity]
-        key = identity[0] if len(identity) == 1 else tuple_of(identity)
-        kinds = f"_{self.name.upper()}_KINDS"
-        entry = f"{kinds}.get({key})" if frame.length is not None else f"*{kinds}[{key}]"
-        self.lines.add(f"return {tuple_of(found.values())}, {entry}")
-        return self.lines.text
-
-
-def is_plain_sum(part: ChecksumPart, frame: FastFrame) -> bool:
-    """Whether Adler-32 gives the sum: it is that of few bytes, modulo 256."""
-    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
-    spec = part.algorithm
-    return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
-
-
-def folded(lines: Lines, data: str, are_more: str, greatest: int) -> str:
-    """The exclusive or of at most so many bytes as an expression, worked out without a loop.
-
-    `are_more` is the condition that there are more than `FOLDED`; empty where that is known.
-    """
-    if greatest > _GREATEST_FOLDED:
-        return f"_checksum.xor_of({data})"
-    from_bytes = lines.constants.named("FROM_BYTES", "int.from_bytes")
-    lines.add(f'folded = {from_bytes}({data}, "little")')
-    if greatest > FOLDED:
-        with lines.block(f"if {are_more}:") if are_more else nullcontext():
-            _halve(lines, greatest, (128, 64, 32))
-    _halve(lines, greatest, (16, 8, 4, 2))
-    return "(folded ^ folded >> 8) & 0xFF" if greatest > 1 else "folded"
-
-
-def _halve(lines: Lines, greatest: int, halves: tuple[int, ...]) -> None:
-    for half in halves:
-        if greatest > half:
-            lines.add(f"folded ^= folded >> {8 * half}")
-
-
-def checksum(part: ChecksumPart, data: str, frame: FastFrame, constants: Constants) -> str:
-    """A checksum of `data` as an expression."""
-    spec = part.algorithm
-    if is_plain_sum(part, frame):
-        total = f"_adler32({data}, 0)"
-        return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
-    if spec.kind == "xor" and spec.init == 0:
-        return f"_checksum.xor_of({data})"
-    compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.compute")
-    return f"{compute}({data})"

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from protogen.model.frame import (
-    Base16,
     ChecksumPart,
-    Cobs,
-    Escape,
     LiteralPart,
     NumberPart,
     Part,
-    PayloadPart,
-    Substitution,
 )
-from protogen.model.frame_plan import EndRule, LengthPlan
+from protogen.model.frame_plan import EndRule, LengthPlan, Place, Side
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
@@ -23,7 +18,7 @@ from protogen.targets.python.literals import octets_in_class
 _MOST_SPECIALS = 4
 
 
-class FastFrame:
+class EngineFrame:
     """Everything about a sender's frames that the functions of the fast engine are printed from."""
 
     def __init__(self, sender: Sender, *, skips_start: bool = False) -> None:
@@ -64,25 +59,20 @@ class FastFrame:
 
     @property
     def length_plan(self) -> LengthPlan:
-        """What the length part counts; only for frames that have one."""
+        """Rule of the length part; only for frames that have one."""
         assert self.plan.length is not None
         return self.plan.length
 
     def sends(self, message: Message) -> bool:
-        """Whether the sender sends the message."""
+        """True if the sender sends the message."""
         return self.sender.name in message.senders
 
     # --- what can be cut --------------------------------------------------------------------------
 
     @property
     def ended_by(self) -> EndRule:
-        """What tells where a frame ends."""
+        """Rule that ends a frame."""
         return self.plan.end_rule
-
-    @property
-    def can_cut(self) -> bool:
-        """True if there is a function that cuts frames; else the reference does it alone."""
-        return self.plan.takes_whole
 
     @property
     def can_frame(self) -> bool:
@@ -96,7 +86,7 @@ class FastFrame:
 
     @property
     def optional(self) -> bool:
-        """Whether the checksums are absent where the payload is empty."""
+        """True if the checksums are absent where the payload is empty."""
         return any(part.when_payload for part in self.checksums)
 
     @property
@@ -116,12 +106,12 @@ class FastFrame:
 
     @property
     def lists_frame_sizes(self) -> bool:
-        """Whether the table of identities has sizes of whole frames, and not of payloads."""
+        """True if the table of identities has sizes of whole frames, and not of payloads."""
         return self.ended_by is EndRule.IDENTITY and not self.has_open_groups and not self.optional
 
     @property
     def remembered(self) -> tuple[int, int] | None:
-        """Where the bytes of all numbers that events show begin and end in the content.
+        """Begin and end in the content of all numbers that events show.
 
         None where a stream repeats these bytes too seldom for remembering what they mean.
         """
@@ -135,14 +125,14 @@ class FastFrame:
         return (first, last) if plain else None
 
     @property
-    def has_runs(self) -> bool:
-        """Whether runs of frames of one message can be taken at once, but for their checksum.
+    def can_cut_in_bulk(self) -> bool:
+        """True if runs of frames of one message can be taken at once, but for their checksum.
 
         Delimiters show by special bytes, all of a frame that is not a delimiter is stuffed, and
         frames of one message that are equally long have all parts in the same places.
         """
         specials = self.specials(sending=False)
-        if not self.can_cut or self.replacements is None or specials is None:
+        if not self.plan.takes_whole or self.replacements is None or specials is None:
             return False
         start, end = self.start_bytes, self.end
         if self.ended_by is EndRule.NEXT_START:
@@ -180,7 +170,7 @@ class FastFrame:
 
     @property
     def shows_identity(self) -> bool:
-        """Whether events show the identity and no other part."""
+        """True if events show the identity and no other part."""
         return self.shown == self.identity
 
     # --- stuffing ---------------------------------------------------------------------------------
@@ -204,14 +194,10 @@ class FastFrame:
 
         None where there are too many, or where every region is encoded.
         """
-        transparency = self.sender.frame.transparency
-        match None if transparency is None else transparency.encoding:
-            case Substitution(table=table):
-                found = {byte for byte, _ in table} | {code[0] for _, code in table}
-            case Escape(byte=byte, of=of):
-                found = {byte, *of}
-            case Base16() | Cobs() | None:
-                return None
+        codes = () if self.plan.region is None else self.plan.region.codes
+        if not codes:
+            return None
+        found = {byte for byte, _ in codes} | {code[0] for _, code in codes}
         if not sending and self.ended_by is EndRule.NEXT_START and len(self.start_bytes) == 1:
             found -= set(self.start_bytes)
         return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
@@ -219,7 +205,7 @@ class FastFrame:
     # --- where parts lie --------------------------------------------------------------------------
 
     def offset(self, part: Part) -> int:
-        """Where a part of the head begins in the content, and one of the tail, from its end."""
+        """Place of a part of the head in the content; of one of the tail, from its end."""
         if part in self.head:
             return self.plan.part(part.name).offset - self.skipped
         return self.plan.part(part.name).offset - self.tail_size
@@ -231,7 +217,7 @@ class FastFrame:
         return f"{content}[{first or ''}:{last or ''}]"
 
     def covered(self, part: ChecksumPart, content: str, missing: int = 0) -> str:
-        """What a checksum covers, as an expression.
+        """Bytes that a checksum covers, as an expression.
 
         The content's last `missing` bytes are not there yet.
         """
@@ -244,38 +230,45 @@ class FastFrame:
         return " + ".join(pieces) or 'b""'
 
     def covered_runs(self, part: ChecksumPart) -> tuple[tuple[int, int] | bytes, ...]:
-        """What a checksum covers: bytes, or where they begin and end in the content.
+        """Bytes that a checksum covers, or where they begin and end in the content.
 
         A place below 0 is counted from the content's end, as is an end of 0.
         """
+        plan = next(item for item in self.plan.checksums if item.part == part)
         runs: list[tuple[int, int] | bytes] = []
-        for name in part.covers:
-            run = self._run(name)
-            before = runs[-1] if runs else None
-            if isinstance(run, tuple) and isinstance(before, tuple) and before[1] == run[0] != 0:
-                runs[-1] = (before[0], run[1])
-            else:
+        for run in plan.covers:
+            if isinstance(run, bytes):
                 runs.append(run)
+                continue
+            first, end = self._place(run.first), self._place(run.end)
+            if run.first.side is Side.HEAD and first < 0:
+                runs.append(self._front[run.first.offset : self._front_end(run.end)])
+                first = 0
+            if run.end.side is Side.TAIL or end > 0:
+                runs.append((first, end))
         return tuple(runs)
 
+    @property
+    def _front(self) -> bytes:
+        """Literals in front of the content."""
+        literals = [part.bytes for part in self.head if isinstance(part, LiteralPart)]
+        return b"".join(literals)[: self.skipped]
+
+    def _front_end(self, place: Place) -> int:
+        return place.offset if place.side is Side.HEAD else self.skipped
+
+    def _place(self, place: Place) -> int:
+        """Place in the content; those of the tail are counted from its end."""
+        return place.offset - (self.skipped if place.side is Side.HEAD else self.tail_size)
+
     def is_start(self, part: LiteralPart) -> bool:
-        """Whether finding the start has checked the literal."""
+        """True if finding the start has checked the literal."""
         behind = self.offset(part) + self.skipped + len(part.bytes)
         return behind <= len(self.start_bytes)
 
     def is_skipped(self, part: LiteralPart) -> bool:
-        """Whether a literal stands in front of the content."""
+        """True if a literal stands in front of the content."""
         return part in self.head and self.offset(part) < 0
-
-    def _run(self, name: str) -> tuple[int, int] | bytes:
-        """Where a part begins and ends in the content; the bytes of one that is not in it."""
-        part = self.sender.frame.part(name)
-        if isinstance(part, LiteralPart) and (self.is_skipped(part) or part not in self.parts):
-            return part.bytes
-        if isinstance(part, PayloadPart):
-            return self.head_size - self.skipped, -self.tail_size
-        first = self.offset(part)
-        return first, first + part.size
 
 
 def _moved(bound: int, missing: int) -> int:

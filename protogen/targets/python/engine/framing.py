@@ -18,8 +18,8 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
-from protogen.targets.python.engine.cutting import FOLDED, checksum, folded
-from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.checksums import FOLDED, checksum, folded
+from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.writing import (
     Packed,
@@ -33,25 +33,28 @@ from protogen.targets.python.literals import text
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
-def framer(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> tuple[str, ...]:
+def framer(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> tuple[str, ...]:
     """The body of `_frame_SENDER(payload, IDENTITY..., VALUES...)`."""
     return _Framer(frame, of_caller, Lines(constants)).body()
 
 
-def arguments(frame: FastFrame, of_caller: tuple[str, ...]) -> list[str]:
+def arguments(frame: EngineFrame, of_caller: tuple[str, ...]) -> list[str]:
     """The numbers that the function takes: identity parts, then what callers of `encode` give."""
     identity = [f"{part.name}_" for part in frame.identity]
     return [*identity, *_of_caller(frame, of_caller)]
 
 
-def _of_caller(frame: FastFrame, names: tuple[str, ...]) -> list[str]:
+def _of_caller(frame: EngineFrame, names: tuple[str, ...]) -> list[str]:
     """Names of arguments: a part of other senders only may be called like an identity of this."""
     own = {part.name for part in frame.sender.frame.caller_parts}
     return [f"{name}_" if name in own else f"other{index}" for index, name in enumerate(names)]
 
 
 def encoder(
-    message: Message, frames: Sequence[FastFrame], of_caller: tuple[str, ...], constants: Constants
+    message: Message,
+    frames: Sequence[EngineFrame],
+    of_caller: tuple[str, ...],
+    constants: Constants,
 ) -> tuple[str, ...]:
     """The body of `_encode_NAME(item, module, sender, VALUES...)`, for the frames of its senders.
 
@@ -79,12 +82,12 @@ def encoder(
 
 
 def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
-    """What callers of `encode` give, as arguments."""
+    """Arguments for what callers of `encode` give."""
     return [f"{name}_" for name in of_caller]
 
 
-def _goes_together(frame: FastFrame) -> bool:
-    """Whether all parts in front of the payload are numbers for `struct`, and none is optional."""
+def _goes_together(frame: EngineFrame) -> bool:
+    """True if all parts in front of the payload are numbers for `struct`, and none is optional."""
     plain = all(
         (isinstance(part, NumberPart) and _is_plain(part.type))
         or (isinstance(part, LiteralPart) and (frame.is_skipped(part) or len(part.bytes) == 1))
@@ -98,7 +101,7 @@ class _Framer:
 
     def __init__(
         self,
-        frame: FastFrame,
+        frame: EngineFrame,
         of_caller: tuple[str, ...],
         lines: Lines,
         message: Message | None = None,
@@ -108,7 +111,7 @@ class _Framer:
         self.lines = lines
         self.message = message
         self._has_payload = False
-        """Whether a variable holds the payload alone."""
+        """True if a variable holds the payload alone."""
         names = _of_caller(frame, of_caller) if message is None else encoder_arguments(of_caller)
         self.values = dict(zip(of_caller, names, strict=True))
 
@@ -136,7 +139,7 @@ class _Framer:
         return self.lines.text
 
     def _covers_payload(self, part: ChecksumPart, covered: str) -> bool:
-        """Whether a checksum covers the payload alone, with which the content ends at the first."""
+        """True if a checksum covers the payload alone, with which the content ends at the first."""
         own = self.frame.slice_of("content", self.frame.head_size - self.frame.skipped, 0)
         return covered == own and part == self.frame.checksums[0]
 
@@ -179,7 +182,7 @@ class _Framer:
                 self.lines.refuse_if(f"not {least} <= len(payload) <= {greatest}")
 
     def _always_fits(self, greatest: int) -> bool:
-        """Whether the sizes of all messages are in bounds."""
+        """True if the sizes of all messages are in bounds."""
         return all(message.sizes.greatest <= greatest for message in self.frame.sender.messages)
 
     def _counted(self, part: LengthPart, bare: bool) -> int:
@@ -200,7 +203,7 @@ class _Framer:
         self._return(bare)
 
     def _is_skipped(self, part: Part) -> bool:
-        """Whether a part is a literal in front of the content."""
+        """True if a part is a literal in front of the content."""
         return isinstance(part, LiteralPart) and self.frame.is_skipped(part)
 
     def _joined(self, parts: list[Part], bare: bool) -> str:
@@ -273,7 +276,7 @@ class _Framer:
         return folded(self.lines, covered, f"len({covered}) > {FOLDED}", message.sizes.greatest)
 
     def _covered(self, part: ChecksumPart) -> str:
-        """What a checksum covers, while the content ends where the part begins."""
+        """Bytes that a checksum covers, while the content ends where the part begins."""
         frame = self.frame
         missing = -frame.offset(part)
         covered = frame.covered(part, "content", missing)

@@ -1,11 +1,11 @@
-"""What functions that look at frames have in common: numbers of the head, starts, sizes."""
+"""Base of the functions that look at frames: numbers of the head, starts, sizes."""
 
 from __future__ import annotations
 
 from protogen.model.frame import LengthPart, LiteralPart, NumberPart
 from protogen.model.framing import StartSet
 from protogen.model.types import Integer
-from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
 
@@ -13,7 +13,7 @@ from protogen.targets.python.engine.place import Place
 class FrameFunction:
     """Writes the body of one function."""
 
-    def __init__(self, frame: FastFrame, lines: Lines) -> None:
+    def __init__(self, frame: EngineFrame, lines: Lines) -> None:
         self.frame = frame
         self.lines = lines
         self.name = frame.sender.name
@@ -27,7 +27,7 @@ class FrameFunction:
 
     @property
     def is_seen_by_bits(self) -> bool:
-        """Whether the check for 7-bit bytes finds any start inside of a frame."""
+        """True if the check for 7-bit bytes finds any start inside of a frame."""
         frame, start = self.frame, self.frame.start
         assert isinstance(start, StartSet)
         alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
@@ -40,11 +40,11 @@ class FrameFunction:
         return self.frame.optional_size
 
     def is_start(self, part: LiteralPart) -> bool:
-        """Whether finding the start has checked the literal."""
+        """True if finding the start has checked the literal."""
         return self.frame.is_start(part)
 
     def counted(self, part: LengthPart) -> int:
-        """What the length counts besides the payload."""
+        """Bytes that the length counts besides the payload."""
         return self.frame.length_plan.base + self.frame.length_plan.optional
 
     def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
@@ -76,5 +76,5 @@ class FrameFunction:
 
     @staticmethod
     def has_padding(type_: Integer) -> bool:
-        """Whether some bits of the bytes have to be clear."""
+        """True if some bits of the bytes have to be clear."""
         return type_.bits % 8 != 0 or type_.byte_bits == 7

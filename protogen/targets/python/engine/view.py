@@ -9,8 +9,8 @@ import msgspec
 from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.targets.python.engine import cutting, framing
-from protogen.targets.python.engine.frames import FastFrame
+from protogen.targets.python.engine import cutting, framing, identities
+from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import outer_names
 from protogen.targets.python.engine.lines import Constants
 from protogen.targets.python.engine.reading import message_reader, struct_reader
@@ -33,8 +33,8 @@ def _function(name: str, parameters: str, gives: str, body: tuple[str, ...]) -> 
     return Function(method(f"def {name}(", parameters, f") -> {gives}", 0, after=1), body)
 
 
-class FastSender(msgspec.Struct, frozen=True):
-    """What the fast engine has for one sender."""
+class EngineSender(msgspec.Struct, frozen=True):
+    """Functions and tables of one sender."""
 
     name: str
     upper: str
@@ -51,7 +51,7 @@ class Fast(msgspec.Struct, frozen=True):
 
     constants: tuple[str, ...]
     records: tuple[Function, ...]
-    senders: tuple[FastSender, ...]
+    senders: tuple[EngineSender, ...]
     encoders: tuple[Function, ...]
     table: tuple[str, ...]
     """Entries of the table of encoders by the message's class."""
@@ -62,17 +62,17 @@ class Fast(msgspec.Struct, frozen=True):
     modules: tuple[str, ...]
     """Modules that the text names: the standard library's, and the runtime's optional ones."""
     names: tuple[str, ...]
-    """What the text takes from the module that people read: its classes, senders and tables."""
+    """Names that the text takes from the other module: its classes, senders and tables."""
     tables: bool
-    """Whether readers look values up in tables that have to be filled first."""
+    """True if readers look values up in tables that have to be filled first."""
     codes: bool
-    """Whether writers do."""
+    """True if writers do."""
 
 
 def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
     constants = Constants()
-    frames = [FastFrame(sender, skips_start=True) for sender in protocol.senders]
+    frames = [EngineFrame(sender, skips_start=True) for sender in protocol.senders]
     around = _around(frames)
     for frame in frames:
         frame.gives_content = around is not None
@@ -115,7 +115,7 @@ _USES = {
 
 
 def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple[str, ...]:
-    """What the text uses of the other module, sorted as imports are."""
+    """Names that the text uses of the other module, sorted as imports are."""
     words = set(_WORD.findall(used))
     types = {item.name for item in protocol.enums}
     types |= {item.name for item in protocol.flags}
@@ -131,9 +131,9 @@ def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple
 _WORD = re.compile(r"\w+")
 
 
-def _around(frames: list[FastFrame]) -> tuple[int, int] | None:
-    """What is around payloads, where that is the same in all frames that are cut; else None."""
-    found = {frame.around for frame in frames if frame.can_cut}
+def _around(frames: list[EngineFrame]) -> tuple[int, int] | None:
+    """Sizes around payloads, where they are the same in all frames that are cut; else None."""
+    found = {frame.around for frame in frames if frame.plan.takes_whole}
     return found.pop() if len(found) == 1 else None
 
 
@@ -200,7 +200,7 @@ def _seen_to_be_ascii(protocol: Protocol) -> set[str]:
 
 
 def _encoder(
-    message: Message, frames: list[FastFrame], of_caller: tuple[str, ...], constants: Constants
+    message: Message, frames: list[EngineFrame], of_caller: tuple[str, ...], constants: Constants
 ) -> Function | None:
     """The function that makes a message's frames; None where only the reference does."""
     own = [frame for frame in frames if frame.sends(message)]
@@ -212,14 +212,14 @@ def _encoder(
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 
-def _overloads(frame: FastFrame) -> list[Function]:
+def _overloads(frame: EngineFrame) -> list[Function]:
     """Readers of identities that several messages share."""
-    if not frame.can_cut:
+    if not frame.plan.takes_whole:
         return []
     return [_overload(frame, group) for group in frame.groups if len(group.messages) > 1]
 
 
-def _overload(frame: FastFrame, group: IdentityGroup) -> Function:
+def _overload(frame: EngineFrame, group: IdentityGroup) -> Function:
     given = " | ".join(class_name(message.name) for message in group.messages)
     body: list[str] = []
     around = sum(frame.around or ()) if frame.gives_content else 0
@@ -228,25 +228,29 @@ def _overload(frame: FastFrame, group: IdentityGroup) -> Function:
         body.append(f"if {size} in {class_name(message.name)}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
     body.append("raise _fast.NeedsReference")
-    return _function(cutting.reader_of(frame, group), "data: bytes", given, tuple(body))
+    return _function(identities.reader_of(frame, group), "data: bytes", given, tuple(body))
 
 
-def _sender(frame: FastFrame, of_caller: tuple[str, ...], constants: Constants) -> FastSender:
+def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> EngineSender:
     name = frame.sender.name
     cut = head = made = None
-    if frame.can_cut:
+    if frame.plan.takes_whole:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
-    if frame.can_cut and frame.ended_by is not EndRule.IDENTITY and frame.remembered is not None:
-        body = cutting.header(frame, constants)
+    if (
+        frame.plan.takes_whole
+        and frame.ended_by is not EndRule.IDENTITY
+        and frame.remembered is not None
+    ):
+        body = identities.header(frame, constants)
         head = _function(f"_head_{name}", "head: bytes", "tuple[_typing.Any, ...]", body)
     if frame.can_frame:
         given = framing.arguments(frame, of_caller)
         parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
         body = framing.framer(frame, of_caller, constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
-    kinds = cutting.kinds(frame) if cut else ""
-    return FastSender(
+    kinds = identities.kinds(frame) if cut else ""
+    return EngineSender(
         name, name.upper(), cut, head, kinds, made, literal(frame.end) if frame.shares else ""
     )

@@ -1,0 +1,153 @@
+"""Checksums of frames as expressions, and the statements that compare them."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+
+from protogen.model.frame import ChecksumPart
+from protogen.targets.python import frames as tables
+from protogen.targets.python.engine.frames import EngineFrame
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import FrameFunction
+
+_SHORT = 256
+"""So many bytes can be summed by Adler-32 without its modulus showing."""
+
+FOLDED, _GREATEST_FOLDED = 32, 256
+"""Bytes that are always halved until one is left, and those that are halved at all."""
+
+
+class ChecksumFunction(FrameFunction):
+    """Printer of a function that compares the checksums of a frame."""
+
+    stop = "return at"
+    """Statement for where something is not plainly in order."""
+
+    def __init__(self, frame: EngineFrame, lines: Lines) -> None:
+        super().__init__(frame, lines)
+        is_raw = not frame.stuffed and not frame.shares and not frame.end
+        self.content = "raw" if is_raw else "content"
+        """All parts before stuffing, but not the end, nor literals in front."""
+
+    def stop_if(self, condition: str) -> None:
+        """Leave it to the reference where the condition holds."""
+        self.lines.add(f"if {condition}:")
+        self.lines.add(f"    {self.stop}")
+
+    @property
+    def deferred(self) -> int | None:
+        """Place in the content from which an exclusive or is compared for many frames at once."""
+        if len(self.frame.checksums) != 1 or self.frame.optional:
+            return None
+        (part,) = self.frame.checksums
+        return self.xors_to_nothing(part, self.frame.covered(part, self.content))
+
+    def compare_checksums(self) -> None:
+        """Compare all checksums that are there."""
+        if not self.frame.checksums:
+            return
+        if self.frame.optional:
+            with self.lines.block("if payload:"):
+                self._compare()
+        else:
+            self._compare()
+
+    def _compare(self) -> None:
+        for part in self.frame.checksums:
+            covered = self.frame.covered(part, self.content)
+            if self.sums_to_nothing(part, covered):
+                self.stop_if(f"_adler32({self.content}, 0) & 0xFF")
+                continue
+            first_of_xor = self.xors_to_nothing(part, covered)
+            if first_of_xor is not None:
+                self._compare_xor(first_of_xor)
+                continue
+            if covered == self.payload_slice and not self.frame.gives_content:
+                covered = "payload"
+            due = checksum(part, covered, self.frame, self.lines.constants)
+            first = self.frame.offset(part)
+            if part.type.size == 1 and not self.has_padding(part.type):
+                self.stop_if(f"{self.content}[{first}] != {due}")
+                continue
+            last = first + part.type.size
+            found = self.frame.slice_of(self.content, first, last)
+            self.stop_if(f"{found} != {self.codec(part.type)}.encode({due})")
+
+    def sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
+        """True if the checksum brings the sum of the whole content to 0."""
+        all_but_last = covered == self.frame.slice_of(self.content, 0, -1)
+        return is_plain_sum(part, self.frame) and part.algorithm.negated and all_but_last
+
+    def xors_to_nothing(self, part: ChecksumPart, covered: str) -> int | None:
+        """Place from which the checksum brings the exclusive or of the content to 0; else None."""
+        spec, runs = part.algorithm, self.frame.covered_runs(part)
+        if spec.kind != "xor" or spec.init != 0 or len(runs) != 1 or isinstance(runs[0], bytes):
+            return None
+        if part.type.size != 1 or self.has_padding(part.type):
+            return None
+        first = runs[0][0]
+        is_last = covered == self.frame.slice_of(self.content, first, -1) and first >= 0
+        return first if is_last else None
+
+    def _compare_xor(self, first: int) -> None:
+        """Compare it here where there are few frames, else for many of them together."""
+        if self.deferred is None:
+            self._fold(first)
+            return
+        with self.lines.block("if not are_many:"):
+            self._fold(first)
+
+    def _fold(self, first: int) -> None:
+        frame = self.frame
+        front = frame.head_size - frame.skipped - first
+        greatest = front + frame.framing.payload.greatest + frame.tail_size
+        data = self.frame.slice_of(self.content, first, 0)
+        are_more = f"len({self.content}) > {first + FOLDED}"
+        self.stop_if(folded(self.lines, data, are_more, greatest))
+
+    @property
+    def payload_slice(self) -> str:
+        """The payload within the content, as an expression."""
+        frame = self.frame
+        return frame.slice_of(self.content, frame.head_size - frame.skipped, -frame.tail_size)
+
+
+def is_plain_sum(part: ChecksumPart, frame: EngineFrame) -> bool:
+    """True if Adler-32 gives the sum: it is that of few bytes, modulo 256."""
+    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
+    spec = part.algorithm
+    return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
+
+
+def folded(lines: Lines, data: str, are_more: str, greatest: int) -> str:
+    """The exclusive or of at most so many bytes as an expression, worked out without a loop.
+
+    `are_more` is the condition that there are more than `FOLDED`; empty where that is known.
+    """
+    if greatest > _GREATEST_FOLDED:
+        return f"_checksum.xor_of({data})"
+    from_bytes = lines.constants.named("FROM_BYTES", "int.from_bytes")
+    lines.add(f'folded = {from_bytes}({data}, "little")')
+    if greatest > FOLDED:
+        with lines.block(f"if {are_more}:") if are_more else nullcontext():
+            _halve(lines, greatest, (128, 64, 32))
+    _halve(lines, greatest, (16, 8, 4, 2))
+    return "(folded ^ folded >> 8) & 0xFF" if greatest > 1 else "folded"
+
+
+def _halve(lines: Lines, greatest: int, halves: tuple[int, ...]) -> None:
+    for half in halves:
+        if greatest > half:
+            lines.add(f"folded ^= folded >> {8 * half}")
+
+
+def checksum(part: ChecksumPart, data: str, frame: EngineFrame, constants: Constants) -> str:
+    """A checksum of `data` as an expression."""
+    spec = part.algorithm
+    if is_plain_sum(part, frame):
+        total = f"_adler32({data}, 0)"
+        return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
+    if spec.kind == "xor" and spec.init == 0:
+        return f"_checksum.xor_of({data})"
+    compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.compute")
+    return f"{compute}({data})"

@@ -1,0 +1,73 @@
+"""Tables of identities: which function reads the payloads behind each."""
+
+from __future__ import annotations
+
+from protogen.model.frame_plan import EndRule, IdentityGroup
+from protogen.targets.python.engine.frames import EngineFrame
+from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import FrameFunction
+from protogen.targets.python.engine.place import Place
+from protogen.targets.python.literals import tuple_of
+
+
+def header(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:
+    """The body of `_head_SENDER(head)`: what a cutter remembers by the bytes with all numbers.
+
+    These are the numbers themselves, and the entry of their identity in the table of kinds.
+    """
+    return _Header(frame, Lines(constants)).body()
+
+
+def kinds(frame: EngineFrame) -> str:
+    """Table in which identities are looked up: readers, or with them the payload's size.
+
+    Where that varies, it is negative: the complement of the greatest.
+    """
+    lines = [f"    {identity_key(item.identity)}: {_kind(frame, item)}," for item in frame.groups]
+    return "\n".join(["{", *lines, "}"])
+
+
+def _kind(frame: EngineFrame, group: IdentityGroup) -> str:
+    reader = reader_of(frame, group)
+    if frame.length is not None:
+        return reader
+    size = ~group.greatest if group.fixed is None else group.fixed
+    if frame.lists_frame_sizes:
+        size += frame.head_size + frame.tail_size + len(frame.end)
+    if frame.ended_by is EndRule.IDENTITY and frame.shows_identity:
+        return f"({size}, {reader}, {tuple_of(map(str, group.identity))})"
+    return f"({size}, {reader})"
+
+
+def reader_of(frame: EngineFrame, group: IdentityGroup) -> str:
+    """The name of the function that reads an identity's payloads."""
+    if len(group.messages) == 1:
+        return f"_read_{group.messages[0].name}"
+    # Begun in another way than those of messages: one of them may be called `host_77`.
+    return f"_choose_{frame.sender.name}_{'_'.join(map(str, group.identity))}"
+
+
+def identity_key(identity: tuple[int, ...]) -> str:
+    """An identity as a key: a number, or several."""
+    if len(identity) == 1:
+        return f"0x{identity[0]:02X}"
+    return tuple_of(f"0x{value:02X}" for value in identity)
+
+
+class _Header(FrameFunction):
+    """Writes the body of the function that reads a head."""
+
+    def body(self) -> tuple[str, ...]:
+        frame = self.frame
+        assert frame.remembered is not None
+        first, _ = frame.remembered
+        found = {
+            part: self.number_at("head", part, Place("", frame.offset(part) - first))
+            for part in frame.shown
+        }
+        identity = [found[part] for part in frame.identity]
+        key = identity[0] if len(identity) == 1 else tuple_of(identity)
+        kinds = f"_{self.name.upper()}_KINDS"
+        entry = f"{kinds}.get({key})" if frame.length is not None else f"*{kinds}[{key}]"
+        self.lines.add(f"return {tuple_of(found.values())}, {entry}")
+        return self.lines.text
