@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from protogen.capture.arrays import dtype_of, numpy
@@ -124,18 +125,11 @@ def _unknown(reading: Reading, numbered: Sequence[tuple[int, Any]]) -> Rows:
     table = reading.schema.unknown
     found = _framed(table, numbered)
     sizes = [len(event.payload) for _, event in numbered]
-    places = {"payload_size": sizes, "payload_offset": [0, *_running(sizes)][: len(sizes)]}
+    places = {"payload_size": sizes, "payload_offset": list(accumulate(sizes[:-1], initial=0))}
     for column in table.columns:
         if column.role == "payload":
             found[column.name] = places[column.source]
     return found
-
-
-def _running(sizes: Sequence[int]) -> Iterator[int]:
-    total = 0
-    for size in sizes:
-        total += size
-        yield total
 
 
 def _filled(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
