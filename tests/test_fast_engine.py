@@ -29,11 +29,12 @@ from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protogen.runtime import bulk_cut, fast, pairs
+from protogen.runtime import bulk_cut, fast
 from protogen.runtime import decoder as runtime_decoder
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.framing.assembly import encode_frame
 from protogen.runtime.framing.machine import Candidate, Cut, verdict_on
+from protogen.runtime.payload import pairs
 from protogen.runtime.payload.number import Number
 from protogen.runtime.payload.pairs import NeedsReference, PairLists, Pairs, pair_codes
 from protogen.runtime.values import replace

@@ -1,4 +1,4 @@
-"""What a generated module makes of its declarations: encode, decode, and an encoder that counts."""
+"""Codec of a protocol: encode, decode, and an encoder that counts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         }
 
     def sender(self, name: str) -> SenderSpec[Any, Any]:
-        """What the endpoint called `name` sends. Raises ValueError if there is none."""
+        """The sender called `name`. Raises ValueError if there is none."""
         found = self.senders.get(name)
         if found is None:
             names = " and ".join(self.senders)

@@ -1,4 +1,4 @@
-"""What goes wrong when frames are made or read, as exceptions that say where and why."""
+"""Exceptions of making and reading frames, which say where and why."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class NeedsReference(Exception):  # noqa: N818 - it is no error: the reference d
 
 
 ANYTHING = Exception
-"""What a function of the fast engine may raise; a message may be called like the exception."""
+"""Anything that the fast engine may raise; a message may be called like the exception."""
 
 
 class ByteError(ValueError):

@@ -1,4 +1,4 @@
-"""What a decoder yields: each event covers some bytes of the input.
+"""Events of a decoder: each covers some bytes of the input.
 
 The raw bytes of all events, joined, are the input.
 """

@@ -1,4 +1,4 @@
-"""What a generated `FORMAT` is made of, and frames as construct declarations, when first used.
+"""Pieces of a generated `FORMAT`, and frames as construct declarations, when first used.
 
 The pieces are those of `constructs`, which needs construct.
 """

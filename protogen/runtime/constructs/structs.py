@@ -188,7 +188,7 @@ class Whole(Around):
 
 
 def prefix_size(format: Construct, data: bytes) -> int:
-    """How many bytes at the start of `data` the format takes.
+    """Number of bytes at the start of `data` that the format takes.
 
     Raises PayloadError; its `missing` is greater than 0 where `data` is a good start but too short.
     """

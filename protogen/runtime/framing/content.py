@@ -75,7 +75,7 @@ class Content:
         return True
 
     def surplus(self) -> Rejected:
-        """What a byte behind the content's last one is."""
+        """Verdict on a byte behind the content's last one."""
         if self.payload_size is None:
             return Rejected("size", "no message of this identity has so many bytes")
         return Rejected(self._announced, f"there are more than {self._limit} bytes, or no end")

@@ -1,4 +1,4 @@
-"""What a generated module says about a frame: its parts in wire order, and how it is found.
+"""Declaration of a frame in a generated module: its parts in wire order, its start and end.
 
 Whatever needs analysis (what is protected, how large a frame can be) is worked out by the compiler
 and only stated here.

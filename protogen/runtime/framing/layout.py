@@ -26,7 +26,7 @@ def is_optional(part: Part) -> bool:
 
 
 class Slice(NamedTuple):
-    """Where a part lies in a frame's content: its bytes before stuffing, without the end."""
+    """Place of a part in a frame's content: its bytes before stuffing, without the end."""
 
     part: Part
     start: int

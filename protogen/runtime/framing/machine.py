@@ -296,7 +296,7 @@ class Candidate:
             raise Rejected("checksum", f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}")
 
     def _span(self, item: Slice, over_wire: bool) -> tuple[int, int]:
-        """Where a part lies in the content, or on the wire."""
+        """Place of a part in the content, or on the wire."""
         if not over_wire or item.start == item.end:
             return item.start, item.end
         start = self._wire_ends[item.start - 1] if item.start else 0

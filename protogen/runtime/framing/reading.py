@@ -45,7 +45,7 @@ def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes) -> Cut:
 
 
 def _wire_offset(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, offset: int) -> int:
-    """Where a byte of the payload lies in the frame, stuffing included."""
+    """Place of a byte of the payload in the frame, stuffing included."""
     candidate = Candidate(sender)
     for place, byte in enumerate(data):
         candidate.push(byte)

@@ -1,4 +1,4 @@
-"""What one endpoint sends: its frame, and the messages that its frames can carry."""
+"""An endpoint as a sender: its frame, and the messages that its frames can carry."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class IdentityGroup(Generic[MessageT_co]):
 
 
 class SenderSpec(Generic[MessageT_co, PartsT_co]):
-    """What one endpoint sends.
+    """An endpoint as a sender.
 
     `parts` is the dataclass of the parts that events show: identity, counters and values. Of
     messages that nothing tells apart, all but the one that a receiver takes them for are
@@ -73,12 +73,12 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
 
     @cached_property
     def frame(self) -> FrameSpec:
-        """How the frame is made up, and how it is found."""
+        """Declaration of the frame."""
         return self._frame() if callable(self._frame) else self._frame
 
     @cached_property
     def layout(self) -> Layout:
-        """Where the frame's parts lie."""
+        """Places of the frame's parts."""
         return Layout(self.frame)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Where a frame may start in a run of bytes."""
+"""Search for places where a frame may start."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Starts:
 
 
 def starts_of(spec: FrameSpec) -> Starts:
-    """What finds the starts of such frames."""
+    """The search for the starts of such frames."""
     start = spec.start
     if isinstance(start, StartLiteral):
         return Starts(re.escape(start.value), len(start.value), literal=start.value)

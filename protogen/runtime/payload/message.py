@@ -1,4 +1,4 @@
-"""What the generated messages inherit."""
+"""Bases of the generated messages."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Record(Value):
         FORMAT: ClassVar[Construct]
         """The construct declaration: how the fields lie on the wire."""
         RULES: ClassVar[FieldRules]
-        """What the fields' values mean, in wire order."""
+        """Rules for the fields' values, in wire order."""
 
     def violations(self) -> list[Violation]:
         """Values that the schema does not foresee: out of range, or without a name.

@@ -54,57 +54,44 @@ class _PhysicalView(_View[ValueT]):
         chosen: Any = getattr(rule, "element", rule)  # An array's says it of each element.
         return cast("IntegerRule | FloatRule", chosen)
 
-    def _shown_or_none(self, raw: Any) -> float | None:
+    def _shown(self, raw: Any) -> Any:
         value = self._rule.physical(raw)
         return None if value is None else float(value)
 
-    def _shown(self, raw: Any) -> float:
-        value = self._shown_or_none(raw)
-        assert value is not None, "a field with special values has another kind of property"
-        return value
 
-
-class Physical(_PhysicalView[float]):
-    """The field's physical value. Writing takes the nearest raw value, ties to even."""
-
-    def _read(self, record: object) -> float:
+class _PhysicalValue(_PhysicalView[ValueT]):
+    def _read(self, record: object) -> Any:
         return self._shown(getattr(record, self._field))
 
-    def _raw(self, record: object, value: float) -> Any:
+    def _raw(self, record: object, value: Any) -> Any:
         return self._rule.nearest(value)
 
 
-class PhysicalOrNone(_PhysicalView[float | None]):
+class _PhysicalValues(_PhysicalView[ValueT]):
+    def _read(self, record: object) -> Any:
+        return [self._shown(raw) for raw in getattr(record, self._field)]
+
+    def _raw(self, record: object, value: Any) -> Any:
+        return [self._rule.nearest(element) for element in value]
+
+
+class Physical(_PhysicalValue[float]):
+    """The field's physical value. Writing takes the nearest raw value, ties to even."""
+
+
+class PhysicalOrNone(_PhysicalValue[float | None]):
     """The same for a field with special values: None while there is no reading.
 
     Writing refuses a number whose nearest raw value is a special one.
     """
 
-    def _read(self, record: object) -> float | None:
-        return self._shown_or_none(getattr(record, self._field))
 
-    def _raw(self, record: object, value: float | None) -> Any:
-        return self._rule.nearest(value)  # type: ignore[arg-type]
-
-
-class PhysicalList(_PhysicalView[list[float]]):
+class PhysicalList(_PhysicalValues[list[float]]):
     """The physical values of an array's elements."""
 
-    def _read(self, record: object) -> list[float]:
-        return [self._shown(raw) for raw in getattr(record, self._field)]
 
-    def _raw(self, record: object, value: list[float]) -> Any:
-        return [self._rule.nearest(element) for element in value]
-
-
-class PhysicalListOrNone(_PhysicalView[list[float | None]]):
+class PhysicalListOrNone(_PhysicalValues[list[float | None]]):
     """The physical values of an array's elements, None for those without a reading."""
-
-    def _read(self, record: object) -> list[float | None]:
-        return [self._shown_or_none(raw) for raw in getattr(record, self._field)]
-
-    def _raw(self, record: object, value: list[float | None]) -> Any:
-        return [self._rule.nearest(element) for element in value]  # type: ignore[arg-type]
 
 
 class BitRange(_View[int]):

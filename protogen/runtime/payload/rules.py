@@ -42,7 +42,7 @@ class Violation(NamedTuple):
 
 
 class Rule:
-    """What all rules can do. `scope` holds the raw values of the fields in front."""
+    """Base of all rules. `scope` holds the raw values of the fields in front."""
 
     def chosen(self, scope: Scope) -> Rule:
         """The rule that holds here. Raises EncodeError if there is none."""
@@ -57,7 +57,7 @@ class Rule:
         return raw
 
     def violations(self, value: Any, scope: Scope) -> list[Violation]:
-        """What the schema does not foresee in a value that fits the wire."""
+        """Violations of the schema by a value that fits the wire."""
         return []
 
     def to_json(self, value: Any, scope: Scope) -> Any:

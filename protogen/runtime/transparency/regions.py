@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Literal, Protocol
 
 TransparencyReason = Literal["stuffing", "encoding"]
-"""What is wrong: bytes that are no escape sequence, or that break an encoding of the region."""
+"""Fault of a region: bytes that are no escape sequence, or that break an encoding of the region."""
 
 EscapeTransform = Literal["invert", "none"] | int
-"""What an escape does to the byte behind it: invert its bits, nothing, exclusive or with this."""
+"""Change of the byte behind an escape: invert its bits, nothing, exclusive or with this."""
 
 
 class TransparencyError(ValueError):

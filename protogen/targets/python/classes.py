@@ -63,7 +63,7 @@ class RecordClass(msgspec.Struct, frozen=True):
     doc: str
     attributes: tuple[Attribute, ...]
     constants: tuple[str, ...]
-    """What only messages have: name, senders, identity and sizes."""
+    """Lines that only messages have: name, senders, identity and sizes."""
     format: tuple[str, ...]
     rules: str
     views: tuple[Attribute, ...]

@@ -16,17 +16,17 @@ def escaped(texts: list[str]) -> list[str]:
 
 
 def message(item: Message) -> list[str]:
-    """What a message is."""
+    """Docstring of a message."""
     return escaped(descriptions.of_message(item))
 
 
 def named(name: str, item: About) -> list[str]:
-    """What an enum, a set of flags or a struct is."""
+    """Docstring of an enum, a set of flags or a struct."""
     return escaped(descriptions.of_named(name, item))
 
 
 def field(item: Field) -> list[str]:
-    """What a field means, with its unit and bounds."""
+    """Docstring of a field, with its unit and bounds."""
     facts = [descriptions.step_of(item)]
     if item.integer is not None and not descriptions.names_values(item):
         facts.append(f"{item.least}..{item.greatest}")
@@ -37,7 +37,7 @@ def field(item: Field) -> list[str]:
 
 
 def module(protocol: Protocol) -> list[str]:
-    """What the protocol is, for the module's docstring."""
+    """Docstring of a protocol's module."""
     line = descriptions.of_link(protocol.link)
     lines = [line + _silence(protocol.link)] if line else []
     return escaped([*descriptions.of_protocol(protocol), *lines])

@@ -42,7 +42,7 @@ class Source(msgspec.Struct, frozen=True):
     """The text of a protocol's two modules."""
 
     module: str
-    """What people read: messages, and the functions and classes that they call."""
+    """The module for people: messages, and the functions and classes that they call."""
     codec: str
     """The machine text, which it imports."""
 

@@ -98,7 +98,7 @@ def _crc(spec: ChecksumSpec) -> str:
 
 
 def transparency(item: Transparency | None) -> str:
-    """What stuffs and unstuffs the covered parts."""
+    """The transparency of the covered parts."""
     if item is None:
         return "None"
     lenient = "True" if item.lenient else None
@@ -106,7 +106,7 @@ def transparency(item: Transparency | None) -> str:
 
 
 def encoding(encoding: Encoding, lenient: str | None = None) -> str:
-    """What stuffs and unstuffs, strict unless it says otherwise."""
+    """The transparency with an encoding, strict unless it says otherwise."""
     match encoding:
         case Substitution():
             table = mapping({f"0x{key:02X}": octets(value) for key, value in encoding.table})
@@ -132,7 +132,7 @@ def _transform(encoding: Escape) -> str:
 
 
 def start(item: Start) -> str:
-    """How a frame starts."""
+    """The start of a frame."""
     match item:
         case StartLiteral():
             return call("_rt.StartLiteral", octets(item.bytes), protected=str(item.protected))
@@ -146,7 +146,7 @@ def start(item: Start) -> str:
 
 
 def end(item: End | None) -> str:
-    """How a frame ends."""
+    """The end of a frame."""
     if item is None:
         return "None"
     return call("_rt.End", octets(item.bytes), protected=str(item.protected))

@@ -1,4 +1,4 @@
-"""What is made of a protocol once, for whoever asks again soon."""
+"""A cache of things made of protocols."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Kept(Generic[MadeT]):
         self._made: dict[int, tuple[Protocol, MadeT]] = {}
 
     def __call__(self, protocol: Protocol) -> MadeT:
-        """What was made of the protocol, or is now. Raises what making it raises."""
+        """The thing made of the protocol, now or earlier. Raises what making it raises."""
         found = self._made.get(id(protocol))
         if found is not None and found[0] is protocol:
             return found[1]

@@ -29,7 +29,7 @@ class PartsClass(msgspec.Struct, frozen=True):
 
 
 class SenderView(msgspec.Struct, frozen=True):
-    """What one endpoint sends."""
+    """An endpoint as a sender."""
 
     name: str
     title: str
@@ -41,7 +41,7 @@ class SenderView(msgspec.Struct, frozen=True):
     frame: str
     """Name of the function that describes it."""
     frame_text: str
-    """What that gives; empty where another sender has the same frame."""
+    """The declaration that it gives; empty where another sender has the same frame."""
     spec_text: str
     decode_head: str
     """Of the overload of `decode`."""
@@ -71,7 +71,7 @@ class Module(msgspec.Struct, frozen=True):
     arguments_doc: str
     counts: bool
     formats: str
-    """What gives the frames as construct declarations."""
+    """Expression for the frames as construct declarations."""
     registry: str
     decoder_heads: tuple[str, ...]
     decode_stub: str
@@ -116,7 +116,7 @@ def view(protocol: Protocol) -> Module:
 
 
 def _uses(structs: tuple[RecordClass, ...], senders: tuple[SenderView, ...]) -> frozenset[str]:
-    """What the optional imports are needed for, read off the printed text."""
+    """Optional imports that are needed, read off the printed text."""
     records = [*structs, *(record for sender in senders for record in sender.messages)]
     texts = [record.rules for record in records]
     texts += [item.text for record in records for item in record.attributes]

@@ -1,4 +1,4 @@
-"""What the values of a field mean, as the runtime's rules and as type annotations."""
+"""Meanings of values as the runtime's rules."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
 
 
 def _array(type_: Array, field: Field | None) -> str:
-    """What a field says of range, scale and special values holds for each element."""
+    """The rule of an array: range, scale and special values hold for each element."""
     inner = None if field is None else replace(field, const=None)
     element = _rule(type_.element, inner)
     const = _const(field) if field else None

@@ -1,4 +1,4 @@
-"""How the schema's names are spelled in Python.
+"""The schema's names as Python spells them.
 
 Everything that a generated module uses comes from modules imported whole (`rt`, `typing`, ...), so
 a class name can't hide anything.

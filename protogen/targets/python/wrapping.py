@@ -29,7 +29,7 @@ def wrapped(expression: str, column: int, indent: int, after: int = 1) -> str:
 
 
 def _last_opening(expression: str) -> int | None:
-    """Where the bracket opens that closes at the end of the expression."""
+    """Place of the bracket that opens what closes at the end of the expression."""
     if expression[-1] not in _CLOSING:
         return None
     opened: list[int] = []
@@ -131,7 +131,7 @@ def _with_short_summary(paragraphs: list[str], width: int) -> list[str]:
 
 
 def remark(paragraphs: list[str], indent: int) -> str:
-    """What stands below an attribute: a docstring that needs no summary."""
+    """The text below an attribute: a docstring that needs no summary."""
     margin = " " * indent
     first, *rest = paragraphs
     lines = textwrap.wrap(first, WIDTH - indent - 3, break_long_words=False) or [""]
