@@ -366,6 +366,19 @@ frame:
   check: {type: uint3, algorithm: CRC-3/GSM, covers: id..payload}
 """
     + TWO_MESSAGES.replace("0x4", "0x8"),
+    "the byte that starts a frame may begin its end": """
+frame:
+  begin: {type: uint8, range: [0x80, 0xED]}
+  version: {literal: 6}
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id..payload}
+  end: {literal: {hex: 99 05 4E}}
+transparency:
+  escape: {byte: 0x9F, of: [0x99, 0x9F], transform: {xor: 0x20}}
+  covers: id..check
+"""
+    + TWO_MESSAGES,
 }
 
 

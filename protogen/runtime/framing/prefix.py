@@ -269,7 +269,10 @@ class _Heads:
 
     def _read(self, start: bytes) -> _Head | None:
         marked = self._sender.frame.start
-        if isinstance(marked, StartSet) and not marked.least <= start[0] <= marked.greatest:
+        # There is no byte yet where the first one may begin an end, too.
+        if isinstance(marked, StartSet) and any(
+            not marked.least <= byte <= marked.greatest for byte in start[:1]
+        ):
             return None
         content = Content(self._sender)
         try:
