@@ -373,7 +373,7 @@ frame:
   id: {type: uint8, id: true}
   payload: {}
   check: {type: uint8, algorithm: xor-8, covers: id..payload}
-  end: {literal: {hex: 99 05 4E}}
+  end: {literal: {hex: 99 99 4E}}
 transparency:
   escape: {byte: 0x9F, of: [0x99, 0x9F], transform: {xor: 0x20}}
   covers: id..check
