@@ -879,7 +879,6 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     uint8_t *const content = dagny_host_payload(frame, payload) - 1;
     uint8_t *const tail = &content[1U + payload];
     size_t size = 1U + payload + (payload == 0U ? 0U : 1U);
-    (void)tail;
     content[0U] = (uint8_t)id;
     if (payload != 0U) {
         uint8_t sum = 0x00U;
@@ -888,7 +887,7 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
         due = dagny_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
-    frame[size + 0U] = 0x0AU;
+    frame[size] = 0x0AU;
     return size + 1U;
 }
 
@@ -924,17 +923,13 @@ static void dagny_host_write(struct dagny_writer *writer, uint8_t byte) {
 }
 
 static void dagny_host_send_head(struct dagny_writer *writer, size_t payload, uint8_t id) {
-    (void)writer;
     (void)payload;
-    (void)id;
     writer->host_checksum = 0x00U;
     writer->flags = 1U;
     dagny_host_write(writer, (uint8_t)id);
 }
 
 static void dagny_host_send_tail(struct dagny_writer *writer, size_t payload, uint8_t id) {
-    (void)writer;
-    (void)payload;
     (void)id;
     writer->flags = 0U;
     if (payload != 0U) {

@@ -564,7 +564,7 @@ enum {
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t dagny_library_host_room(size_t payload) {
-    const size_t content = 1U + payload + 0U;
+    const size_t content = 1U + payload;
     return 2U * content + 1U;
 }
 
@@ -587,11 +587,9 @@ static size_t dagny_library_host_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     uint8_t *const content = dagny_library_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1U + payload];
-    const uint16_t stuffed = (uint16_t)(1U + payload + 0U);
+    const uint16_t stuffed = (uint16_t)(1U + payload);
     uint16_t from = 0;
     uint8_t *to = frame;
-    (void)tail;
     content[0U] = (uint8_t)id;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
     for (; from < stuffed; from++) {
@@ -636,16 +634,13 @@ static void dagny_library_host_write(struct dagny_library_writer *writer, uint8_
 
 static void dagny_library_host_send_head(struct dagny_library_writer *writer, size_t payload,
                                          uint8_t id) {
-    (void)writer;
     (void)payload;
-    (void)id;
     writer->flags = 128U;
     dagny_library_host_write(writer, (uint8_t)id);
 }
 
 static void dagny_library_host_send_tail(struct dagny_library_writer *writer, size_t payload,
                                          uint8_t id) {
-    (void)writer;
     (void)payload;
     (void)id;
     writer->put(writer->user, 0x0DU);
@@ -1275,23 +1270,9 @@ static uint8_t dagny_library_host_finish_region(struct dagny_library_host_decode
     return decoder->node == 0U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t dagny_library_host_cross(struct dagny_library_host_decoder *decoder) {
-    if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit)) {
-        /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U &&
-               (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
-        /* The end is looked for all the time. */
-    } else {
-        /* The part goes on. */
-    }
-    return DAGNY_LIBRARY_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
     if (index >= decoder->limit) {
         return dagny_library_host_surplus(decoder);
@@ -1301,13 +1282,9 @@ static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *deco
     if (index < 1U) {
         reason = dagny_library_host_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
-        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
-                  index + 1U == 1U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == DAGNY_LIBRARY_NO_REASON && crosses) {
-        reason = dagny_library_host_cross(decoder);
     }
     return reason;
 }
@@ -1687,24 +1664,10 @@ static uint8_t dagny_library_robot_finish_region(struct dagny_library_robot_deco
     return decoder->node == 0U ? DAGNY_LIBRARY_NO_REASON : DAGNY_LIBRARY_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t dagny_library_robot_cross(struct dagny_library_robot_decoder *decoder) {
-    if (((decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U && decoder->content == decoder->limit)) {
-        /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & DAGNY_LIBRARY_OPEN) != 0U &&
-               (decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
-        /* The end is looked for all the time. */
-    } else {
-        /* The part goes on. */
-    }
-    return DAGNY_LIBRARY_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *decoder,
                                           uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
     if (index >= decoder->limit) {
         return dagny_library_robot_surplus(decoder);
@@ -1714,13 +1677,9 @@ static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *de
     if (index < 1U) {
         reason = dagny_library_robot_take_head(decoder, index, byte);
     } else if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U || index < 1U + decoder->payload) {
-        crosses = (decoder->flags & DAGNY_LIBRARY_KNOWN) != 0U &&
-                  index + 1U == 1U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == DAGNY_LIBRARY_NO_REASON && crosses) {
-        reason = dagny_library_robot_cross(decoder);
     }
     return reason;
 }

@@ -673,7 +673,7 @@ static uint8_t matty_v4_sum_8_negated_final(uint8_t sum) {
 /* Bytes of buffer for the frame of such a payload. */
 static size_t matty_v4_pc_room(size_t payload) {
     const size_t content = 4U + payload + 1U;
-    return 2U * content + 0U;
+    return 2U * content;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -695,13 +695,11 @@ static size_t matty_v4_pc_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
     uint8_t *const content = matty_v4_pc_payload(frame, payload) - 4;
-    uint8_t *const tail = &content[4U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
-    (void)tail;
     content[0U] = 0x55U;
     content[1U] = (uint8_t)length;
     content[2U] = (uint8_t)counter;
@@ -756,11 +754,6 @@ static void matty_v4_pc_write(struct matty_v4_writer *writer, uint8_t byte) {
 static void matty_v4_pc_send_head(struct matty_v4_writer *writer, size_t payload, uint8_t command,
                                   uint8_t counter) {
     const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)command;
-    (void)counter;
     writer->pc_crc = 0x00U;
     matty_v4_pc_write(writer, 0x55U);
     writer->flags = 129U;
@@ -771,10 +764,7 @@ static void matty_v4_pc_send_head(struct matty_v4_writer *writer, size_t payload
 
 static void matty_v4_pc_send_tail(struct matty_v4_writer *writer, size_t payload, uint8_t command,
                                   uint8_t counter) {
-    const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)command;
     (void)counter;
     writer->flags = 128U;

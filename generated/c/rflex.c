@@ -991,7 +991,6 @@ static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
     uint16_t from = 2;
     uint8_t *to = frame;
-    (void)tail;
     content[0U] = 0x1BU;
     content[1U] = 0x02U;
     content[2U] = (uint8_t)class_id;
@@ -1070,12 +1069,6 @@ static void rflex_linux_write(struct rflex_writer *writer, uint8_t byte) {
 static void rflex_linux_send_head(struct rflex_writer *writer, size_t payload, uint8_t class_id,
                                   uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)class_id;
-    (void)subclass;
-    (void)number;
     writer->linux_checksum = 0x00U;
     rflex_linux_write(writer, 0x1BU);
     rflex_linux_write(writer, 0x02U);
@@ -1089,10 +1082,7 @@ static void rflex_linux_send_head(struct rflex_writer *writer, size_t payload, u
 
 static void rflex_linux_send_tail(struct rflex_writer *writer, size_t payload, uint8_t class_id,
                                   uint8_t subclass, uint8_t number) {
-    const uint16_t length = (uint16_t)(payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)class_id;
     (void)subclass;
     (void)number;
@@ -2097,18 +2087,9 @@ static uint8_t rflex_linux_finish_region(struct rflex_linux_decoder *decoder) {
     return decoder->node == 0U ? RFLEX_NO_REASON : RFLEX_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t rflex_linux_cross(struct rflex_linux_decoder *decoder) {
-    if (decoder->content == decoder->payload + 7U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return RFLEX_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t rflex_linux_accept(struct rflex_linux_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = RFLEX_NO_REASON;
     if (index >= decoder->payload + 7U) {
         return rflex_linux_surplus(decoder);
@@ -2118,12 +2099,9 @@ static uint8_t rflex_linux_accept(struct rflex_linux_decoder *decoder, uint8_t b
     if (index < 6U) {
         reason = rflex_linux_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
-        crosses = index + 1U == 6U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == RFLEX_NO_REASON && crosses) {
-        reason = rflex_linux_cross(decoder);
     }
     return reason;
 }
@@ -2847,18 +2825,9 @@ static uint8_t rflex_flex_finish_region(struct rflex_flex_decoder *decoder) {
     return decoder->node == 0U ? RFLEX_NO_REASON : RFLEX_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t rflex_flex_cross(struct rflex_flex_decoder *decoder) {
-    if (decoder->content == decoder->payload + 7U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return RFLEX_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t rflex_flex_accept(struct rflex_flex_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = RFLEX_NO_REASON;
     if (index >= decoder->payload + 7U) {
         return rflex_flex_surplus(decoder);
@@ -2868,12 +2837,9 @@ static uint8_t rflex_flex_accept(struct rflex_flex_decoder *decoder, uint8_t byt
     if (index < 6U) {
         reason = rflex_flex_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
-        crosses = index + 1U == 6U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == RFLEX_NO_REASON && crosses) {
-        reason = rflex_flex_cross(decoder);
     }
     return reason;
 }

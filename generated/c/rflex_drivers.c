@@ -1251,13 +1251,11 @@ static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
 static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
                                        uint8_t subclass, uint8_t number) {
     uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
-    uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
     uint16_t from = 2;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
-    (void)tail;
     content[0U] = 0x1BU;
     content[1U] = 0x02U;
     content[2U] = (uint8_t)class_id;
@@ -1331,12 +1329,6 @@ static void rflex_drivers_linux_write(struct rflex_drivers_writer *writer, uint8
 static void rflex_drivers_linux_send_head(struct rflex_drivers_writer *writer, size_t payload,
                                           uint8_t class_id, uint8_t subclass, uint8_t number) {
     const uint16_t length = (uint16_t)(payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)class_id;
-    (void)subclass;
-    (void)number;
     writer->linux_checksum = 0x00U;
     rflex_drivers_linux_write(writer, 0x1BU);
     rflex_drivers_linux_write(writer, 0x02U);
@@ -1349,10 +1341,7 @@ static void rflex_drivers_linux_send_head(struct rflex_drivers_writer *writer, s
 
 static void rflex_drivers_linux_send_tail(struct rflex_drivers_writer *writer, size_t payload,
                                           uint8_t class_id, uint8_t subclass, uint8_t number) {
-    const uint16_t length = (uint16_t)(payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)class_id;
     (void)subclass;
     (void)number;
@@ -2583,19 +2572,10 @@ static uint8_t rflex_drivers_linux_finish_region(struct rflex_drivers_linux_deco
     return decoder->node == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t rflex_drivers_linux_cross(struct rflex_drivers_linux_decoder *decoder) {
-    if (decoder->content == decoder->payload + 7U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return RFLEX_DRIVERS_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *decoder,
                                           uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
     if (index >= decoder->payload + 7U) {
         return rflex_drivers_linux_surplus(decoder);
@@ -2605,12 +2585,9 @@ static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *de
     if (index < 6U) {
         reason = rflex_drivers_linux_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
-        crosses = index + 1U == 6U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
-        reason = rflex_drivers_linux_cross(decoder);
     }
     return reason;
 }
@@ -3360,18 +3337,9 @@ static uint8_t rflex_drivers_flex_finish_region(struct rflex_drivers_flex_decode
     return decoder->node == 0U ? RFLEX_DRIVERS_NO_REASON : RFLEX_DRIVERS_STUFFING;
 }
 
-/* Something is due between two parts. */
-static uint8_t rflex_drivers_flex_cross(struct rflex_drivers_flex_decoder *decoder) {
-    if (decoder->content == decoder->payload + 7U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return RFLEX_DRIVERS_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = RFLEX_DRIVERS_NO_REASON;
     if (index >= decoder->payload + 7U) {
         return rflex_drivers_flex_surplus(decoder);
@@ -3381,12 +3349,9 @@ static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *deco
     if (index < 6U) {
         reason = rflex_drivers_flex_take_head(decoder, index, byte);
     } else if (index < 6U + decoder->payload) {
-        crosses = index + 1U == 6U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == RFLEX_DRIVERS_NO_REASON && crosses) {
-        reason = rflex_drivers_flex_cross(decoder);
     }
     return reason;
 }

@@ -980,7 +980,7 @@ static inline bool rn1_is_high(const uint8_t *data, size_t size) {
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_host_room(size_t payload) {
-    const size_t content = 1U + payload + 0U;
+    const size_t content = 1U + payload;
     return content + 1U;
 }
 
@@ -993,11 +993,9 @@ static uint8_t *rn1_host_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_host_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_host_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1U + payload];
-    size_t size = 1U + payload + 0U;
-    (void)tail;
+    size_t size = 1U + payload;
     content[0U] = (uint8_t)start;
-    frame[size + 0U] = 0xFFU;
+    frame[size] = 0xFFU;
     return size + 1U;
 }
 
@@ -1005,8 +1003,8 @@ static size_t rn1_host_wrap(uint8_t *frame, size_t payload, uint8_t start) {
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rn1_brain_room(size_t payload) {
-    const size_t content = 1U + payload + 0U;
-    return content + 0U;
+    const size_t content = 1U + payload;
+    return content;
 }
 
 /* Where the payload is put, before the rest of the frame is put around it. */
@@ -1018,11 +1016,9 @@ static uint8_t *rn1_brain_payload(uint8_t *frame, size_t payload) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
     uint8_t *const content = rn1_brain_payload(frame, payload) - 1;
-    uint8_t *const tail = &content[1U + payload];
-    size_t size = 1U + payload + 0U;
-    (void)tail;
+    size_t size = 1U + payload;
     content[0U] = (uint8_t)start;
-    return size + 0U;
+    return size;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1033,7 +1029,6 @@ static inline void rn1_write(rn1_put put, void *user, uint8_t byte) {
 
 static void rn1_host_send_head(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
-    (void)start;
     rn1_write(put, user, (uint8_t)start);
 }
 
@@ -1045,7 +1040,6 @@ static void rn1_host_send_tail(rn1_put put, void *user, size_t payload, uint8_t 
 
 static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t start) {
     (void)payload;
-    (void)start;
     rn1_write(put, user, (uint8_t)start);
 }
 
@@ -1608,22 +1602,9 @@ static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t inde
     return reason;
 }
 
-/* Something is due between two parts. */
-static uint8_t rn1_host_cross(struct rn1_host_decoder *decoder) {
-    if (((decoder->flags & RN1_KNOWN) != 0U && decoder->content == decoder->limit)) {
-        /* The end is looked for, and closes the frame. */
-    } else if ((decoder->flags & RN1_OPEN) != 0U && (decoder->flags & RN1_KNOWN) == 0U) {
-        /* The end is looked for all the time. */
-    } else {
-        /* The part goes on. */
-    }
-    return RN1_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t rn1_host_accept(struct rn1_host_decoder *decoder, uint8_t byte) {
     const uint8_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = RN1_NO_REASON;
     if (index >= decoder->limit) {
         return rn1_host_surplus(decoder);
@@ -1636,12 +1617,8 @@ static uint8_t rn1_host_accept(struct rn1_host_decoder *decoder, uint8_t byte) {
         if (byte > 0x7FU) {
             return RN1_ENCODING;
         }
-        crosses = (decoder->flags & RN1_KNOWN) != 0U && index + 1U == 1U + decoder->payload;
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == RN1_NO_REASON && crosses) {
-        reason = rn1_host_cross(decoder);
     }
     return reason;
 }

@@ -187,7 +187,7 @@ enum {
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_room(size_t payload) {
-    const size_t content = 3U + payload + 0U;
+    const size_t content = 3U + payload;
     return 2U * content + 1U;
 }
 
@@ -208,12 +208,10 @@ static size_t uherobot_daemon_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
-    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
+    const uint16_t stuffed = (uint16_t)(3U + payload);
     uint16_t from = 1;
     uint8_t *to = frame;
-    (void)tail;
     content[0U] = 0x62U;
     content[1U] = (uint8_t)length;
     content[2U] = (uint8_t)type;
@@ -262,10 +260,6 @@ static void uherobot_daemon_write(struct uherobot_writer *writer, uint8_t byte) 
 static void uherobot_daemon_send_head(struct uherobot_writer *writer, size_t payload,
                                       uint8_t type) {
     const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)type;
     uherobot_daemon_write(writer, 0x62U);
     writer->flags = 128U;
     uherobot_daemon_write(writer, (uint8_t)length);
@@ -274,10 +268,7 @@ static void uherobot_daemon_send_head(struct uherobot_writer *writer, size_t pay
 
 static void uherobot_daemon_send_tail(struct uherobot_writer *writer, size_t payload,
                                       uint8_t type) {
-    const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)type;
     writer->put(writer->user, 0x65U);
 }
@@ -565,18 +556,9 @@ static uint8_t uherobot_daemon_finish_region(struct uherobot_daemon_decoder *dec
     return decoder->node == 0U ? UHEROBOT_NO_REASON : UHEROBOT_ENCODING;
 }
 
-/* Something is due between two parts. */
-static uint8_t uherobot_daemon_cross(struct uherobot_daemon_decoder *decoder) {
-    if (decoder->content == decoder->payload + 3U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return UHEROBOT_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t uherobot_daemon_accept(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = UHEROBOT_NO_REASON;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_surplus(decoder);
@@ -586,12 +568,9 @@ static uint8_t uherobot_daemon_accept(struct uherobot_daemon_decoder *decoder, u
     if (index < 3U) {
         reason = uherobot_daemon_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
-        crosses = index + 1U == 3U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == UHEROBOT_NO_REASON && crosses) {
-        reason = uherobot_daemon_cross(decoder);
     }
     return reason;
 }
@@ -888,18 +867,9 @@ static uint8_t uherobot_board_finish_region(struct uherobot_board_decoder *decod
     return decoder->node == 0U ? UHEROBOT_NO_REASON : UHEROBOT_ENCODING;
 }
 
-/* Something is due between two parts. */
-static uint8_t uherobot_board_cross(struct uherobot_board_decoder *decoder) {
-    if (decoder->content == decoder->payload + 3U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return UHEROBOT_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t uherobot_board_accept(struct uherobot_board_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = UHEROBOT_NO_REASON;
     if (index >= decoder->payload + 3U) {
         return uherobot_board_surplus(decoder);
@@ -909,12 +879,9 @@ static uint8_t uherobot_board_accept(struct uherobot_board_decoder *decoder, uin
     if (index < 3U) {
         reason = uherobot_board_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
-        crosses = index + 1U == 3U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == UHEROBOT_NO_REASON && crosses) {
-        reason = uherobot_board_cross(decoder);
     }
     return reason;
 }

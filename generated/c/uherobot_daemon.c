@@ -143,7 +143,7 @@ enum {
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_daemon_room(size_t payload) {
-    const size_t content = 3U + payload + 0U;
+    const size_t content = 3U + payload;
     return 2U * content + 1U;
 }
 
@@ -164,12 +164,10 @@ static size_t uherobot_daemon_daemon_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_daemon_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
-    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
+    const uint16_t stuffed = (uint16_t)(3U + payload);
     uint16_t from = 1;
     uint8_t *to = frame;
-    (void)tail;
     content[0U] = 0x62U;
     content[1U] = (uint8_t)length;
     content[2U] = (uint8_t)type;
@@ -194,7 +192,7 @@ static size_t uherobot_daemon_daemon_wrap(uint8_t *frame, size_t payload, uint8_
 
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_board_room(size_t payload) {
-    const size_t content = 3U + payload + 0U;
+    const size_t content = 3U + payload;
     return 2U * content + 2U;
 }
 
@@ -215,12 +213,10 @@ static size_t uherobot_daemon_board_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_board_wrap(uint8_t *frame, size_t payload, uint8_t type) {
     uint8_t *const content = uherobot_daemon_board_payload(frame, payload) - 3;
-    uint8_t *const tail = &content[3U + payload];
     const uint16_t length = (uint16_t)(payload);
-    const uint16_t stuffed = (uint16_t)(3U + payload + 0U);
+    const uint16_t stuffed = (uint16_t)(3U + payload);
     uint16_t from = 1;
     uint8_t *to = frame;
-    (void)tail;
     content[0U] = 0x62U;
     content[1U] = (uint8_t)type;
     content[2U] = (uint8_t)length;
@@ -271,10 +267,6 @@ static void uherobot_daemon_daemon_write(struct uherobot_daemon_writer *writer, 
 static void uherobot_daemon_daemon_send_head(struct uherobot_daemon_writer *writer, size_t payload,
                                              uint8_t type) {
     const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)type;
     uherobot_daemon_daemon_write(writer, 0x62U);
     writer->flags = 128U;
     uherobot_daemon_daemon_write(writer, (uint8_t)length);
@@ -283,10 +275,7 @@ static void uherobot_daemon_daemon_send_head(struct uherobot_daemon_writer *writ
 
 static void uherobot_daemon_daemon_send_tail(struct uherobot_daemon_writer *writer, size_t payload,
                                              uint8_t type) {
-    const uint16_t length = (uint16_t)(2U + payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)type;
     writer->put(writer->user, 0x0AU);
 }
@@ -308,10 +297,6 @@ static void uherobot_daemon_board_write(struct uherobot_daemon_writer *writer, u
 static void uherobot_daemon_board_send_head(struct uherobot_daemon_writer *writer, size_t payload,
                                             uint8_t type) {
     const uint16_t length = (uint16_t)(payload);
-    (void)writer;
-    (void)payload;
-    (void)length;
-    (void)type;
     uherobot_daemon_board_write(writer, 0x62U);
     writer->flags = 128U;
     uherobot_daemon_board_write(writer, (uint8_t)type);
@@ -320,10 +305,7 @@ static void uherobot_daemon_board_send_head(struct uherobot_daemon_writer *write
 
 static void uherobot_daemon_board_send_tail(struct uherobot_daemon_writer *writer, size_t payload,
                                             uint8_t type) {
-    const uint16_t length = (uint16_t)(payload);
-    (void)writer;
     (void)payload;
-    (void)length;
     (void)type;
     writer->put(writer->user, 0x0DU);
     writer->put(writer->user, 0x0AU);
@@ -561,19 +543,10 @@ static uint8_t uherobot_daemon_daemon_finish_region(
     return decoder->node == 0U ? UHEROBOT_DAEMON_NO_REASON : UHEROBOT_DAEMON_ENCODING;
 }
 
-/* Something is due between two parts. */
-static uint8_t uherobot_daemon_daemon_cross(struct uherobot_daemon_daemon_decoder *decoder) {
-    if (decoder->content == decoder->payload + 3U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return UHEROBOT_DAEMON_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decoder *decoder,
                                              uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_daemon_surplus(decoder);
@@ -583,12 +556,9 @@ static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decod
     if (index < 3U) {
         reason = uherobot_daemon_daemon_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
-        crosses = index + 1U == 3U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
-        reason = uherobot_daemon_daemon_cross(decoder);
     }
     return reason;
 }
@@ -922,19 +892,10 @@ static uint8_t uherobot_daemon_board_finish_region(struct uherobot_daemon_board_
     return decoder->node == 0U ? UHEROBOT_DAEMON_NO_REASON : UHEROBOT_DAEMON_ENCODING;
 }
 
-/* Something is due between two parts. */
-static uint8_t uherobot_daemon_board_cross(struct uherobot_daemon_board_decoder *decoder) {
-    if (decoder->content == decoder->payload + 3U) {
-        /* The end is looked for, and closes the frame. */
-    }
-    return UHEROBOT_DAEMON_NO_REASON;
-}
-
 /* One byte of content. */
 static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder *decoder,
                                             uint8_t byte) {
     const uint16_t index = decoder->content;
-    bool crosses = true;
     uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_board_surplus(decoder);
@@ -944,12 +905,9 @@ static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder
     if (index < 3U) {
         reason = uherobot_daemon_board_take_head(decoder, index, byte);
     } else if (index < 3U + decoder->payload) {
-        crosses = index + 1U == 3U + decoder->payload;
+        /* The payload's bytes are looked at when all are there. */
     } else {
         /* A byte behind the payload is looked at when all are there. */
-    }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && crosses) {
-        reason = uherobot_daemon_board_cross(decoder);
     }
     return reason;
 }

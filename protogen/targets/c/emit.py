@@ -18,7 +18,7 @@ from protogen.targets.c.frame.fill import EVENTS, Fill
 from protogen.targets.c.frame.framing import FramingView, framing_view
 from protogen.targets.c.frame.members import members_of, memory_of
 from protogen.targets.c.frame.stuffing import StuffingKind
-from protogen.targets.c.lines import prototype
+from protogen.targets.c.lines import mentions, prototype
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
@@ -119,4 +119,6 @@ def c_environment() -> Environment:
     found.filters["octets"] = expressions.octets
     found.filters["byte_at"] = expressions.byte_at
     found.filters["differs"] = expressions.differs
+    found.filters["plus"] = expressions.plus
+    found.filters["mentions"] = mentions
     return found

@@ -118,6 +118,11 @@ def _open_bracket(lines: list[str]) -> int:
     return opened[-1] if opened else 0
 
 
+def mentions(text: str, name: str) -> bool:
+    """True if a text of C uses a variable."""
+    return re.search(rf"(?<![\w.>]){name}\b", text) is not None
+
+
 def function(head: str, arguments: tuple[str, ...], body: Lines) -> str:
     """A function's definition."""
     return "\n".join([prototype(head, arguments, " {"), *body.lines, "}"])

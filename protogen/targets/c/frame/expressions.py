@@ -40,6 +40,11 @@ def less_absent(place: Place, payload: str) -> str:
     return f" - ({payload} == 0U ? {place.absent}U : 0U)"
 
 
+def plus(size: int) -> str:
+    """A size that is added to what stands in front of it."""
+    return f" + {size}U" if size else ""
+
+
 # --- bytes ----------------------------------------------------------------------------------------
 
 

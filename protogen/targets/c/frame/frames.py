@@ -72,10 +72,8 @@ class Half(msgspec.Struct, frozen=True):
     flags: int | None = None
     """Flags of the writer for the payload's bytes, where they change."""
 
-    @property
-    def is_empty(self) -> bool:
-        """True if nothing is sent."""
-        return not self.steps and not self.end
+    tells_length: bool = False
+    """True if the length part is among them."""
 
 
 class FrameView(msgspec.Struct, frozen=True, dict=True):
@@ -109,6 +107,11 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         """The same as parameters behind others."""
         return "".join(f", {item.type} {item.name}" for item in self.identity + self.arguments)
 
+    @property
+    def names(self) -> list[str]:
+        """Names of these parameters."""
+        return [item.name for item in self.identity + self.arguments]
+
     # --- sizes ------------------------------------------------------------------------------------
 
     @cached_property
@@ -122,7 +125,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     @property
     def content_size(self) -> str:
         """Bytes of content."""
-        return f"{self.decoder.plan.head_size}U + payload + {self.tail_size}"
+        head, tail = self.plan.head_size, self.tail_size
+        return " + ".join(size for size in (f"{head}U", "payload", tail) if size != "0U")
 
     @property
     def length(self) -> str:
@@ -290,9 +294,15 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             else:
                 continue
             before = flags
-        head = Half("head", tuple(s for s in steps if s.in_head), flags=payload_flags)
-        tail = Half("tail", tuple(s for s in steps if not s.in_head), self.plan.end_bytes)
+        in_head = tuple(s for s in steps if s.in_head)
+        in_tail = tuple(s for s in steps if not s.in_head)
+        head = Half("head", in_head, flags=payload_flags, tells_length=self._has_length(Side.HEAD))
+        tail = Half("tail", in_tail, self.plan.end_bytes, tells_length=self._has_length(Side.TAIL))
         return (head, tail) if self.sends_tail else (head,)
+
+    def _has_length(self, side: Side) -> bool:
+        length = self.plan.length
+        return length is not None and self.plan.part(length.part.name).place.side is side
 
     def _flags(self, name: str) -> int:
         """Which checksums cover a part, and whether it is stuffed."""

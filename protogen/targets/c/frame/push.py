@@ -254,6 +254,12 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     # --- between parts ----------------------------------------------------------------------------
 
     @property
+    def crosses(self) -> bool:
+        """True if something is done between two parts."""
+        refuses = self.can_open and self.plan.start is StartRule.ANYWHERE
+        return self.crosses_region or refuses or not self.plan.end_is_unique
+
+    @property
     def content_ends(self) -> str:
         """The condition that no content is due any more."""
         return " && ".join([self.full, *self._is_not_empty])

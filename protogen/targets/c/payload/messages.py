@@ -7,7 +7,6 @@ What the rest of the generated file uses of them is static: `validate`, `measure
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 import msgspec
@@ -17,7 +16,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
-from protogen.targets.c.lines import Lines, function, prototype
+from protogen.targets.c.lines import Lines, function, mentions, prototype
 from protogen.targets.c.named import Macro
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
@@ -321,5 +320,5 @@ def _unused(lines: Lines, arguments: tuple[str, ...]) -> Iterator[str]:
     each = ", ".join(arguments).split(", ")
     parameters = {argument.replace("*", " ").split()[-1] for argument in each}
     for name in _PARAMETERS:
-        if name in parameters and not re.search(rf"(?<![\w.>]){name}\b", text):
+        if name in parameters and not mentions(text, name):
             yield name
