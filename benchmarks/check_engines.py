@@ -83,7 +83,7 @@ def events_of(path: Path, sender: str, engine: str, pieces: list[bytes]) -> list
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two events are; their texts tell where a value is not a number."""
+    """True if two events are; their texts tell where a value is not a number."""
     return type(one) is type(other) and (one == other or repr(one) == repr(other))
 
 
@@ -161,7 +161,7 @@ def compare_events(path: Path, sender: str, found: Sequence[Any], due: Sequence[
 
 
 def same_in_c(event: Any, found: Any) -> bool:
-    """Whether an event of C is that of Python."""
+    """True if an event of C is that of Python."""
     from protogen.fuzzing.trips import same as same_values
 
     if (found.kind, found.offset, found.size) != (event.kind, event.offset, event.size):

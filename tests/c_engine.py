@@ -193,7 +193,7 @@ def messages_of(steps: Sequence[Sequence[CEvent]]) -> list[list[CEvent]]:
 
 
 def same_events(found: Sequence[CEvent], expected: Sequence[CEvent]) -> bool:
-    """Whether events are equal, where one NaN is like another."""
+    """True if events are equal, where one NaN is like another."""
     return len(found) == len(expected) and all(
         replace(one, values=None) == replace(other, values=None) and same(one.values, other.values)
         for one, other in zip(found, expected, strict=True)

@@ -40,7 +40,7 @@ class Wrong(Exception):  # noqa: N818 - a verdict, not a failure
         self.reason = reason
         self.missing = missing
         self.count = count
-        """Whether a number counts too many or too few."""
+        """True if a number counts too many or too few."""
 
 
 def check(message: Message, payload: bytes) -> None:
@@ -178,7 +178,7 @@ def _names(type_: Integer) -> set[int]:
 
 
 def _is(found: Any, constant: Any) -> bool:
-    """Whether what was read is the constant."""
+    """True if what was read is the constant."""
     if isinstance(constant, str):
         return bool(found == constant.encode("latin-1"))
     return bool(found == (list(constant) if isinstance(constant, tuple) else constant))

@@ -94,7 +94,7 @@ def _free(name: str, taken: set[str]) -> str:
 
 
 def has_room(type_: Type) -> bool:
-    """Whether C stores anything of the type."""
+    """True if C stores anything of the type."""
     match type_:
         case Struct(fields=fields):
             return any(_members(fields, field) for field in fields)

@@ -55,7 +55,7 @@ def _fate(
 
 
 def is_due(spec: FrameSpec, before: bytes) -> bool:
-    """Whether a frame can begin behind these bytes, which begin with the stream."""
+    """True if a frame can begin behind these bytes, which begin with the stream."""
     if not isinstance(spec.start, AfterEnd):
         return True
     assert spec.end is not None
@@ -63,7 +63,7 @@ def is_due(spec: FrameSpec, before: bytes) -> bool:
 
 
 def is_protected(spec: FrameSpec) -> bool:
-    """Whether what a frame begins behind or with occurs nowhere inside of a valid frame."""
+    """True if what a frame begins behind or with occurs nowhere inside of a valid frame."""
     if isinstance(spec.start, StartLiteral | StartSet):
         return spec.start.protected
     return isinstance(spec.start, AfterEnd) and spec.end is not None and spec.end.protected

@@ -248,7 +248,7 @@ def as_json(values: Any) -> Any:
 
 
 def same(found: Any, expected: Any) -> bool:
-    """Whether values are equal, where one NaN is like another and 0 is unlike -0."""
+    """True if values are equal, where one NaN is like another and 0 is unlike -0."""
     if isinstance(found, FloatConstant):
         return bool(found == expected)
     if isinstance(expected, float) and isinstance(found, float):

@@ -23,7 +23,7 @@ SEEDS = range(max(6, settings().max_examples // 8))
 
 
 def takes_whole(protocol: Protocol) -> bool:
-    """Whether the C of a protocol has a fast way."""
+    """True if the C of a protocol has a fast way."""
     module = view(protocol, COptions())
     return framing_view(protocol, module.messages, module.sinks, COptions()).takes_whole
 

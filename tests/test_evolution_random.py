@@ -109,5 +109,5 @@ def check_pair(old: Protocol, new: Protocol, counted: Counter[str]) -> None:
 
 
 def _is_said(path: str, places: set[str]) -> bool:
-    """Whether a change is at a path, or in a run of bits of the number that is there."""
+    """True if a change is at a path, or in a run of bits of the number that is there."""
     return any(place == path or place.startswith(f"{path}.") for place in places)

@@ -277,7 +277,7 @@ def test_a_frame_takes_memory_for_its_bytes_and_not_for_its_portions(
 
 
 def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:
-    """How many bytes are looked at until a frame is whole that comes byte by byte, and its size."""
+    """Number of bytes looked at until a frame that comes byte by byte is whole, and its size."""
     module = module_at(path)
     frame = module.encode(module.List(a=bytes(place % 251 for place in range(size))), "station")
     decoder = module.Decoder("station", engine)

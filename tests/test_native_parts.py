@@ -487,7 +487,7 @@ def test_rows_that_were_not_foreseen_get_memory_of_their_own() -> None:
 
 
 def joined(library: Library, data: memoryview, middle: int, engine: NativeEngine) -> bool:
-    """Whether the second of two parts joined the first; then their tables are those of one."""
+    """True if the second of two parts joined the first; then their tables are those of one."""
     whole, front = NativeEngine(library), NativeEngine(library)
     expected = gathered([*whole.feed(data), *whole.flush()], None, 1)
     front.start(0)

@@ -58,7 +58,7 @@ def shown(events: Iterable[Any]) -> list[tuple[Any, ...]]:
 
 
 def is_input(events: Iterable[Any], data: bytes) -> bool:
-    """Whether the raw bytes of the events, joined, are the input, and the offsets are right."""
+    """True if the raw bytes of the events, joined, are the input, and the offsets are right."""
     offset = 0
     for event in events:
         if event.offset != offset or event.size != len(event.raw):

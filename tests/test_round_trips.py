@@ -152,7 +152,7 @@ def as_text(values: Any) -> Any:
 
 
 def same(left: Any, right: Any) -> bool:
-    """Whether values are equal, and zeros have the same sign."""
+    """True if values are equal, and zeros have the same sign."""
     if isinstance(left, dict):
         return left.keys() == right.keys() and all(same(left[key], right[key]) for key in left)
     if isinstance(left, list):
@@ -226,7 +226,7 @@ def check_payload(case: Case, payload: bytes, parts: Mapping[str, int] | None = 
 
 
 def has_nan(values: Any) -> bool:
-    """Whether a float is not a number: JSON and most machines don't keep which one it is."""
+    """True if a float is not a number: JSON and most machines don't keep which one it is."""
     if isinstance(values, dict):
         return any(map(has_nan, values.values()))
     if isinstance(values, list):

@@ -58,7 +58,7 @@ def message_of(module: ModuleType, vector: Vector) -> Any:
 
 
 def agrees(stated: Any, found: Any) -> bool:
-    """Whether what a vector states is what was found.
+    """True if what a vector states is what was found.
 
     It may leave out keys of a mapping, and may name a number; that the name stands for this number
     is shown by the frame that it encodes to.

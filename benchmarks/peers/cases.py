@@ -38,7 +38,7 @@ class Case:
     counter: str | None = None
     """The part of a frame that counts."""
     factor: int = 1
-    """How many times longer than usual the stream is."""
+    """Times by which the stream is longer than usual."""
     size: int = STREAM
 
     @cached_property

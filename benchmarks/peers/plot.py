@@ -34,7 +34,7 @@ def plot(found: Mapping[str, Mapping[str, list[float]]], names: Sequence[str], p
 
 
 def _rank(found: Mapping[str, Mapping[str, list[float]]], name: str, base: str) -> float:
-    """How many times slower than generated Python it is, of the cases that it has."""
+    """Times by which it is slower than generated Python it is, of the cases that it has."""
     factors = [
         median(times[name]) / median(times[base]) for times in found.values() if name in times
     ]

@@ -157,7 +157,7 @@ def framed(command: int, counter: int, payload: bytes) -> bytes:
 
 
 def is_valid(content: bytes) -> bool:
-    """Whether these bytes from the length to the checksum are a frame."""
+    """True if these bytes from the length to the checksum are a frame."""
     return (
         len(content) >= 4
         and content[0] == len(content) - 2

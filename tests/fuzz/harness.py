@@ -149,7 +149,7 @@ def build_from(header: Path, protocol: Protocol, seeds: Path, *flags: str) -> Fu
 
 
 def executions(said: str) -> int:
-    """How many inputs were tried."""
+    """Number of inputs that were tried."""
     found = _DONE.findall(said)
     assert found, said[-2000:]
     return sum(map(int, found))

@@ -152,7 +152,7 @@ def check_lossless(module: ModuleType, sender: Sender, data: bytes, events: Sequ
 
 
 def _may_differ(sender: Sender, line: dict[str, Any]) -> bool:
-    """Whether encoding may give other bytes.
+    """True if encoding may give other bytes.
 
     That is so for stuffing that was accepted although no encoder makes it, for the payload of a
     NaN, and for a frame whose start is the end of the frame before.

@@ -35,7 +35,7 @@ class Delimited:
             state = self._append(stretch, state)
 
     def holds(self, literal: bytes) -> bool:
-        """Whether the literal can occur outside of the delimiters' own places."""
+        """True if the literal can occur outside of the delimiters' own places."""
         # A walk that has left a delimiter's own place, or did not begin at it, is None there.
         walks: set[tuple[int, _Own | None]] = set()
         for state in range(len(self._edges)):

@@ -155,7 +155,7 @@ def _kinds(setting: Setting) -> list[str]:
 
 
 def _fits(declared: Declared, setting: Setting) -> bool:
-    """Whether there is room; a type that holds a switch means another thing where it may fill."""
+    """True if there is room; a type that holds a switch means another thing where it may fill."""
     if declared.chooses and setting.may_fill:
         return False
     return declared.built.size.greatest <= setting.budget

@@ -60,12 +60,12 @@ class FramePlan:
 
     @property
     def delimited(self) -> bool:
-        """Whether the frame tells where the payload ends."""
+        """True if the frame tells where the payload ends."""
         return bool(self.closing) or any(part.role == "length" for part in self.parts)
 
     @property
     def starts_with_set(self) -> bool:
-        """Whether the range of the first part marks the start."""
+        """True if the range of the first part marks the start."""
         covered = self.region is not None and self.region.first == 0
         return not self.opening and "range" in self.parts[0].data and not covered
 
@@ -232,7 +232,7 @@ class _Drawing:
             self._tail.append(self._maker.checksum(optional=False))
 
     def _is_never_empty(self) -> bool:
-        """Whether something stands in every frame beside its delimiters and the payload."""
+        """True if something stands in every frame beside its delimiters and the payload."""
         return any(not part.optional for part in (*self._head, *self._tail))
 
     def _is_set_apart(self) -> bool:

@@ -31,7 +31,7 @@ class Plan:
     identity: Mapping[str, Sequence[PartPlan]]
     """The identity parts by sender."""
     shared: bool
-    """Whether a message may have several senders."""
+    """True if a message may have several senders."""
     types: tuple[Declared, ...]
     budget: int
 

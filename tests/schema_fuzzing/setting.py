@@ -72,9 +72,9 @@ class Setting:
 
     byte_bits: int
     ordered: bool
-    """Whether a byte order is in force."""
+    """True if a byte order is in force."""
     whole_bytes: bool
-    """Whether the type `byte` is allowed, which in 7-bit payloads may hold delimiters."""
+    """True if the type `byte` is allowed, which in 7-bit payloads may hold delimiters."""
     budget: int
     """Bytes that may still be used."""
     room: int | None
@@ -82,7 +82,7 @@ class Setting:
     delimited: bool
     last: bool
     exact: bool = True
-    """Whether everything in front has one size, so that `room` is what is really left."""
+    """True if everything in front has one size, so that `room` is what is really left."""
     depth: int = 0
     counters: Mapping[str, Size] = field(default_factory=dict)
     selectors: tuple[Selector, ...] = ()
@@ -107,5 +107,5 @@ class Setting:
 
     @property
     def may_fill(self) -> bool:
-        """Whether something may stand here that takes the rest of the payload."""
+        """True if something may stand here that takes the rest of the payload."""
         return self.last and self.delimited

@@ -87,7 +87,7 @@ def _shared(framing: Framing) -> int:
 
 
 def _is_due(framing: Framing, before: bytes) -> bool:
-    """Whether a frame may start behind these bytes."""
+    """True if a frame may start behind these bytes."""
     if not isinstance(framing.start, AfterEnd):
         return True
     assert framing.end is not None

@@ -53,7 +53,7 @@ def _struct(draw: st.DrawFn, name: str, setting: Setting) -> Declared:
 
 
 def _chooses(data: Any, choosing: set[str]) -> bool:
-    """Whether a switch stands in the fields, or a use of a type that holds one."""
+    """True if a switch stands in the fields, or a use of a type that holds one."""
     if isinstance(data, str):
         return data in choosing
     if not isinstance(data, dict):
