@@ -39,8 +39,11 @@ from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.meanings import Enum, NamedValue
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
 from protogen.model.origin import About, Source
-from protogen.model.protocol import Decision, Endpoint, Link, Protocol
-from protogen.model.reserved import (
+from protogen.model.protocol import (
+    Decision,
+    Endpoint,
+    Link,
+    Protocol,
     Reserved,
     ReservedIdentity,
     ReservedNames,

@@ -24,7 +24,6 @@ from protogen.model import (
     messages,
     origin,
     protocol,
-    reserved,
     sizes,
 )
 from protogen.model import types as model_types
@@ -59,7 +58,6 @@ _MODULES = (
     model_types,
     origin,
     protocol,
-    reserved,
     sizes,
 )
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import msgspec
 
 from protogen.copying import replace
+from protogen.model.checksums import checksum_of
 from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.frame import (
     ChecksumPart,
@@ -22,9 +23,9 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.messages import Message
-from protogen.model.numbers import checksum_of, codec
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.readings import character
+from protogen.model.types import codec
 from protogen.model.wire import FULL_GROUP, Unit, Wire, unstuff
 from protogen.runtime.errors import ByteError
 

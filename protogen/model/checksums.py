@@ -10,6 +10,7 @@ from typing import Literal
 import msgspec
 
 from protogen.model.crc_catalogue import ALGORITHMS, ALIASES, Row
+from protogen.runtime import checksum as sums
 
 ChecksumKind = Literal["xor", "sum", "fletcher", "crc"]
 
@@ -94,3 +95,17 @@ def _spec_of(row: Row) -> ChecksumSpec:
         refout=refout,
         xorout=xorout,
     )
+
+
+@cache
+def checksum_of(spec: ChecksumSpec) -> sums.Checksum:
+    """Implementation of a checksum algorithm."""
+    match spec.kind:
+        case "xor":
+            return sums.Xor8(spec.init)
+        case "sum":
+            return sums.Sum8(spec.init, spec.negated)
+        case "fletcher":
+            return sums.Fletcher16(spec.modulus)
+        case "crc":
+            return sums.Crc(spec.width, spec.poly, spec.init, spec.refin, spec.refout, spec.xorout)

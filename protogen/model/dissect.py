@@ -10,7 +10,6 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import Part
-from protogen.model.numbers import codec
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -31,7 +30,7 @@ from protogen.model.readings import (
     quoted,
     value_name,
 )
-from protogen.model.types import Field, Fixed, Float, Scalar, Text
+from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
 from protogen.model.wire import Unit
 from protogen.runtime.errors import ByteError
 

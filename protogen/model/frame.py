@@ -6,8 +6,7 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
-from protogen.model.types import Integer
-from protogen.runtime.payload.number import Number
+from protogen.model.types import Integer, codec
 
 PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
@@ -58,9 +57,7 @@ class NumberPart(Part, frozen=True, kw_only=True):
 
     def encode(self, value: int) -> bytes:
         """Bytes of a value, before stuffing; raises ValueError if the part can't hold it."""
-        kind = self.type
-        seven_bit = kind.byte_bits == 7
-        return Number(kind.bits, kind.signed, kind.byte_order, seven_bit).encode(value)
+        return codec(self.type).encode(value)
 
 
 class IdentityPart(NumberPart, frozen=True, kw_only=True):

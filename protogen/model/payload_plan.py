@@ -17,16 +17,19 @@ from math import ceil, floor
 
 import msgspec
 
-from protogen.model.numbers import constant_bytes
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
+    Constant,
     Field,
+    Fixed,
     Float,
     Integer,
+    NumberType,
     Octets,
     Struct,
     Text,
     Type,
+    codec,
 )
 
 
@@ -278,6 +281,25 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step((step.value,))
             case ChooseStep():
                 yield from every_step(case.step for case in step.cases)
+
+
+def constant_bytes(field: Field) -> bytes:
+    """The wire bytes of a constant field."""
+    assert field.const is not None
+    if isinstance(field.const, tuple):
+        return b"".join(_wire_bytes(field.element, item) for item in field.const)
+    return _wire_bytes(field.type, field.const)
+
+
+def _wire_bytes(type_: Type, value: Constant) -> bytes:
+    if isinstance(value, bytes):
+        return value
+    if isinstance(value, str):
+        is_padded = isinstance(type_, Text) and isinstance(type_.extent, Fixed)
+        return value.encode("latin-1").ljust(type_.sizes.least if is_padded else 0, b"\0")
+    assert isinstance(type_, NumberType)
+    assert isinstance(value, int | float)
+    return codec(type_).encode(type_.raw(value))
 
 
 def allowed(field: Field, type_: Integer) -> tuple[int, int]:

@@ -12,7 +12,6 @@ from protogen.model.framing import Framing
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
-from protogen.model.reserved import NOTHING_RESERVED, Reserved
 from protogen.model.types import Struct
 
 
@@ -76,6 +75,36 @@ class Sender(msgspec.Struct, frozen=True, kw_only=True):
         return message
 
 
+class ReservedIdentity(msgspec.Struct, frozen=True, kw_only=True):
+    """The identity of a message that is no longer sent."""
+
+    sender: str
+    identity: tuple[int, ...]
+    doc: str = ""
+
+
+class ReservedNames(msgspec.Struct, frozen=True, kw_only=True):
+    """Field names that a message may not use again."""
+
+    message: str
+    names: tuple[str, ...]
+
+
+class ReservedValues(msgspec.Struct, frozen=True, kw_only=True):
+    """Raw values that the enum at `path`, MESSAGE.FIELD or a type, may not use again."""
+
+    path: str
+    values: tuple[int, ...]
+
+
+class Reserved(msgspec.Struct, frozen=True, kw_only=True):
+    """All that is reserved in a protocol."""
+
+    identities: tuple[ReservedIdentity, ...] = ()
+    fields: tuple[ReservedNames, ...] = ()
+    values: tuple[ReservedValues, ...] = ()
+
+
 class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     """A serial protocol, resolved."""
 
@@ -98,7 +127,7 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     messages: tuple[Message, ...]
     exchanges: tuple[Exchange, ...]
     decisions: tuple[Decision, ...]
-    reserved: Reserved = NOTHING_RESERVED
+    reserved: Reserved = Reserved()
     spec_hash: str
     """SHA-256, in hex, of layout, framing and meaning of values."""
 

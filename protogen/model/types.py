@@ -18,6 +18,7 @@ from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.names import free_name
 from protogen.model.origin import NOTHING, About
 from protogen.model.sizes import SizeSet
+from protogen.runtime.payload.number import Number
 
 ByteOrder = Literal["little", "big"]
 IntegerRole = Literal["number", "byte", "char", "bool"]
@@ -460,6 +461,11 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
         if isinstance(self.type, Integer) and isinstance(self.const, int):
             return int(self.const)
         return None
+
+
+def codec(type_: NumberType) -> Number:
+    """Codec of a number's raw value; of a float it is that of its bits."""
+    return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
 
 
 def total(fields: tuple[Field, ...]) -> SizeSet:

@@ -7,8 +7,7 @@ import msgspec
 from protogen.model.frame import Frame
 from protogen.model.framing import Framing
 from protogen.model.messages import Exchange, Message, Overload
-from protogen.model.protocol import Decision
-from protogen.model.reserved import Reserved
+from protogen.model.protocol import Decision, Reserved
 from protogen.passes.context import Context
 from protogen.passes.types.named_types import NamedTypes
 

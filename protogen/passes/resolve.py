@@ -80,21 +80,7 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
         reserved=draft.reserved,
         spec_hash="",
     )
-    return _with_hashes(protocol)
-
-
-def _with_hashes(protocol: Protocol) -> Protocol:
-    hashed = {m.name: replace(m, spec_hash=message_hash(m)) for m in protocol.messages}
-    senders = tuple(
-        replace(sender, messages=tuple(hashed[message.name] for message in sender.messages))
-        for sender in protocol.senders
-    )
-    return replace(
-        protocol,
-        spec_hash=spec_hash(protocol),
-        messages=tuple(hashed.values()),
-        senders=senders,
-    )
+    return replace(protocol, spec_hash=spec_hash(protocol))
 
 
 def _link(context: Context) -> Link:

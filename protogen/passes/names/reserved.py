@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.reserved import Reserved, ReservedIdentity, ReservedNames, ReservedValues
+from protogen.model.protocol import Reserved, ReservedIdentity, ReservedNames, ReservedValues
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.messages.identity import IdentityReader

@@ -7,8 +7,7 @@ from functools import partial
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame
-from protogen.model.numbers import number_bytes
-from protogen.passes.proofs.contents import Contents, checksum_bytes
+from protogen.passes.proofs.contents import Contents, checksum_bytes, number_bytes
 from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
 from protogen.passes.proofs.wire_code import ByteSet
 
@@ -74,7 +73,7 @@ class Together:
         if part.name not in self._worths:
             numbers = (_number(part.algorithm, register) for register in range(256))
             self._worths[part.name] = [
-                self._worth(part, number_bytes(part.type, number)) for number in numbers
+                self._worth(part, number_bytes(part, number)) for number in numbers
             ]
         step = _step(part.algorithm)
         return most_summed(places, step, self._worths[part.name], part.algorithm.init)

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from protogen.model.messages import Exchange, Message, Step
-from protogen.model.protocol import Decision, Protocol
-from protogen.model.reserved import ReservedIdentity
+from protogen.model.protocol import Decision, Protocol, ReservedIdentity
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.walk import named_fields
 from protogen.targets.markdown.text.anchors import example_anchor, message_link
