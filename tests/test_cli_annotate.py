@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from protogen.compiler import compile_file
-from protogen.model.annotate import Row, annotate
 from protogen.model.protocol import Protocol
+from protogen.model.reading.annotate import Row, annotate
 
 
 @cache

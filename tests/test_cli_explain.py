@@ -10,7 +10,7 @@ from cli_support import ROOT, run
 
 from protogen.cli.wire.explain import _not_looked_at
 from protogen.copying import replace
-from protogen.model.annotate import Row
+from protogen.model.reading.annotate import Row
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
 TWO_BYTES = """\

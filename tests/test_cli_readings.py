@@ -10,7 +10,7 @@ import pytest
 from cli_support import SINK, run
 
 from protogen.cli.progress import progress
-from protogen.model.readings import decimal, physical
+from protogen.model.reading.readings import decimal, physical
 from protogen.model.types import Field, Integer
 
 

@@ -74,9 +74,8 @@ def _properties(sender: Sender) -> Iterator[tuple[str, str]]:
 
 def _overhead(sender: Sender) -> str:
     from protogen.model.sizes import SizeSet
-    from protogen.model.wire import code_size
 
-    code_bytes = code_size(sender.frame)
+    code_bytes = sender.frame.code_size
     overhead = _bytes(str(sender.framing.overhead + SizeSet.exactly(code_bytes)))
     return f"{overhead}, {'with the first COBS code byte' if code_bytes else 'before any stuffing'}"
 

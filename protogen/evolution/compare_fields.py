@@ -11,7 +11,7 @@ from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of
-from protogen.model.readings import decimal
+from protogen.model.reading.readings import decimal
 from protogen.model.types import Field
 
 _CHANGES = {

@@ -15,12 +15,12 @@ from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.live.codec import kept_module
-from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.payload_builder import plan_of
 from protogen.model.protocol import Protocol
-from protogen.model.readings import physical, value_name
+from protogen.model.reading.dissect import Cursor, Row, dissect
+from protogen.model.reading.readings import physical, value_name
+from protogen.model.reading.wire import plain
 from protogen.model.types import Field, Integer
-from protogen.model.wire import Unit
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.values import as_dict
 
@@ -33,8 +33,7 @@ class Contents(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def _rows(self) -> list[Row]:
-        units = tuple(Unit(byte, bytes((byte,))) for byte in self.payload)
-        found = dissect(plan_of(self.fields), Cursor(units, 0))
+        found = dissect(plan_of(self.fields), Cursor(plain(self.payload), 0))
         return [row for row in found if row.value_type is not None]
 
     @cached_property

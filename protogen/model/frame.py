@@ -125,6 +125,10 @@ class Base16(msgspec.Struct, frozen=True, kw_only=True):
     """Two upper-case hex digits a byte."""
 
 
+FULL_GROUP = 254
+"""Bytes that one code byte of COBS can stand for."""
+
+
 class Cobs(msgspec.Struct, frozen=True, kw_only=True):
     """Consistent overhead byte stuffing: the region holds no zero byte."""
 
@@ -184,6 +188,15 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         names = [part.name for part in self.parts]
         first, last = map(names.index, (self.transparency.first, self.transparency.last))
         return frozenset(names[first : last + 1])
+
+    @property
+    def code_size(self) -> int:
+        """Bytes that the encoding puts in front of its region, whatever that holds.
+
+        COBS puts its first code byte there. The others stand in the places of zeros, except that a
+        further one stands behind each `FULL_GROUP` bytes without a zero.
+        """
+        return int(isinstance(self.encoding, Cobs))
 
     @property
     def identity(self) -> tuple[IdentityPart, ...]:

@@ -11,6 +11,7 @@ from enum import Enum, auto
 import msgspec
 
 from protogen.model.frame import (
+    FULL_GROUP,
     Base16,
     ChecksumPart,
     Cobs,
@@ -25,7 +26,6 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
-from protogen.model.wire import FULL_GROUP
 
 
 class StartRule(Enum):

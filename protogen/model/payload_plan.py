@@ -107,11 +107,13 @@ class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """True if a record keeps anything of it."""
     is_last: bool = False
     """True if nothing follows it in the payload."""
+    count: Count | None = None
+    """Number of elements or bytes, of what has one."""
 
     @property
     def fills(self) -> bool:
         """True if it takes all elements or bytes that are left of the payload."""
-        return False
+        return self.count is not None and self.count.fills
 
     @property
     def can_be_wrong(self) -> bool:
@@ -155,11 +157,6 @@ class BytesStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     type: Text | Octets
     count: Count
 
-    @property
-    def fills(self) -> bool:
-        """True if it takes all bytes that are left of the payload."""
-        return self.count.fills
-
 
 class ConstantStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """Bytes that are always the same."""
@@ -186,21 +183,11 @@ class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     element: AnyStep
     count: Count
 
-    @property
-    def fills(self) -> bool:
-        """True if it takes all elements that are left of the payload."""
-        return self.count.fills
-
 
 class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """The bytes that are left of the payload, where no case has the value of the selector."""
 
     count: Count
-
-    @property
-    def fills(self) -> bool:
-        """True, as it takes all bytes that are left of the payload."""
-        return True
 
 
 class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from protogen.model.readings import readings
+from protogen.model.reading.readings import readings
 from protogen.runtime.values import as_dict
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from protogen.cli.console import Cell
-    from protogen.model.annotate import Row
     from protogen.model.protocol import Protocol
+    from protogen.model.reading.annotate import Row
 
 EXAMPLE = "Example: protogen explain schemas/matty.yaml --sender esp --hex 55020141BC"
 
@@ -83,7 +83,7 @@ def _columns(protocol: Protocol, event: Any) -> tuple[list[str], list[list[Cell]
 
 
 def _rows(protocol: Protocol, event: Any) -> Sequence[Row]:
-    from protogen.model.annotate import Row, annotate
+    from protogen.model.reading.annotate import Row, annotate
 
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
@@ -121,7 +121,7 @@ def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:
 
 
 def _value(value: int | float | str | None) -> str:
-    from protogen.model.readings import quoted
+    from protogen.model.reading.readings import quoted
 
     if value is None:
         return ""

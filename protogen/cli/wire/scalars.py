@@ -12,7 +12,7 @@ from typing import Any
 from protogen.cli.exits import UsageError
 from protogen.convert.inputs.hex_digits import HexError, parse_hex
 from protogen.model.payload_plan import IntegerStep
-from protogen.model.readings import decimal
+from protogen.model.reading.readings import decimal
 from protogen.model.types import Field
 from protogen.problems import did_you_mean, hint_for
 from protogen.runtime.payload.nearest import nearest_reading

@@ -9,7 +9,6 @@ import msgspec
 from protogen.model.framing import Framing
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
-from protogen.model.wire import code_size
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.frames.packet import frame_diagram
 from protogen.targets.markdown.frames.parts import (
@@ -108,7 +107,7 @@ def _properties(sender: Sender) -> Iterator[tuple[str, Sentences]]:
 
 
 def _overhead(sender: Sender) -> str:
-    code_bytes = code_size(sender.frame)
+    code_bytes = sender.frame.code_size
     overhead = plural(sender.framing.overhead + SizeSet.exactly(code_bytes), "byte")
     if code_bytes:
         return f"{overhead} besides the payload, with the first COBS code byte."

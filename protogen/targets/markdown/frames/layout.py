@@ -13,6 +13,7 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import (
+    FULL_GROUP,
     Base16,
     ChecksumPart,
     Cobs,
@@ -24,7 +25,6 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.wire import FULL_GROUP, code_size
 from protogen.targets.markdown.text.words import code, span
 
 INDICES = "ijkl"
@@ -144,7 +144,7 @@ def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
 
 def _parts_on_wire(frame: Frame) -> tuple[Part, ...]:
     """Return the parts of a frame, and what its encoding adds."""
-    size = code_size(frame)
+    size = frame.code_size
     if frame.transparency is None or not size:
         return frame.parts
     first = [part.name for part in frame.parts].index(frame.transparency.first)
@@ -209,4 +209,4 @@ def is_stuffed(frame: Frame) -> bool:
 def has_further_codes(frame: Frame, payload: SizeSet) -> bool:
     """True if a region can be so long that COBS puts a second code byte into it."""
     region = sum((part_sizes(part, payload) for part in _region(frame)), start=_NOTHING)
-    return bool(code_size(frame)) and region.greatest > FULL_GROUP
+    return bool(frame.code_size) and region.greatest > FULL_GROUP

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
+    FULL_GROUP,
     Base16,
     ChecksumPart,
     Cobs,
@@ -25,7 +26,6 @@ from protogen.model.frame import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import NumberType
-from protogen.model.wire import FULL_GROUP
 from protogen.targets.markdown.fields.types import number_text
 from protogen.targets.markdown.fields.values import character, raw_text
 from protogen.targets.markdown.frames.layout import CodePart, Slot, length_values, part_title, slots

@@ -7,10 +7,10 @@ from itertools import groupby
 
 import msgspec
 
-from protogen.model.annotate import Row, annotate
 from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
+from protogen.model.reading.annotate import Row, annotate
 from protogen.model.types import Field, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.values import raw_text, value_meaning

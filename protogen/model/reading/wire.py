@@ -11,15 +11,11 @@ from protogen.model.frame import (
     Cobs,
     Encoding,
     Escape,
-    Frame,
     LiteralPart,
-    Part,
     Substitution,
 )
+from protogen.model.frame_plan import FramePlan
 from protogen.runtime import transparency as stuffing
-
-FULL_GROUP = 254
-"""Bytes that one code byte of COBS can stand for."""
 
 
 class Unit(msgspec.Struct, frozen=True):
@@ -43,48 +39,34 @@ class Wire(msgspec.Struct, frozen=True):
     """Units that follow that."""
 
 
-def code_size(frame: Frame) -> int:
-    """Bytes that the encoding puts in front of its region, whatever that holds.
-
-    COBS puts its first code byte there. The others stand in the places of zeros, except that a
-    further one stands behind each `FULL_GROUP` bytes without a zero.
-    """
-    return int(frame.transparency is not None and isinstance(frame.transparency.encoding, Cobs))
-
-
-def unstuff(frame: Frame, data: bytes) -> Wire:
+def unstuff(plan: FramePlan, data: bytes) -> Wire:
     """Take the frame `data` apart into units."""
-    if frame.transparency is None:
-        return Wire(_plain(data))
-    names = [part.name for part in frame.parts]
-    first, last = names.index(frame.transparency.first), names.index(frame.transparency.last)
-    start = min(len(data), sum(part.size for part in frame.parts[:first]))
-    end = max(start, len(data) - _closing(frame, frame.parts[last + 1 :], data))
-    unstuffer = _transparency(frame.transparency.encoding, frame.transparency.lenient).decoder()
-    code = data[start : min(end, start + code_size(frame))].strip(b"\0")
+    region = plan.region
+    if region is None:
+        return Wire(plain(data))
+    start = min(len(data), region.before)
+    end = max(start, len(data) - _closing(plan, region.behind, data))
+    code = data[start : min(end, start + plan.frame.code_size)].strip(b"\0")
+    unstuffer = _transparency(region.encoding, region.lenient).decoder()
     units, rest, fault = _region(unstuffer, data[start:end], len(code))
-    before, behind = _plain(data[:start]), _plain(data[end:])
-    if rest or fault or len(units) < _least(frame.parts[first : last + 1]):
+    before, behind = plain(data[:start]), plain(data[end:])
+    parts = [plan.frame.part(name) for name in region.parts]
+    if rest or fault or len(units) < sum(part.size for part in parts if not part.is_optional):
         return Wire((*before, *units), code, rest, fault, behind)
     return Wire((*before, *units, *behind), code)
 
 
-def _plain(data: bytes) -> tuple[Unit, ...]:
+def plain(data: bytes) -> tuple[Unit, ...]:
+    """Units of bytes that are not stuffed."""
     return tuple(Unit(byte, bytes((byte,))) for byte in data)
 
 
-def _least(parts: tuple[Part, ...]) -> int:
-    """Bytes that parts have even with an empty payload."""
-    present = (part for part in parts if not part.is_optional)
-    return sum(part.size for part in present)
-
-
-def _closing(frame: Frame, parts: tuple[Part, ...], data: bytes) -> int:
+def _closing(plan: FramePlan, behind: int, data: bytes) -> int:
     """Bytes behind the region; 0 where the closing literal is missing, as the frame is cut."""
-    last = frame.parts[-1]
+    last = plan.frame.parts[-1]
     if isinstance(last, LiteralPart) and not data.endswith(last.bytes):
         return 0
-    return sum(part.size for part in parts)
+    return behind + sum(part.size for part in plan.end_literals)
 
 
 def _region(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from math import isfinite
 from typing import Any
 
 from protogen.model.meanings import BitField, Flags
@@ -40,7 +41,7 @@ def decimal(value: Fraction) -> str:
 def physical(field: Field, raw: int | float, gap: str = "") -> str:
     """The physical value and, behind `gap`, its unit: `50.75deg`."""
     unit = f"{gap}{field.unit}" if field.unit else ""
-    if isinstance(raw, float) and not _finite(raw):
+    if isinstance(raw, float) and not isfinite(raw):
         return f"{raw}{unit}"
     if isinstance(raw, float) and not field.scaled:
         return f"{raw!r}{unit}"
@@ -158,7 +159,3 @@ def _shifted(value: Fraction, digits: int) -> str:
     whole = abs(value.numerator * 10**digits // value.denominator)
     sign = "-" if value < 0 else ""
     return f"{sign}{whole // 10**digits}.{whole % 10**digits:0{digits}}"
-
-
-def _finite(value: float) -> bool:
-    return value - value == 0

@@ -24,14 +24,14 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.readings import (
+from protogen.model.reading.readings import (
     integer_reading,
     physical,
     quoted,
     value_name,
 )
+from protogen.model.reading.wire import Unit
 from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
-from protogen.model.wire import Unit
 from protogen.runtime.errors import ByteError
 
 Scope = ChainMap[str, int]
@@ -47,11 +47,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     """Of the first byte on the wire, counted from the start of the frame."""
     wire: bytes
     """As on the wire."""
-    bytes: bytes
+    bytes: bytes = b""
     """Without transparency."""
-    path: str
+    path: str = ""
     """The part's name, or the field's with what leads to it, such as `points[2].x`."""
-    type: str
+    type: str = ""
     """In the words of the schema language; `literal` for a literal."""
     value: int | float | str | None = None
     """The raw value of a number or a text."""
@@ -137,10 +137,9 @@ class Cursor:
         left = self._units[self.position :]
         return bytes(unit.byte for unit in left[-len(data) :]) == data
 
-    def skip(self, size: int) -> int:
-        """Pass bytes on the wire that belong to no unit; return the place of the first."""
+    def skip(self, size: int) -> None:
+        """Pass bytes on the wire that belong to no unit."""
         self._offset += size
-        return self._offset - size
 
     def part(self, count: int) -> Cursor:
         """A cursor over the next `count` units, which this one passes."""

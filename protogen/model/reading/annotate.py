@@ -12,8 +12,8 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.checksums import checksum_of
-from protogen.model.dissect import Cursor, Row, dissect
 from protogen.model.frame import (
+    FULL_GROUP,
     ChecksumPart,
     IdentityPart,
     LengthPart,
@@ -24,9 +24,10 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.readings import character
+from protogen.model.reading.dissect import Cursor, Row, dissect
+from protogen.model.reading.readings import character
+from protogen.model.reading.wire import Wire, plain, unstuff
 from protogen.model.types import codec
-from protogen.model.wire import FULL_GROUP, Unit, Wire, unstuff
 from protogen.runtime.errors import ByteError
 
 __all__ = ["Row", "annotate"]
@@ -51,10 +52,9 @@ def annotate(
     """
     known = protocol.sender(sender)
     if covers is None:
-        return _Frame(known, known.frame.parts, unstuff(known.frame, data), message).rows()
+        return _Frame(known, known.frame.parts, unstuff(known.plan, data), message).rows()
     parts = [part for part in known.frame.parts if part.name in covers]
-    plain = Wire(tuple(Unit(byte, bytes((byte,))) for byte in data))
-    return _Frame(known, parts, plain, message).rows()
+    return _Frame(known, parts, Wire(plain(data)), message).rows()
 
 
 class _Found(msgspec.Struct, frozen=True):
@@ -98,9 +98,8 @@ class _Frame:
         meaning = f"COBS: the next zero or the end is {code[0]} bytes on"
         if code[0] > FULL_GROUP:
             meaning = f"COBS: {FULL_GROUP} bytes without a zero"
-        offset = self._cursor.skip(len(code))
-        row = Row(offset=offset, wire=code, bytes=b"", path="", type="", meaning=meaning)
-        self._rows.append(row)
+        self._cursor.skip(len(code))
+        self._rows.append(self._bare(code, meaning))
 
     def _part(self, part: Part) -> None:
         start = len(self._rows)
@@ -117,13 +116,8 @@ class _Frame:
         self._found[part.name] = _Found(bytes(unit.byte for unit in units), wire)
 
     def _is_absent(self, part: Part) -> bool:
-        if not (isinstance(part, ChecksumPart) and part.when_payload):
-            return False
-        return all(
-            not self._found[other.name].content
-            for other in self._parts
-            if isinstance(other, PayloadPart) and other.name in self._found
-        )
+        payload = self._found.get(self._sender.frame.payload.name)
+        return part.is_optional and (payload is None or not payload.content)
 
     @property
     def _ended(self) -> bool:
@@ -140,7 +134,7 @@ class _Frame:
             row = piece.row(part.name, "literal", subject=part)
             if part.bytes.startswith(piece.bytes):
                 return row
-            return replace(row, fault=f"must be {_hex(part.bytes)}")
+            return replace(row, fault=f"must be {part.bytes.hex(' ').upper()}")
         assert isinstance(part, NumberPart | ChecksumPart)
         row = piece.row(part.name, part.type.label, subject=part, value_type=part.type)
         if piece.missing:
@@ -155,7 +149,8 @@ class _Frame:
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
         self._numbers[part.name] = value
-        fault = "" if part.least <= value <= part.greatest else _outside(part)
+        fits = part.least <= value <= part.greatest
+        fault = "" if fits else f"must be from {part.least} to {part.greatest}"
         meaning = character(value) if part.type.role == "char" else ""
         if isinstance(part, LengthPart):
             meaning = f"bytes of {', '.join(part.counts)}"
@@ -200,25 +195,20 @@ class _Frame:
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""
         behind = self._parts[self._parts.index(part) + 1 :]
-        length = self._sender.frame.length
-        if length is None or length.name not in self._numbers:
+        length = self._sender.plan.length
+        if length is None or length.part.name not in self._numbers:
             return self._size_without_length(behind)
-        others = [name for name in length.counts if name != part.name]
-        counted = sum(self._sender.frame.part(name).size for name in others)
-        return max(0, min(self._numbers[length.name] - counted, self._cursor.left))
+        stated = length.payload(self._numbers[length.part.name]) or 0
+        return min(stated, self._cursor.left)
 
     def _size_without_length(self, behind: Sequence[Part]) -> int:
         """Bytes that the parts behind leave; the message's size if the frame is not whole."""
         message = self._given or next(iter(self._candidates()), None)
-        if message is not None and behind and not self._is_closed(behind[-1]):
-            fixed = message.sizes.fixed
-            if fixed is not None:
-                return min(fixed, self._cursor.left)
+        last = behind[-1] if behind else None
+        is_cut = isinstance(last, LiteralPart) and not self._cursor.ends_with(last.bytes)
+        if message is not None and message.sizes.fixed is not None and is_cut:
+            return min(message.sizes.fixed, self._cursor.left)
         return max(0, self._cursor.left - sum(part.size for part in behind))
-
-    def _is_closed(self, last: Part) -> bool:
-        """True if the bytes end as a frame does, as far as that can be told."""
-        return not isinstance(last, LiteralPart) or self._cursor.ends_with(last.bytes)
 
     def _message(self, size: int) -> Message | None:
         """The given message, else that of this identity and size, else the one that is closest."""
@@ -226,23 +216,12 @@ class _Frame:
             return self._given
         candidates = self._candidates()
         fitting = [message for message in candidates if size in message.sizes]
-        yielded = self._yielded()
-        named = [message for message in fitting if message.name == yielded]
-        return next(iter((*named, *fitting, *candidates)), None)
-
-    def _yielded(self) -> str | None:
-        identity = self._identity()
-        for overload in self._sender.overloads:
-            if overload.identity == identity:
-                return overload.yields
-        return None
+        yielded = [item for item in fitting if self._sender.received_as(item.name) == item.name]
+        return next(iter((*yielded, *fitting, *candidates)), None)
 
     def _candidates(self) -> list[Message]:
-        identity = self._identity()
+        identity = tuple(self._numbers.get(part.name) for part in self._sender.frame.identity)
         return [message for message in self._sender.messages if message.identity == identity]
-
-    def _identity(self) -> tuple[int | None, ...]:
-        return tuple(self._numbers.get(part.name) for part in self._sender.frame.identity)
 
     # --- what is left -----------------------------------------------------------------------
 
@@ -259,14 +238,4 @@ class _Frame:
 
     def _bare(self, wire: bytes, meaning: str = "", fault: str = "") -> Row:
         offset = sum(len(row.wire) for row in self._rows)
-        return Row(
-            offset=offset, wire=wire, bytes=b"", path="", type="", meaning=meaning, fault=fault
-        )
-
-
-def _outside(part: NumberPart) -> str:
-    return f"must be from {part.least} to {part.greatest}"
-
-
-def _hex(data: bytes) -> str:
-    return data.hex(" ").upper()
+        return Row(offset=offset, wire=wire, meaning=meaning, fault=fault)
