@@ -643,9 +643,8 @@ def test_parts_are_read_from_storages_that_do_not_say_where_they_seek_to(
 
     storage = memory.MemoryFileSystem()
     monkeypatch.setitem(storage.store, "/run4.bin", Silent(storage, "/run4.bin", FRAME * 100))
-    with open_stream("memory://run4.bin") as raw:
-        stream = io.BufferedReader(raw)
-        assert stream.seek(3 * len(FRAME)) == 3 * len(FRAME)
+    with open_stream("memory://run4.bin") as stream:
+        stream.seek(3 * len(FRAME))
         assert stream.read(len(FRAME)) == FRAME
 
 

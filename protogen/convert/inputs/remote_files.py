@@ -5,10 +5,19 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from io import SEEK_SET, RawIOBase
-from typing import Any, BinaryIO, cast
+from typing import Any, Protocol
 
 from protogen.convert.errors import ConvertError, needed
+
+
+class Stream(Protocol):
+    """Bytes of a capture, as files have them."""
+
+    def read(self, size: int, /) -> bytes | None:
+        """The next bytes, at most so many: none at the end."""
+
+    def seek(self, offset: int, /) -> Any:
+        """Go to a byte."""
 
 
 @contextmanager
@@ -23,41 +32,27 @@ def asked(url: str) -> Iterator[None]:
 
 
 @contextmanager
-def open_stored(url: str) -> Iterator[BinaryIO]:
+def open_stored(url: str) -> Iterator[Stream]:
     """The bytes of a URL. Raises ConvertError and OSError, also while they are read."""
     fsspec = needed("fsspec", f"reading {url}")
     with ExitStack() as opening:
         with asked(url):
             file = opening.enter_context(fsspec.open(url, "rb"))
-        yield cast(BinaryIO, _Stored(file, url))
+        yield _Stored(file, url)
 
 
-class _Stored(RawIOBase):
+class _Stored:
     """A file that asks its storage for each piece."""
 
     def __init__(self, file: Any, url: str) -> None:
         self._file = file
         self._url = url
 
-    def readable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return bool(self._file.seekable())
-
-    def readinto(self, buffer: object, /) -> int:
-        target = memoryview(cast(bytearray, buffer)).cast("B")
+    def read(self, size: int, /) -> bytes:
         with asked(self._url):
-            data = self._file.read(len(target))
-        target[: len(data)] = data
-        return len(data)
+            data: bytes = self._file.read(size)
+        return data
 
-    def seek(self, offset: int, whence: int = SEEK_SET, /) -> int:
+    def seek(self, offset: int, /) -> None:
         with asked(self._url):
-            self._file.seek(offset, whence)  # Some, as those of SFTP, do not say where they are.
-        return self.tell()
-
-    def tell(self) -> int:
-        with asked(self._url):
-            place: int = self._file.tell()
-        return place
+            self._file.seek(offset)

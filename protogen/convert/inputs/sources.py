@@ -20,9 +20,8 @@ import sys
 import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
-from io import BufferedReader, RawIOBase
+from itertools import chain
 from pathlib import Path, PurePosixPath
-from typing import BinaryIO, cast
 
 import msgspec
 
@@ -30,18 +29,16 @@ from protogen.capture.record import MAGIC
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.formats import InputKind
 from protogen.convert.inputs.chunks import PIECE, Chunk, joined
-from protogen.convert.inputs.compression import SUFFIXES, Packing, packing_of, unpacking
+from protogen.convert.inputs.compression import SUFFIXES, Packing, packing_of, unpacked
 from protogen.convert.inputs.hex_digits import HexError, HexReader
 from protogen.convert.inputs.recordings import record_pieces
-from protogen.convert.inputs.remote_files import asked, open_stored
+from protogen.convert.inputs.remote_files import Stream, asked, open_stored
 from protogen.convert.inputs.text_lines import decoded, encoding_of, lines_of
 from protogen.convert.inputs.text_logs import BEGIN, Complain, log_pieces
 from protogen.convert.runs.table_names import STANDARD_INPUT, plain_name
 
 _HEAD = 1 << 12
 """Bytes that are looked at to find out what a capture is."""
-_READ = PIECE
-"""The most bytes that are read at once."""
 _WORDS = {
     InputKind.RAW: "raw bytes",
     InputKind.HEX: "hex digits",
@@ -214,24 +211,26 @@ def opened(
     with ExitStack() as opening:
         with _translated(source.place):
             stream = opening.enter_context(open_stream(source.place))
-            counted = _Counted(stream, advance)
-            packing = packing_of(counted.peek(_HEAD))
-            unpacked = _Counted(unpacking(counted, packing, complain))
-            found = kind or _kind(unpacked.peek(_HEAD), source.place)
-        pieces = _pieces(unpacked)
+            head, packed = _begun(_read(stream, advance))
+            packing = packing_of(head)
+            head, pieces = _begun(unpacked(packed, packing, complain))
+            found = kind or _kind(head, source.place)
         chunks = _chunks(pieces, found, sender, senders, complain, source.place)
         # What goes wrong in between, as writing does, is not the capture's fault.
         yield Capture(Format(found, packing), _named(chunks, source.place))
 
 
 @contextmanager
-def open_stream(place: str) -> Iterator[BinaryIO]:
+def open_stream(place: str) -> Iterator[Stream]:
     """The bytes of a path, a URL or standard input."""
     if place == STANDARD_INPUT:
-        yield cast(BinaryIO, sys.stdin.buffer)
-        return
-    with open_stored(place) if "://" in place else Path(place).open("rb", buffering=0) as stream:
-        yield stream
+        yield sys.stdin.buffer
+    elif "://" in place:
+        with open_stored(place) as stored:
+            yield stored
+    else:
+        with Path(place).open("rb", buffering=0) as file:
+            yield file
 
 
 def format_of(source: Source, kind: InputKind | None) -> Format:
@@ -240,59 +239,28 @@ def format_of(source: Source, kind: InputKind | None) -> Format:
         return capture.format
 
 
-class _HeadFirst(RawIOBase):
-    """A stream whose first piece is not shorter than what is looked at, unless it is all there is.
+def _read(stream: Stream, advance: Callable[[int], None]) -> Iterator[bytes]:
+    """Pieces of a stream, each of what has come.
 
-    Pipes give what has been written so far, and unpacking what one member holds: less than what
-    shows what a capture is.
+    To wait for more would be deaf to a Ctrl-C that arrives together with some bytes.
     """
-
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-        self._least = _HEAD
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: object, /) -> int:
-        target = memoryview(cast(bytearray, buffer)).cast("B")
-        size = 0
-        while more := self._stream.readinto(target[size:]):  # type: ignore[attr-defined]
-            size += more
-            if size >= self._least:
-                break
-        self._least = 0
-        return size
+    read = getattr(stream, "read1", stream.read)
+    while piece := read(PIECE):
+        advance(len(piece))
+        yield piece
 
 
-class _Counted(BufferedReader):
-    """A stream that can be looked at before it is read, and tells how much was read."""
+def _begun(pieces: Iterator[bytes]) -> tuple[bytes, Iterator[bytes]]:
+    """The first bytes, at least those that show what a capture is, and all pieces.
 
-    def __init__(
-        self, stream: BinaryIO, advance: Callable[[int], None] = lambda amount: None
-    ) -> None:
-        super().__init__(_HeadFirst(stream), _READ)
-        self._advance = advance
-
-    def read1(self, size: int = -1, /) -> bytes:
-        data = super().read1(size)
-        self._advance(len(data))
-        return data
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        data = super().read(size)
-        self._advance(len(data))
-        return data
-
-    def readinto(self, buffer: object, /) -> int:
-        # What has come, as a raw stream gives it. To wait for a full buffer would be deaf to a
-        # Ctrl-C that arrives together with some bytes.
-        size = super().readinto1(buffer)  # type: ignore[arg-type]
-        self._advance(size)
-        return size
-
-    def close(self) -> None:
-        """Leave the stream open: who opened it closes it."""
+    Pipes give what has been written so far, and unpacking what one member holds.
+    """
+    head = b""
+    for piece in pieces:
+        head += piece
+        if len(head) >= _HEAD:
+            break
+    return head, chain([head] if head else [], pieces)
 
 
 def _kind(head: bytes, place: str) -> InputKind:
@@ -303,11 +271,6 @@ def _kind(head: bytes, place: str) -> InputKind:
     path = PurePosixPath(place)
     suffix = path.with_suffix("").suffix if path.suffix in SUFFIXES else path.suffix
     return _KINDS.get(suffix, InputKind.RAW)
-
-
-def _pieces(stream: BufferedReader) -> Iterator[bytes]:
-    while piece := stream.read1(_READ):
-        yield piece
 
 
 def _chunks(

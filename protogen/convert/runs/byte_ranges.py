@@ -18,7 +18,7 @@ By induction from the capture's start, all rows are those of one decoder, whatev
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -26,6 +26,7 @@ import numpy as np
 from protogen.capture.tables import Tables as Filled
 from protogen.convert.columns.column_batches import ColumnBatch, ColumnDecoder
 from protogen.convert.inputs.chunks import Chunk
+from protogen.convert.inputs.remote_files import Stream
 
 PIECE = 1 << 20
 """Bytes that are decoded at once."""
@@ -61,7 +62,7 @@ MakeDecoder = Callable[[int], ColumnDecoder]
 class Track:
     """A decoder on its way through a capture, from some byte on."""
 
-    def __init__(self, stream: BinaryIO, size: int, start: int, make: MakeDecoder) -> None:
+    def __init__(self, stream: Stream, size: int, start: int, make: MakeDecoder) -> None:
         self._stream = stream
         self._size = size
         self._start = start
@@ -104,7 +105,7 @@ def _frame(key: int) -> Frame:
     return Frame(key >> _SIZE_BITS, key & ((1 << _SIZE_BITS) - 1))
 
 
-def guess_entry(stream: BinaryIO, size: int, start: int, lead: int, make: MakeDecoder) -> Frame:
+def guess_entry(stream: Stream, size: int, start: int, lead: int, make: MakeDecoder) -> Frame:
     """The frame at which a decoder from `lead` bytes before and one from `start` meet."""
     before = Track(stream, size, max(0, start - lead), make)
     before_keys = [keys_of(batch) for batch in before.advance(start)]
@@ -133,7 +134,7 @@ class RangeDecoder:
     """Decodes a range behind its entry, up to its exit."""
 
     def __init__(
-        self, stream: BinaryIO, size: int, span: tuple[int, int], entry: Frame, make: MakeDecoder
+        self, stream: Stream, size: int, span: tuple[int, int], entry: Frame, make: MakeDecoder
     ) -> None:
         """Decode the range `span` of a capture of `size` bytes."""
         self._stream = stream

@@ -11,9 +11,8 @@ import json
 import pickle
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from io import BufferedReader, RawIOBase
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 from uuid import uuid4
 
 import msgspec
@@ -155,9 +154,7 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
     tables, _ = _tools(work.protocol, work.sender)
     make = column_decoders(tables, work.engine)
     tally = Tally()
-    with open_stream(part.place) as raw:
-        # Its `read` gives as many bytes as there are.
-        stream = BufferedReader(cast(RawIOBase, raw), 1 << 16)
+    with open_stream(part.place) as stream:
         entry = part.entry
         if entry is None:
             entry = guess_entry(stream, part.size, part.span[0], lead_of(tables), make)
