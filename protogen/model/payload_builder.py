@@ -194,24 +194,20 @@ class _Builder:
         return CaseStep(value=case.value, name=case.name, step=step)
 
     def _count(self, extent: Extent, member: str) -> Count:
-        least, greatest = extent.counts.least, extent.counts.greatest
-        if isinstance(extent, Fixed):
-            return Count(known=extent.count, least=least, greatest=greatest, stated=True)
-        if isinstance(extent, Fill):
-            return Count(
-                member=member, fills=True, least=least, greatest=greatest, stated=extent.stated
-            )
-        number = self._find(extent.field)
-        by = None if isinstance(number, int) else number
-        known = number if isinstance(number, int) else None
-        if least == greatest:
-            known = least
+        counts, number = extent.counts, None
+        if isinstance(extent, Counted):
+            number = self._find(extent.field)
+        known = None if isinstance(extent, Fill) else counts.fixed
+        if known is None and isinstance(number, int):
+            known = number
         return Count(
-            field=extent.field,
+            field=extent.field if isinstance(extent, Counted) else "",
             known=known,
-            by=by,
-            least=least,
-            greatest=greatest,
+            by=number if isinstance(number, Reference) else None,
+            member=member,
+            fills=isinstance(extent, Fill),
+            least=counts.least,
+            greatest=counts.greatest,
             stated=extent.stated,
         )
 

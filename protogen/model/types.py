@@ -173,6 +173,7 @@ class Fixed(msgspec.Struct, frozen=True, kw_only=True):
     """A number of elements (or bytes) that never changes."""
 
     count: int
+    stated: ClassVar[bool] = True
     needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property

@@ -16,7 +16,7 @@ from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
-from protogen.passes.messages.identities import check_identities
+from protogen.passes.messages.overloads import check_identities
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.class_names import check_class_names
 from protogen.passes.names.decisions import resolve_decisions

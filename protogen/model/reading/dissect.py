@@ -24,12 +24,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.reading.readings import (
-    integer_reading,
-    physical,
-    quoted,
-    value_name,
-)
+from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
 from protogen.model.reading.wire import Unit
 from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
 from protogen.runtime.errors import ByteError

@@ -6,14 +6,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.frame import (
-    Base16,
-    Cobs,
-    Encoding,
-    Escape,
-    LiteralPart,
-    Substitution,
-)
+from protogen.model.frame import Base16, Cobs, Encoding, Escape, LiteralPart, Substitution
 from protogen.model.frame_plan import FramePlan
 from protogen.runtime import transparency as stuffing
 

@@ -26,21 +26,11 @@ from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words
-from protogen.passes.framing.capacity import (
-    GREATEST_FRAME,
-    amount,
-    payload_range,
-)
+from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.proofs import wire_sizes
 from protogen.passes.proofs.undetected import undetected_errors
-from protogen.passes.proofs.wire_code import (
-    EVERY_BYTE,
-    SEVEN_BITS,
-    ByteSet,
-    part_bytes,
-    wire_bytes,
-)
+from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet, part_bytes, wire_bytes
 
 
 def analyse_framing(context: Context, draft: Draft) -> None:
@@ -264,6 +254,3 @@ def payload_alphabet(byte_bits: int, messages: list[Message]) -> ByteSet:
         return EVERY_BYTE
     whole = any(holds_whole_bytes(field.type) for m in messages for field in m.fields)
     return EVERY_BYTE if whole else SEVEN_BITS
-
-
-__all__ = ["analyse_framing", "payload_alphabet"]

@@ -25,16 +25,13 @@ def counted_size(frame: Frame, length: LengthPart, *, empty: bool) -> int:
 
 
 def payload_range(frame: Frame) -> SizeSet | None:
-    """The payload sizes that the length part can state; None where there is no length part.
+    """The payload sizes that the length part can state; None where it is missing or states none.
 
     A frame whose length part can state none at all is reported when it is built.
     """
     length = frame.length
-    return None if length is None else stated_range(frame, length)
-
-
-def stated_range(frame: Frame, length: LengthPart) -> SizeSet | None:
-    """The payload sizes that a length part can state; None where it can't even state 0."""
+    if length is None:
+        return None
     around = counted_size(frame, length, empty=False)
     least, greatest = max(length.least - around, 1), length.greatest - around
     if length.least <= counted_size(frame, length, empty=True) <= length.greatest:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from protogen.model.checksums import ChecksumSpec, algorithm_names, find_algorithm
 from protogen.model.frame import ChecksumPart, Cobs, Frame, PartType
 from protogen.passes.context import Context, Loc, about
-from protogen.passes.framing.part_runs import Runs
+from protogen.passes.framing.part_runs import written_out
 from protogen.problems import hint_for
 from protogen.schema.syntax.parts import CrcParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
@@ -16,10 +18,10 @@ PAYLOAD = "payload"
 class ChecksumReader:
     """Resolves the checksums of the frame at `loc`."""
 
-    def __init__(self, context: Context, loc: Loc, runs: Runs) -> None:
+    def __init__(self, context: Context, loc: Loc, names: Sequence[str]) -> None:
         self._context = context
         self._loc = loc
-        self._runs = runs
+        self._names = names
 
     def read(self, name: str, item: PartSyntax, type_: PartType) -> ChecksumPart | None:
         """One checksum, or None where it is not clear."""
@@ -47,7 +49,7 @@ class ChecksumReader:
         self._context.error(code, (*self._loc, name, key), text, hint)
 
     def _is_in_front(self, name: str) -> bool:
-        names = self._runs.names
+        names = self._names
         return PAYLOAD in names and names.index(name) < names.index(PAYLOAD)
 
     def _algorithm(self, name: str, item: PartSyntax) -> ChecksumSpec | None:
@@ -75,7 +77,7 @@ class ChecksumReader:
             loc = (*self._loc, name)
             self._context.error_at_key("PG131", loc, text, "add `covers: FIRST..LAST`")
             return None
-        covers = self._runs.run(item.covers, (*self._loc, name, "covers"))
+        covers = written_out(self._context, self._names, item.covers, (*self._loc, name, "covers"))
         if name in covers:
             self._error("PG136", name, "covers", f"the checksum `{name}` covers itself")
         return covers

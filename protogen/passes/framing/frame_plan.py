@@ -247,10 +247,6 @@ class _Planner:
     # --- what an engine may do --------------------------------------------------------------------
 
     @property
-    def _checksums_are_alike(self) -> bool:
-        return len({part.when_payload for part in self._frame.checksums}) < 2
-
-    @property
     def _region_is_plain(self) -> bool:
         region = self._region
         if region is None:
@@ -261,7 +257,8 @@ class _Planner:
     @cached_property
     def _is_regular(self) -> bool:
         behind = all(isinstance(item.part, ChecksumPart) for item in self._tail)
-        return behind and self._checksums_are_alike and self._region_is_plain
+        are_alike = len({part.when_payload for part in self._frame.checksums}) < 2
+        return behind and are_alike and self._region_is_plain
 
     @property
     def _end_is_told(self) -> bool:

@@ -21,9 +21,9 @@ from protogen.model.frame import (
 )
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.capacity import counted_size, stated_range
+from protogen.passes.framing.capacity import counted_size, payload_range
 from protogen.passes.framing.checksum_parts import PAYLOAD, ChecksumReader, check_checksums
-from protogen.passes.framing.part_runs import Runs
+from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
 from protogen.schema.syntax.parts import Part as PartSyntax
@@ -75,8 +75,8 @@ class FrameBuilder:
         key = context.frame_key(sender)
         self._loc: Loc = ("frame", key)
         self._syntax: Mapping[str, PartSyntax] = context.syntax.frame[key]
-        self._runs = Runs(context, self._syntax)
-        self._checksums = ChecksumReader(context, self._loc, self._runs)
+        self._names = list(self._syntax)
+        self._checksums = ChecksumReader(context, self._loc, self._names)
         self._layout = Layout(context.syntax.byte_bits, context.byte_order(sender))
         self._replaced = 0
         """Errors of checksums that another one stands for."""
@@ -102,7 +102,7 @@ class FrameBuilder:
         """Check what can only be asked when all parts are there."""
         check_checksums(self._context, frame, self._loc)
         length = frame.length
-        if length is not None and stated_range(frame, length) is None:
+        if length is not None and payload_range(frame) is None:
             around = counted_size(frame, length, empty=True)
             besides = "1 byte" if around == 1 else f"{around} bytes"
             text = f"`{length.name}` counts {besides} besides the payload"
@@ -227,8 +227,8 @@ class FrameBuilder:
 
     def _counted(self, name: str, item: PartSyntax) -> tuple[str, ...]:
         loc = (*self._loc, name)
-        counts = self._runs.run(item.counts or (), (*loc, "counts"))
-        names = self._runs.names
+        counts = written_out(self._context, self._names, item.counts or (), (*loc, "counts"))
+        names = self._names
         if counts and PAYLOAD not in counts:
             text = "a length that does not count the payload can't tell where the frame ends"
             self._context.error("PG133", (*loc, "counts"), text)

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from protogen.model.frame import Base16, Cobs, Encoding, Escape, Substitution, Transparency
 from protogen.passes.context import Context, Loc, about
-from protogen.passes.framing.part_runs import Runs
+from protogen.passes.framing.part_runs import written_out
 from protogen.schema.syntax.parts import EscapeSyntax, TransparencySyntax
 from protogen.schema.syntax.parts import Part as PartSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS
@@ -60,9 +60,9 @@ class _Reader:
         if self._item.covers is None:
             return _between_literals(parts)
         loc = (*self._loc, "covers")
-        runs = Runs(self._context, parts)
-        covered = runs.run(self._item.covers, loc)
-        places = [runs.names.index(name) for name in covered]
+        names = list(parts)
+        covered = written_out(self._context, names, self._item.covers, loc)
+        places = [names.index(name) for name in covered]
         if any(behind - place != 1 for place, behind in pairwise(places)):
             self._context.error("PG138", loc, "the parts under transparency are one run")
         return covered

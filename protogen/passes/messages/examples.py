@@ -10,7 +10,7 @@ from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.part_runs import Runs
+from protogen.passes.framing.part_runs import written_out
 from protogen.passes.messages.example_values import with_byte_strings
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
@@ -108,7 +108,7 @@ def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tu
         context.error_at_key("PG162", (*loc, "content"), text, "add `covers`, or `content_covers`")
         return ()
     place: Loc = (*loc, "covers") if item.covers else (*loc, "content")
-    return Runs(context, (part.name for part in frame.parts)).run(written, place)
+    return written_out(context, [part.name for part in frame.parts], written, place)
 
 
 def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> bool:

@@ -1,4 +1,4 @@
-"""Overloads: how a receiver tells messages apart that share an identity."""
+"""Check that a receiver can tell the messages of each sender apart, by identity or overload."""
 
 from __future__ import annotations
 
@@ -9,10 +9,24 @@ from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.messages.identity import Identity
 from protogen.schema.syntax.messages import Overload
 
 
-class Overloads:
+def check_identities(context: Context, draft: Draft) -> None:
+    """Messages of one sender differ in identity, or an overload says how they are told apart."""
+    overloads = _Overloads(context)
+    for sender in draft.senders:
+        groups: dict[Identity, list[Message]] = defaultdict(list)
+        for message in draft.sent_by(sender):
+            groups[message.identity].append(message)
+        shared = (group for group in groups.values() if len(group) > 1)
+        found = [overloads.resolve(sender, group) for group in shared]
+        draft.overloads[sender] = [overload for overload in found if overload is not None]
+    overloads.check_asked(draft)
+
+
+class _Overloads:
     """The overloads of a schema, asked for by the messages that they are about."""
 
     def __init__(self, context: Context) -> None:
@@ -103,12 +117,13 @@ class Overloads:
         clashes = list(_clashes(messages))
         if clashes:
             one, other = clashes[0]
+            count = len(clashes) - 1
+            more = f", and so can {count} more of these messages" if count else ""
             text = f"`{one.name}` ({one.sizes} bytes) and `{other.name}` ({other.sizes} bytes)"
             self._context.error(
                 "PG153",
                 (*loc, "by"),
-                f"{text} can have the same size{_others(len(clashes) - 1)}, so it does not tell "
-                "them apart",
+                f"{text} can have the same size{more}, so it does not tell them apart",
                 "bound their sizes, or write `by: undecidable` and `yields`",
             )
 
@@ -119,11 +134,6 @@ class Overloads:
             if name not in self._asked and known >= set(overload.messages):
                 text = "these messages do not share an identity, so there is nothing to tell apart"
                 self._context.error_at_key("PG154", ("overloads", name), text)
-
-
-def _others(count: int) -> str:
-    """Number of further messages that can have the size of another one."""
-    return f", and so can {count} more of these messages" if count else ""
 
 
 def _clashes(messages: Sequence[Message]) -> Iterable[tuple[Message, Message]]:

@@ -9,17 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from protogen.model.nesting import inner_types
-from protogen.model.types import (
-    Array,
-    Counted,
-    Extent,
-    Field,
-    Fixed,
-    Octets,
-    Struct,
-    Text,
-    Type,
-)
+from protogen.model.types import Array, Extent, Field, Fill, Octets, Struct, Text, Type
 
 _Count = Callable[[Extent], int]
 _Choose = Callable[[Iterable[int]], int]
@@ -39,16 +29,12 @@ def least_stated(fields: Iterable[Field]) -> int:
 
 
 def _most(extent: Extent) -> int:
-    return extent.counts.greatest if _is_stated(extent) else extent.counts.least
+    return extent.counts.greatest if extent.stated else extent.counts.least
 
 
 def _fewest(extent: Extent) -> int:
-    stated = isinstance(extent, Fixed) or (isinstance(extent, Counted) and extent.stated)
+    stated = extent.stated and not isinstance(extent, Fill)
     return extent.counts.least if stated else extent.counts.greatest
-
-
-def _is_stated(extent: Extent) -> bool:
-    return isinstance(extent, Fixed) or extent.stated
 
 
 def _size(type_: Type, count: _Count, choose: _Choose) -> int:

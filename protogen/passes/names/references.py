@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import cast
 
 from protogen.passes.context import Context, Loc
-from protogen.passes.types.type_names import GREATEST_WIDTH, integer_width, is_builtin, type_hint
+from protogen.passes.types.type_names import has_width, integer_width, is_builtin, type_hint
 from protogen.problems import hint_for
 from protogen.schema.references import Reference, references
 from protogen.schema.scopes import keys_at
@@ -28,10 +28,10 @@ def _check(context: Context, found: Reference, code: str) -> None:
     text, hint = f"there is no {found.kind.value} `{name}`", hint_for(name, declared)
     match found.kind:
         case Kind.TYPE if is_builtin(name):
-            width = integer_width(name)
-            if width is None or 1 <= width <= GREATEST_WIDTH:
+            if has_width(name):
                 return
-            code, text, hint = "PG105", f"integers are 1 to 64 bits wide, not {width}", None
+            text = f"integers are 1 to 64 bits wide, not {integer_width(name)}"
+            code, hint = "PG105", None
         case Kind.TYPE:
             hint = type_hint(name, declared)
         case Kind.EXAMPLE:

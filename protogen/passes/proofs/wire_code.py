@@ -25,7 +25,6 @@ from protogen.passes.proofs.codewords import Segment
 ByteSet = frozenset[int]
 EVERY_BYTE: ByteSet = frozenset(range(256))
 SEVEN_BITS: ByteSet = frozenset(range(128))
-_HEX_DIGITS = b"0123456789ABCDEF"
 
 
 @cache

@@ -6,16 +6,7 @@ import math
 import struct
 
 from protogen.model.nesting import is_composite
-from protogen.model.types import (
-    Array,
-    Constant,
-    Fixed,
-    Float,
-    Integer,
-    Octets,
-    Text,
-    Type,
-)
+from protogen.model.types import Array, Constant, Fixed, Float, Integer, Octets, Text, Type
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
 from protogen.problems import hint_for

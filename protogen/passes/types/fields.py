@@ -10,16 +10,7 @@ from collections.abc import Mapping
 from protogen.copying import replace
 from protogen.model.nesting import takes_rest
 from protogen.model.sizes import SizeSet
-from protogen.model.types import (
-    Array,
-    Extent,
-    Field,
-    Fixed,
-    Octets,
-    Struct,
-    Text,
-    Type,
-)
+from protogen.model.types import Array, Extent, Field, Fixed, Octets, Struct, Text, Type
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
 from protogen.passes.types.declared import Declarations, Effective
@@ -29,11 +20,7 @@ from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.switches import SwitchBuilder
-from protogen.passes.types.type_names import (
-    UNKNOWN_TYPE,
-    float_type,
-    integer,
-)
+from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax

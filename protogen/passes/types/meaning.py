@@ -9,6 +9,7 @@ from protogen.model.types import Array, Constant, Field, NumberType, Type, is_in
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.value_names import named_values
 
 _NUMERIC_KEYS = ("range", "scale", "offset", "special", "unit")
 
@@ -99,18 +100,9 @@ class _Check:
         """The raw values that mean that there is no reading."""
         if self._item.special is None or not is_integer(self._element):
             return ()
-        values: dict[int, NamedValue] = {}
-        for name, entry in self._item.special.items():
-            here = (*self._field.at("special"), name)
-            if not self._element.holds(entry.value):
-                words = f"{name} = {entry.value} does not fit {self._item.type}"
-                self._context.error("PG114", here, words)
-            if entry.value in values:
-                words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
-                self._context.error("PG120", here, words)
-            text = about(entry.doc, entry.source, self._context.find_key(here))
-            values[entry.value] = NamedValue(name=name, value=entry.value, about=text)
-        return tuple(values.values())
+        bounds = (self._element.least, self._element.greatest)
+        here = self._field.at("special")
+        return named_values(self._context, bounds, self._item.special, here, self._item.type)
 
     def _error(self, code: str, key: str, text: str) -> None:
         self._context.error(code, self._field.at(key), text)

@@ -40,19 +40,25 @@ def with_names(context: Context, type_: NumberType, item: Effective) -> NumberTy
 
 
 def _enum(context: Context, bounds: _Bounds, item: Effective) -> Enum:
-    values = _values(context, bounds, item.syntax.values or {}, item.at("values"))
+    values = named_values(context, bounds, item.syntax.values or {}, item.at("values"))
     doc = about(item.origin.doc, item.origin.source)
     return Enum(name=item.owner, values=values, closed=item.syntax.closed, about=doc)
 
 
-def _values(
-    context: Context, bounds: _Bounds, entries: Mapping[str, NamedValueSyntax], loc: Loc
+def named_values(
+    context: Context,
+    bounds: _Bounds,
+    entries: Mapping[str, NamedValueSyntax],
+    loc: Loc,
+    type_name: str | None = None,
 ) -> tuple[NamedValue, ...]:
+    """The names of raw values; problems name the type, or else its bounds."""
     least, greatest = bounds
     values: dict[int, NamedValue] = {}
     for name, entry in entries.items():
         if not least <= entry.value <= greatest:
-            words = f"{name} = {entry.value} does not fit: {least} to {greatest}"
+            fits = f": {least} to {greatest}" if type_name is None else f" {type_name}"
+            words = f"{name} = {entry.value} does not fit{fits}"
             context.error("PG114", (*loc, name), words)
         if entry.value in values:
             words = f"`{name}` and `{values[entry.value].name}` are both {entry.value}"
@@ -112,6 +118,6 @@ def _bit_field(context: Context, type_name: str, name: str, entry: NamedBits, lo
     enum = None
     if entry.values is not None:
         bounds = (0, (1 << high - low + 1) - 1)
-        values = _values(context, bounds, entry.values, (*loc, "values"))
+        values = named_values(context, bounds, entry.values, (*loc, "values"))
         enum = Enum(name=type_name, values=values, about=text)
     return BitField(name=name, low=low, high=high, enum=enum, about=text)
