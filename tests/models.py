@@ -229,8 +229,6 @@ def framing(messages: Sequence[Message], overhead: int = 4, **more: Any) -> Fram
     given: dict[str, Any] = {
         "start": StartLiteral(bytes=b"\xaa", protected=False),
         "end": End(bytes=b"\x0d\x0a", protected=False),
-        "head": 2,
-        "tail": 0,
         "payload": SizeSet.between(0, 251),
         "least": min(item.least for item in sizes),
         "greatest": max(item.greatest for item in sizes),

@@ -22,6 +22,12 @@ def framing(protocol: str, sender: str) -> Framing:
     return repository_protocol(protocol).sender(sender).framing
 
 
+def around(protocol: str, sender: str) -> tuple[int, int]:
+    """Bytes in front of the payload, and behind it without the end."""
+    plan = repository_protocol(protocol).sender(sender).plan
+    return plan.head_size, plan.tail_size
+
+
 class TestRn1:
     """A byte 80..FE starts a message, 7-bit bytes follow; the host ends its commands with FF."""
 
@@ -42,10 +48,10 @@ class TestRn1:
         # The longest is maintenance with a baud rate: start, three magic bytes, the operation, a
         # uint16 in three bytes, stop.
         host = framing("rn1", "host")
-        assert (host.head, host.tail, host.least, host.greatest) == (1, 0, 4, 9)
+        assert (*around("rn1", "host"), host.least, host.greatest) == (1, 0, 4, 9)
         # facing: start, five bytes. lidar: start, status, 360 distances of two bytes.
         brain = framing("rn1", "brain")
-        assert (brain.head, brain.tail, brain.greatest) == (1, 0, 1 + 1 + 720)
+        assert (*around("rn1", "brain"), brain.greatest) == (1, 0, 1 + 1 + 720)
 
     def test_rate(self) -> None:
         # 115200 baud, ten bit times a byte: 11520 bytes per second.
@@ -72,7 +78,7 @@ class TestUherobot:
         status = message_framing(found, "status")
         assert (status.least, status.greatest) == (18, 18)
         # Before the encoding: b, length, type in front of the payload; four bytes are no payload.
-        assert (found.head, found.tail, found.overhead) == (3, 0, SizeSet.exactly(4))
+        assert (*around("uherobot", "board"), found.overhead) == (3, 0, SizeSet.exactly(4))
 
 
 class TestDagny:
@@ -94,7 +100,7 @@ class TestDagny:
         assert message_framing(host, "motor").greatest == 4
         # The XOR is absent without data.
         assert host.overhead == SizeSet.between(2, 3)
-        assert (host.head, host.tail) == (1, 1)
+        assert around("dagny", "host") == (1, 1)
 
 
 class TestRflex:
@@ -114,7 +120,7 @@ class TestRflex:
         found = framing("rflex", sender)
         assert found.greatest == 2 + 3 * (3 + 255 + 1) + 1 + 2
         # Delimiter and four bytes in front of the contents, the checksum behind.
-        assert (found.head, found.tail) == (6, 1)
+        assert around("rflex", sender) == (6, 1)
         assert found.overhead == SizeSet.exactly(9)
 
     def test_a_message_is_stuffed_where_its_bytes_are_not_known(self) -> None:
@@ -142,7 +148,7 @@ class TestMatty:
         assert found.greatest == 1 + 1 + 2 * (1 + 1 + 121 + 1)
         assert found.least == 5
         assert found.payload == SizeSet.between(0, 121)
-        assert (found.head, found.tail) == (4, 1)
+        assert around("matty", sender) == (4, 1)
 
 
 MESSAGE = "messages: {gyro: {id: 1, from: robot, fields: {angle: uint16}}}\n"

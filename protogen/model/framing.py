@@ -57,10 +57,6 @@ class Framing(msgspec.Struct, frozen=True, kw_only=True):
 
     start: Start
     end: End | None
-    head: int
-    """Unstuffed bytes in front of the payload."""
-    tail: int
-    """Unstuffed bytes behind the payload, the end literal not counted, optional parts included."""
     payload: SizeSet
     """Payload sizes that a frame can carry (unknown messages included)."""
     least: int

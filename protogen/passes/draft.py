@@ -8,7 +8,6 @@ from protogen.model.frame import Frame
 from protogen.model.framing import Framing
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.protocol import Decision, Reserved
-from protogen.passes.context import Context
 from protogen.passes.types.named_types import NamedTypes
 
 
@@ -31,11 +30,6 @@ class Draft(msgspec.Struct):
     decisions: tuple[Decision, ...] = ()
     exchanges: tuple[Exchange, ...] = ()
     reserved: Reserved = msgspec.field(default_factory=Reserved)
-
-    @classmethod
-    def of(cls, context: Context) -> Draft:
-        """An empty draft."""
-        return cls(named=NamedTypes(context))
 
     def sent_by(self, sender: str) -> list[Message]:
         """The messages of a sender that have an identity, in the order of the schema."""

@@ -11,17 +11,18 @@ from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.context import Context, about, source_of
 from protogen.passes.draft import Draft
 from protogen.passes.framing.analysis import analyse_framing
-from protogen.passes.framing.codes import check_codes
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
+from protogen.passes.framing.transparencies import check_codes
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
-from protogen.passes.messages.overloads import check_identities
+from protogen.passes.messages.identities import check_identities
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.class_names import check_class_names
 from protogen.passes.names.decisions import resolve_decisions
 from protogen.passes.names.reserved import resolve_reserved
 from protogen.passes.spec_hash import message_hash, spec_hash
+from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.unused import check_unused
 
 Pass = Callable[[Context, Draft], None]
@@ -45,7 +46,7 @@ PASSES: tuple[Pass, ...] = (
 
 def resolve(context: Context) -> Protocol | None:
     """The model of a schema, or None if a pass found an error."""
-    draft = Draft.of(context)
+    draft = Draft(named=NamedTypes(context))
     for ask in PASSES:
         ask(context, draft)
     return None if context.failed else _assemble(context, draft)

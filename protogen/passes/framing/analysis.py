@@ -203,8 +203,6 @@ class _Analysis:
         return Framing(
             start=start,
             end=end,
-            head=wire.head,
-            tail=wire.tail,
             payload=payload,
             least=min((item.least for item in per_message), default=0),
             greatest=greatest,

@@ -35,7 +35,7 @@ from protogen.model.frame_plan import (
 )
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
 from protogen.model.messages import Message, Overload
-from protogen.passes.framing.capacity import counted_size
+from protogen.passes.framing.capacity import counted_size, tail_literals
 
 _START_RULES = {
     StartLiteral: StartRule.LITERAL,
@@ -92,7 +92,8 @@ class _Planner:
         self._unique_end = end is not None and end.protected
         self._shares = bool(self._start_bytes) and self._start_bytes == self._end_bytes
         self._names = [part.name for part in frame.parts]
-        self._content, self._end_literals = _without_end(frame.parts, len(self._end_bytes))
+        self._end_literals = () if end is None else tail_literals(frame)
+        self._content = frame.parts[: len(frame.parts) - len(self._end_literals)]
         self._payload_index = next(
             i for i, part in enumerate(self._content) if isinstance(part, PayloadPart)
         )
@@ -301,18 +302,6 @@ class _Planner:
             if over_wire or isinstance(transparency.encoding, Cobs):
                 return False
         return all(self._checksum(part).is_behind for part in self._frame.checksums)
-
-
-def _without_end(
-    parts: tuple[Part, ...], size: int
-) -> tuple[tuple[Part, ...], tuple[LiteralPart, ...]]:
-    """The parts without the literals that make up the end of that size, and those."""
-    left = size
-    literals: list[LiteralPart] = []
-    while left > 0 and isinstance(part := parts[len(parts) - 1 - len(literals)], LiteralPart):
-        left -= part.size
-        literals.insert(0, part)
-    return parts[: len(parts) - len(literals)], tuple(literals)
 
 
 def _codes(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:

@@ -12,7 +12,7 @@ from protogen.model.types import ByteOrder, Field, Fill, Octets, total
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import GREATEST_FRAME, amount, is_delimited, payload_range
-from protogen.passes.messages.identity import Identity, IdentityReader
+from protogen.passes.messages.identities import Identity, IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.types.fields import FieldBuilder
 from protogen.passes.types.setting import Setting

@@ -1,20 +1,27 @@
 """Examples, which must say enough to be verified, and exchanges.
 
 Whether an example decodes to its values is asked later, by the Python target's own output.
+
+A byte string is written `{hex: ...}`, `{text: ...}`, as a number or as a list of numbers. The type
+of a field tells which numbers and lists are byte strings.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
 from protogen.copying import replace
 from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
+from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.part_runs import written_out
-from protogen.passes.messages.example_values import with_byte_strings
+from protogen.passes.types.constants import named_raw_value
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
-from protogen.schema.syntax.messages import Exchange as ExchangeSyntax
+from protogen.schema.syntax.octets import to_octets
 
 
 def attach_examples(context: Context, draft: Draft) -> None:
@@ -131,15 +138,59 @@ def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | Non
 def resolve_exchanges(context: Context, draft: Draft) -> None:
     """The exchanges."""
     draft.exchanges = tuple(
-        _exchange(name, item) for name, item in context.syntax.exchanges.items()
+        Exchange(
+            name=name,
+            title=item.title or name,
+            steps=tuple(
+                Step(message=step.message, example=step.example, about=about(step.doc, step.source))
+                for step in item.steps
+            ),
+            about=about(item.doc, item.source),
+        )
+        for name, item in context.syntax.exchanges.items()
     )
 
 
-def _exchange(name: str, item: ExchangeSyntax) -> Exchange:
-    steps = tuple(
-        Step(message=step.message, example=step.example, about=about(step.doc, step.source))
-        for step in item.steps
-    )
-    return Exchange(
-        name=name, title=item.title or name, steps=steps, about=about(item.doc, item.source)
-    )
+def with_byte_strings(fields: Iterable[Field], values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of these fields, with every byte string that can be read as `{hex: ...}`.
+
+    What does not fit its field stays as it is: the verification of the example says so.
+    """
+    types = {field.name: field.type for field in fields}
+    return {
+        name: _value(types[name], value, types, values) if name in types else value
+        for name, value in values.items()
+    }
+
+
+def _value(type_: Type, value: Any, types: Mapping[str, Type], around: Mapping[str, Any]) -> Any:
+    match type_:
+        case Octets():
+            return _byte_string(value)
+        case Struct() if isinstance(value, dict):
+            return with_byte_strings(type_.fields, value)
+        case Array() if isinstance(value, list):
+            return [_value(type_.element, item, types, around) for item in value]
+        case Switch():
+            case = _case(type_, types, around)
+            return value if case is None else _value(case, value, types, around)
+    return value
+
+
+def _byte_string(value: Any) -> Any:
+    if not isinstance(value, int | list):
+        return value
+    try:
+        return {"hex": to_octets(value).hex(" ").upper()}
+    except ValueError:
+        return value
+
+
+def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) -> Type | None:
+    """Type of a switch for the value that its selector has in the example."""
+    selector = types.get(switch.selector)
+    if selector is None or not is_integer(selector) or switch.selector not in around:
+        return None
+    named = named_raw_value(selector, around[switch.selector])
+    found = (case.type for case in switch.cases if named is not None and case.value == named[0])
+    return next(found, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from protogen.model.protocol import Reserved, ReservedIdentity, ReservedNames, ReservedValues
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
-from protogen.passes.messages.identity import IdentityReader
+from protogen.passes.messages.identities import IdentityReader
 from protogen.schema.syntax.protocol import ReservedIdentity as IdentitySyntax
 
 

@@ -14,7 +14,6 @@ from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
-from protogen.passes.framing.capacity import tail_literals
 from protogen.passes.proofs.contents import Contents, Stretch, contents_of, payload_of
 from protogen.passes.proofs.together import Together
 from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, code_of
@@ -38,17 +37,6 @@ class WireSizes:
         self._payload_name = frame.payload.name
         self._checksums = {sign: Together(frame, partial(self._price, sign)) for sign in (1, -1)}
         self._known: dict[tuple[ByteSet, int], int] = {}
-
-    @property
-    def head(self) -> int:
-        """Unstuffed bytes in front of the payload."""
-        return sum(part.size for part in self._frame.head)
-
-    @property
-    def tail(self) -> int:
-        """Unstuffed bytes behind the payload but for the end literal."""
-        ends = tail_literals(self._frame)
-        return sum(part.size for part in self._frame.tail if part not in ends)
 
     @property
     def overhead(self) -> SizeSet:

@@ -13,8 +13,7 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Extent, Field, Fixed, Octets, Struct, Text, Type
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
-from protogen.passes.types.declared import Declarations, Effective
-from protogen.passes.types.expansion import Expansion
+from protogen.passes.types.declared import Declarations, Effective, Expansion
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes

@@ -1,7 +1,8 @@
 """Named types: enums, flags and structs, each under a name of its own.
 
 Every named type is registered under its name. A declared type has one layout: where two uses leave
-it different room, the type takes the greater bounds, whatever a single use could hold.
+it different room, the type takes the greater bounds, whatever a single use could hold: the frame
+bounds what the schema does not.
 """
 
 from __future__ import annotations
@@ -12,9 +13,20 @@ from protogen.copying import replace
 from protogen.model.meanings import Enum, Flags
 from protogen.model.nesting import inner_types, is_composite, with_structs
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Field, Struct, Type
+from protogen.model.types import (
+    Array,
+    Case,
+    Counted,
+    Extent,
+    Field,
+    Fill,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+)
 from protogen.passes.context import Context, Loc
-from protogen.passes.types.joining import joined_struct
 
 Named = Enum | Flags | Struct
 
@@ -101,3 +113,74 @@ def _joined(known: Named, other: Named) -> Named | None:
 
 def _holds_struct(type_: Type) -> bool:
     return is_composite(type_) or any(map(_holds_struct, inner_types(type_)))
+
+
+def joined_struct(one: Struct, other: Struct) -> Struct | None:
+    """The struct that holds what either can; None where they differ in more than bounds.
+
+    Structs inside of them are joined under their own names, not here.
+    """
+    if len(one.fields) != len(other.fields):
+        return None
+    fields = [_field(*both) for both in zip(one.fields, other.fields, strict=True)]
+    found = tuple(field for field in fields if field is not None)
+    return replace(one, fields=found) if len(found) == len(fields) else None
+
+
+def _field(one: Field, other: Field) -> Field | None:
+    type_ = _type(one.type, other.type)
+    if type_ is None or replace(other, type=one.type, position=one.position) != one:
+        return None
+    return replace(one, type=type_)
+
+
+def _type(one: Type, other: Type) -> Type | None:
+    match one, other:
+        case Struct(), Struct():
+            return one if one.name == other.name else None
+        case Text(), Text():
+            return _with_extent(one, other)
+        case Octets(), Octets():
+            return _with_extent(one, other)
+        case Array(), Array():
+            element = _type(one.element, other.element)
+            return None if element is None else _with_extent(replace(one, element=element), other)
+        case Switch(), Switch():
+            return _switch(one, other)
+    return one if one == other else None
+
+
+def _with_extent(one: Text | Octets | Array, other: Text | Octets | Array) -> Type | None:
+    extent = _extent(one.extent, other.extent)
+    return None if extent is None else replace(one, extent=extent)
+
+
+def _extent(one: Extent, other: Extent) -> Extent | None:
+    match one, other:
+        case Counted(), Counted() if one.field == other.field:
+            return Counted(
+                field=one.field,
+                least=min(one.least, other.least),
+                greatest=max(one.greatest, other.greatest),
+                stated=one.stated and other.stated,
+            )
+        case Fill(), Fill() if one.stated == other.stated:
+            return replace(one, greatest=max(one.greatest, other.greatest))
+    return one if one == other else None
+
+
+def _switch(one: Switch, other: Switch) -> Switch | None:
+    """A rest in one place only was reported where it was found."""
+    cases = tuple(_cases(one.cases, other.cases))
+    if one.selector != other.selector or len(cases) != max(len(one.cases), len(other.cases)):
+        return None
+    ends = one.rest is not None and other.rest is not None
+    rest = max(one.rest or 0, other.rest or 0) if ends else None
+    return replace(one, cases=cases, rest=rest)
+
+
+def _cases(some: Iterable[Case], others: Iterable[Case]) -> Iterable[Case]:
+    for one, other in zip(some, others, strict=False):
+        type_ = _type(one.type, other.type)
+        if type_ is not None and (one.value, one.name) == (other.value, other.name):
+            yield replace(one, type=type_)
