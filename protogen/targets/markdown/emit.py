@@ -8,8 +8,7 @@ from pathlib import PurePosixPath
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
-from protogen.targets.markdown.pages.fidelity import fidelity_view
-from protogen.targets.markdown.pages.index import index_view
+from protogen.targets.markdown.pages.overview import fidelity_view, index_view
 from protogen.targets.markdown.pages.page import page_view
 from protogen.targets.markdown.text.anchors import decision_link
 from protogen.targets.output import File

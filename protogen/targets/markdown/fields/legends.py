@@ -9,9 +9,9 @@ import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags, NamedValue
 from protogen.model.types import Field, NumberType
+from protogen.targets.markdown.fields.paths import Path
 from protogen.targets.markdown.fields.values import Anchors, character, tells_more, values_text
 from protogen.targets.markdown.text.origin import about_line
-from protogen.targets.markdown.text.path import Path
 from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import bounds, code, hex_number
 

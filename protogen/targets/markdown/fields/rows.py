@@ -1,13 +1,12 @@
-"""The rows of a message's table: one for each thing that lies in its payload."""
+"""The table of a message: everything in its frame, in wire order."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-import msgspec
-
-from protogen.copying import replace
+from protogen.model.frame import Frame, PayloadPart
+from protogen.model.messages import Message
 from protogen.model.payload_plan import (
     AnyStep,
     CaseStep,
@@ -18,102 +17,114 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
+from protogen.targets.markdown.fields.paths import ROOT, Path
 from protogen.targets.markdown.fields.types import type_text
 from protogen.targets.markdown.fields.values import Anchors, range_text, unit_text
-from protogen.targets.markdown.frames.layout import Place, behind, element
+from protogen.targets.markdown.frames.layout import Place, Slot, behind, element, part_title, slots
+from protogen.targets.markdown.frames.parts import part_type, role, value_in
 from protogen.targets.markdown.text.origin import about_line
-from protogen.targets.markdown.text.path import ROOT, Path
-from protogen.targets.markdown.text.words import bounds, code, plural, short_number
+from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.words import bounds, code, plural, short_number, size_text
 
+_HEADER = ("Frame byte", "Payload byte", "Size", "Type", "Name", "Unit", "Range", "Meaning")
 _UNNAMED = "value"
 """The field of a case that is one type."""
 _UNKNOWN = "Unknown: the document does not say what it is."
 
-
-class Row(msgspec.Struct, frozen=True, kw_only=True):
-    """One row; the texts are Markdown."""
-
-    place: Place
-    sizes: SizeSet
-    type: str
-    name: str
-    unit: str = ""
-    range: str = ""
-    meaning: str = ""
+Row = tuple[str, ...]
 
 
-def field_rows(steps: Sequence[AnyStep], anchors: Anchors) -> Iterator[Row]:
-    """Yield the rows of a message's fields."""
-    return _record_rows(steps, Place(), ROOT, anchors)
+def message_table(frame: Frame, message: Message, anchors: Anchors) -> Table:
+    """Return the table of everything in a message's frame, in wire order."""
+    rows: list[Row] = []
+    for slot in slots(frame, message.sizes):
+        if isinstance(slot.part, PayloadPart):
+            rows += _PayloadRows(slot, anchors).of_record(message.plan.steps, Place(), ROOT)
+        else:
+            rows.append(_part_row(slot, frame, message))
+    return table(_HEADER, rows)
 
 
-def _record_rows(
-    steps: Sequence[AnyStep], place: Place, path: Path, anchors: Anchors
-) -> Iterator[Row]:
-    for step in steps:
-        inner = path.field(step.name)
-        yield _field_row(step, place, inner, anchors)
-        yield from _inner_rows(step, place, inner, anchors)
-        size = step.sizes.fixed
-        place = behind(inner.shown) if size is None else place.plus(size)
+def _part_row(slot: Slot, frame: Frame, message: Message) -> Row:
+    part = slot.part
+    value = value_in(frame, part, message.identity, message.sizes)
+    size = size_text(slot.sizes)
+    return (slot.place, "", size, part_type(part), part_title(part), "", value, role(part))
 
 
-def _field_row(step: AnyStep, place: Place, path: Path, anchors: Anchors) -> Row:
-    field = step.field
-    return Row(
-        place=place,
-        sizes=step.sizes,
-        type=type_text(step),
-        name=code(path.shown),
-        unit=unit_text(field),
-        range=range_text(field, path, anchors),
-        meaning=about_line(field.about, _UNKNOWN if field.unknown else ""),
-    )
+class _PayloadRows:
+    """Rows of what lies in a payload, which has its place in a frame."""
 
+    def __init__(self, payload: Slot, anchors: Anchors) -> None:
+        self._payload = payload
+        self._anchors = anchors
 
-def _inner_rows(step: AnyStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
-    """Yield the rows of what a field is made of."""
-    match without_constant(step):
-        case RecordStep(steps=steps):
-            yield from _record_rows(steps, place, path, anchors)
-        case RepeatStep() as repeat:
-            yield from _element_rows(repeat, place, path.element(), anchors)
-        case ChooseStep() as choice:
-            yield from _choice_rows(choice, place, path, anchors)
+    def of_record(self, steps: Sequence[AnyStep], place: Place, path: Path) -> Iterator[Row]:
+        for step in steps:
+            inner = path.field(step.name)
+            yield self._field(step, place, inner, code(inner.shown))
+            yield from self._inside(step, place, inner)
+            size = step.sizes.fixed
+            place = behind(inner.shown) if size is None else place.plus(size)
 
+    def _inside(self, step: AnyStep, place: Place, path: Path) -> Iterator[Row]:
+        """Yield the rows of what a field is made of."""
+        match without_constant(step):
+            case RecordStep(steps=steps):
+                yield from self.of_record(steps, place, path)
+            case RepeatStep(element=inner):
+                path = path.element()
+                first = element(place, inner.sizes.fixed, path.shown)
+                if not isinstance(inner, RecordStep):
+                    yield self._row(first, inner.sizes, type_text(inner), code(path.shown))
+                yield from self._inside(inner, first, path)
+            case ChooseStep() as choice:
+                yield from self._choice(choice, place, path)
 
-def _element_rows(step: RepeatStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
-    inner = step.element
-    first = element(place, inner.sizes.fixed, path.shown)
-    if not isinstance(inner, RecordStep):
-        yield Row(place=first, sizes=inner.sizes, type=type_text(inner), name=code(path.shown))
-    yield from _inner_rows(inner, first, path, anchors)
+    def _choice(self, step: ChooseStep, place: Place, path: Path) -> Iterator[Row]:
+        for case in step.cases:
+            name = f"{code(path.shown)} if {code(step.selector_name)} is {_case_value(case)}"
+            inner = path.case(case.name)
+            alone = _only_value(case.step)
+            if alone is None:
+                yield self._case(case.step, place, name)
+                yield from self._inside(case.step, place, inner)
+            else:
+                # The schema gave the case a type alone; the model makes it a struct of one field.
+                inner = Path(path.shown, inner.field(alone.name).anchor)
+                yield self._field(alone, place, inner, name)
+                yield from self._inside(alone, place, inner)
+        otherwise, rest = "invalid", SizeSet.exactly(0)
+        if step.rest is not None:
+            most = plural(step.rest.count.greatest, "byte")
+            otherwise, rest = f"raw bytes to the end, at most {most}", step.rest.sizes
+        yield self._row(place, rest, otherwise, f"{code(path.shown)} otherwise")
 
+    def _case(self, step: AnyStep, place: Place, name: str) -> Row:
+        type_ = type_text(step) if step.sizes.greatest else "nothing"
+        values = meaning = ""
+        if isinstance(step, IntegerStep):
+            values = bounds(Fraction(step.type.least), Fraction(step.type.greatest))
+        if isinstance(step, RecordStep):
+            meaning = about_line(step.type.about)
+        return self._row(place, step.sizes, type_, name, "", values, meaning)
 
-def _choice_rows(step: ChooseStep, place: Place, path: Path, anchors: Anchors) -> Iterator[Row]:
-    for case in step.cases:
-        yield from _case_rows(step, case, place, path, anchors)
-    otherwise, rest = "invalid", SizeSet.exactly(0)
-    if step.rest is not None:
-        most = plural(step.rest.count.greatest, "byte")
-        otherwise, rest = f"raw bytes to the end, at most {most}", step.rest.sizes
-    yield Row(place=place, sizes=rest, type=otherwise, name=f"{code(path.shown)} otherwise")
+    def _field(self, step: AnyStep, place: Place, path: Path, name: str) -> Row:
+        field = step.field
+        values = range_text(field, path, self._anchors)
+        meaning = about_line(field.about, _UNKNOWN if field.unknown else "")
+        return self._row(
+            place, step.sizes, type_text(step), name, unit_text(field), values, meaning
+        )
 
-
-def _case_rows(
-    choice: ChooseStep, case: CaseStep, place: Place, path: Path, anchors: Anchors
-) -> Iterator[Row]:
-    whole = _case_row(choice, case, place, path)
-    inner = path.case(case.name)
-    alone = _only_value(case.step)
-    if alone is None:
-        yield whole
-        yield from _inner_rows(case.step, place, inner, anchors)
-        return
-    # The schema gave the case a type and no name; the model makes it a struct of one field.
-    inner = Path(path.shown, inner.field(alone.name).anchor)
-    yield replace(_field_row(alone, place, inner, anchors), name=whole.name)
-    yield from _inner_rows(alone, place, inner, anchors)
+    def _row(self, place: Place, sizes: SizeSet, *cells: str) -> Row:
+        """Return a row with these cells from that of the type on."""
+        size, payload = sizes.fixed, self._payload
+        in_frame = ""
+        if payload.start is not None and not place.base:
+            in_frame = place.text(size, payload.start, payload.scale)
+        missing = len(_HEADER) - 3 - len(cells)
+        return (in_frame, place.text(size), size_text(sizes), *cells, *[""] * missing)
 
 
 def _only_value(step: AnyStep) -> AnyStep | None:
@@ -123,24 +134,6 @@ def _only_value(step: AnyStep) -> AnyStep | None:
     return None
 
 
-def _case_row(choice: ChooseStep, case: CaseStep, place: Place, path: Path) -> Row:
-    step = case.step
-    return Row(
-        place=place,
-        sizes=step.sizes,
-        type=type_text(step) if step.sizes.greatest else "nothing",
-        name=f"{code(path.shown)} if {code(choice.selector_name)} is {_case_value(case)}",
-        range=_case_range(step),
-        meaning=about_line(step.type.about) if isinstance(step, RecordStep) else "",
-    )
-
-
 def _case_value(case: CaseStep) -> str:
     value = code(short_number(case.value))
     return value if case.name == f"case_{case.value}" else f"{value} {case.name}"
-
-
-def _case_range(step: AnyStep) -> str:
-    if not isinstance(step, IntegerStep):
-        return ""
-    return bounds(Fraction(step.type.least), Fraction(step.type.greatest))

@@ -11,7 +11,7 @@ from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
 from protogen.model.types import Constant, Field, NumberType
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.text.path import Path
+from protogen.targets.markdown.fields.paths import Path
 from protogen.targets.markdown.text.words import (
     bounds,
     code,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-import msgspec
-
 from protogen.model.framing import Framing
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
@@ -17,7 +15,7 @@ from protogen.targets.markdown.frames.parts import (
     transparency_text,
 )
 from protogen.targets.markdown.pages.context import by_frame
-from protogen.targets.markdown.text.table import Table
+from protogen.targets.markdown.text.table import View
 from protogen.targets.markdown.text.words import capital, code, listed, plural, sentence
 
 Property = tuple[str, str]
@@ -31,36 +29,25 @@ _AMBIGUITY = {
 }
 
 
-class FrameView(msgspec.Struct, frozen=True, kw_only=True):
-    """View of the frames of one or several senders."""
-
-    title: str
-    table: Table
-    diagram: str
-    transparency: tuple[str, ...]
-    replacements: Table | None
-    properties: tuple[Property, ...]
-
-
-def frame_views(protocol: Protocol) -> tuple[FrameView, ...]:
+def frame_views(protocol: Protocol) -> tuple[View, ...]:
     """Return a view for each different frame, in the order of the senders."""
     return tuple(_view(senders, protocol) for senders in by_frame(protocol.senders))
 
 
-def _view(senders: Sequence[Sender], protocol: Protocol) -> FrameView:
+def _view(senders: Sequence[Sender], protocol: Protocol) -> View:
     frame = senders[0].frame
     payload = senders[0].framing.payload
     for sender in senders[1:]:
         payload |= sender.framing.payload
     transparency = frame.transparency
-    return FrameView(
-        title=f"Frames from {_titles(senders, protocol)}",
-        table=frame_table(frame, payload),
-        diagram=frame_diagram(frame, payload),
-        transparency=transparency_text(transparency) if transparency else (),
-        replacements=transparency_table(transparency) if transparency else None,
-        properties=_shared_properties(senders),
-    )
+    return {
+        "title": f"Frames from {_titles(senders, protocol)}",
+        "table": frame_table(frame, payload),
+        "diagram": frame_diagram(frame, payload),
+        "transparency": transparency_text(transparency) if transparency else (),
+        "replacements": transparency_table(transparency) if transparency else None,
+        "properties": _shared_properties(senders),
+    }
 
 
 def _titles(senders: Sequence[Sender], protocol: Protocol) -> str:

@@ -11,7 +11,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType
 from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
-from protogen.targets.markdown.fields.walk import named_fields
+from protogen.targets.markdown.fields.paths import named_fields
 
 
 class Context(msgspec.Struct, frozen=True):
@@ -23,6 +23,7 @@ class Context(msgspec.Struct, frozen=True):
     shared: frozenset[str]
     """The enums and flags that several fields use: they are explained once."""
     framings: Mapping[tuple[str, str], MessageFraming]
+    """The sizes and the rate of each message, by its sender and its name."""
     structs: tuple[StructSizes, StructSizes]
 
     @classmethod
@@ -37,10 +38,6 @@ class Context(msgspec.Struct, frozen=True):
         }
         structs = StructSizes(NATURAL), StructSizes(BYTES)
         return cls(protocol, users, shared, framings, structs)
-
-    def framing(self, sender: str, message: str) -> MessageFraming:
-        """Return the sizes and the rate of a message of this sender."""
-        return self.framings[sender, message]
 
     def struct_sizes(self, message: Message) -> tuple[int, int]:
         """Return the bytes of a message's struct in C: on 32-bit machines, and on an AVR."""

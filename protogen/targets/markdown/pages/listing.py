@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import msgspec
-
 from protogen.model.frame import FULL_GROUP
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -16,15 +14,8 @@ from protogen.targets.markdown.frames.layout import has_further_codes, is_stuffe
 from protogen.targets.markdown.pages.context import Context
 from protogen.targets.markdown.pages.message import identity_text, overload_text
 from protogen.targets.markdown.text.anchors import message_link
-from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.table import View, table
 from protogen.targets.markdown.text.words import code, rate, size_text
-
-
-class ListingView(msgspec.Struct, frozen=True, kw_only=True):
-    """The messages of one sender, by identity."""
-
-    title: str
-    table: Table
 
 
 def ordered(protocol: Protocol) -> Iterator[Message]:
@@ -39,19 +30,19 @@ def _by_identity(sender: Sender) -> list[Message]:
     return sorted(sender.messages, key=lambda message: message.identity)
 
 
-def listing(sender: Sender, context: Context) -> ListingView:
+def listing(sender: Sender, context: Context) -> View:
     """Return the table of a sender's messages."""
     parts = " ".join(code(part.name) for part in sender.frame.identity)
     header = (parts, "Message", "On the wire", "Payload", "Per second", "Summary")
     rows = (_row(message, sender, context) for message in _by_identity(sender))
-    return ListingView(
-        title=f"Messages from {sender_title(sender, context.protocol)}",
-        table=table(header, rows),
-    )
+    return {
+        "title": f"Messages from {sender_title(sender, context.protocol)}",
+        "table": table(header, rows),
+    }
 
 
 def _row(message: Message, sender: Sender, context: Context) -> tuple[str, ...]:
-    framing = context.framing(sender.name, message.name)
+    framing = context.framings[sender.name, message.name]
     return (
         identity_text(sender.frame, message),
         message_link(message.name),

@@ -4,54 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-import msgspec
-
 from protogen.model.frame import Frame
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message, Overload
-from protogen.model.payload_plan import AnyStep
 from protogen.model.protocol import Sender
 from protogen.model.sizes import SizeSet
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.fields.legends import Legend, legends
-from protogen.targets.markdown.fields.message_table import message_table
+from protogen.targets.markdown.fields.legends import legends
+from protogen.targets.markdown.fields.paths import named_fields
+from protogen.targets.markdown.fields.rows import message_table
 from protogen.targets.markdown.fields.values import Anchors
-from protogen.targets.markdown.fields.walk import named_fields
 from protogen.targets.markdown.frames.packet import message_diagram
 from protogen.targets.markdown.frames.parts import identity_value
 from protogen.targets.markdown.pages.context import Context, by_frame
-from protogen.targets.markdown.pages.example import ExampleView, example_view
+from protogen.targets.markdown.pages.example import example_view
 from protogen.targets.markdown.text.anchors import decision_link, message_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place, prose
-from protogen.targets.markdown.text.table import Table
-from protogen.targets.markdown.text.words import (
-    code,
-    listed,
-    plural,
-    rate,
-    sentence,
-)
-
-
-class LayoutView(msgspec.Struct, frozen=True, kw_only=True):
-    """A message in the frame of one or several senders."""
-
-    caption: str
-    table: Table
-    diagram: str | None
-
-
-class MessageView(msgspec.Struct, frozen=True, kw_only=True):
-    """A message's section."""
-
-    anchor: str
-    title: str
-    summary: str
-    facts: tuple[str, ...]
-    notes: tuple[str, ...]
-    layouts: tuple[LayoutView, ...]
-    legends: tuple[Legend, ...]
-    examples: tuple[ExampleView, ...]
+from protogen.targets.markdown.text.table import View
+from protogen.targets.markdown.text.words import code, listed, plural, rate, sentence
 
 
 def identity_text(frame: Frame, message: Message) -> str:
@@ -60,22 +30,25 @@ def identity_text(frame: Frame, message: Message) -> str:
     return " ".join(identity_value(part, value) for part, value in pairs)
 
 
-def message_view(context: Context, message: Message) -> MessageView:
+def message_view(context: Context, message: Message) -> View:
     """Return the section of a message."""
     senders = [context.protocol.sender(name) for name in message.senders]
     anchors = Anchors(message_anchor(message.name), context.shared)
     identity = identity_text(senders[0].frame, message)
-    examples = (example_view(context.protocol, message, item) for item in message.examples)
-    return MessageView(
-        anchor=message_anchor(message.name),
-        title=f"{identity} {message.name}".strip(),
-        summary=_summary(message),
-        facts=tuple(_facts(context, message)),
-        notes=(*_notes(senders, message), *prose(message.about.doc)),
-        layouts=tuple(_layouts(senders, message, anchors)),
-        legends=tuple(_legends(message.plan.steps, anchors)),
-        examples=tuple(examples),
-    )
+    return {
+        "anchor": message_anchor(message.name),
+        "title": f"{identity} {message.name}".strip(),
+        "summary": _summary(message),
+        "facts": [*_facts(context, message)],
+        "notes": (*_notes(senders, message), *prose(message.about.doc)),
+        "layouts": [*_layouts(senders, message, anchors)],
+        "legends": [
+            legend
+            for path, field in named_fields(message.plan.steps)
+            for legend in legends(field, path, anchors)
+        ],
+        "examples": [example_view(context.protocol, message, item) for item in message.examples],
+    }
 
 
 def _summary(message: Message) -> str:
@@ -91,7 +64,7 @@ def _summary(message: Message) -> str:
 def _facts(context: Context, message: Message) -> Iterator[str]:
     groups: dict[MessageFraming, list[str]] = {}
     for name in message.senders:
-        groups.setdefault(context.framing(name, message.name), []).append(code(name))
+        groups.setdefault(context.framings[name, message.name], []).append(code(name))
     for framing, names in groups.items():
         yield f"From {listed(names)}"
         sizes = SizeSet.between(framing.least, framing.greatest)
@@ -139,19 +112,14 @@ def _told_apart(overload: Overload) -> str:
 # --- layout -------------------------------------------------------------------------------------
 
 
-def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> Iterator[LayoutView]:
+def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> Iterator[View]:
     """Yield a layout for each different frame of the senders."""
     groups = by_frame(senders)
     for group in groups:
         frame = group[0].frame
         names = [code(sender.name) for sender in group]
-        yield LayoutView(
-            caption=f"From {listed(names)}:" if len(groups) > 1 else "",
-            table=message_table(frame, message, anchors),
-            diagram=message_diagram(frame, message),
-        )
-
-
-def _legends(steps: Iterable[AnyStep], anchors: Anchors) -> Iterator[Legend]:
-    for path, field in named_fields(steps):
-        yield from legends(field, path, anchors)
+        yield {
+            "caption": f"From {listed(names)}:" if len(groups) > 1 else "",
+            "table": message_table(frame, message, anchors),
+            "diagram": message_diagram(frame, message),
+        }

@@ -3,78 +3,79 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-
-import msgspec
+from fractions import Fraction
 
 from protogen.model.meanings import Enum, Flags
-from protogen.model.protocol import Protocol
+from protogen.model.protocol import Link, Protocol
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.legends import Legend, type_legends
 from protogen.targets.markdown.fields.values import type_anchor
-from protogen.targets.markdown.frames.framing import FrameView, frame_views
+from protogen.targets.markdown.frames.framing import frame_views
 from protogen.targets.markdown.pages.context import Context
-from protogen.targets.markdown.pages.listing import (
-    ListingView,
-    counting,
-    listing,
-    ordered,
-    overloads,
-)
-from protogen.targets.markdown.pages.message import MessageView, message_view
-from protogen.targets.markdown.pages.record import (
-    DecisionView,
-    ExchangeView,
-    decision_view,
-    exchange_view,
-    reserved,
-    unknowns,
-)
-from protogen.targets.markdown.pages.top import facts, link_lines
-from protogen.targets.markdown.text.origin import prose
-from protogen.targets.markdown.text.table import Table
-from protogen.targets.markdown.text.words import code
+from protogen.targets.markdown.pages.listing import counting, listing, ordered, overloads
+from protogen.targets.markdown.pages.message import message_view
+from protogen.targets.markdown.pages.record import decision_view, exchange_view, reserved, unknowns
+from protogen.targets.markdown.text.origin import about_line, link, prose
+from protogen.targets.markdown.text.table import View
+from protogen.targets.markdown.text.words import code, number, plural, rate
 
 
-class PageView(msgspec.Struct, frozen=True, kw_only=True):
-    """A protocol's page."""
-
-    title: str
-    about: tuple[str, ...]
-    facts: tuple[tuple[str, str], ...]
-    link: tuple[str, ...]
-    frames: tuple[FrameView, ...]
-    seven_bit: bool
-    listings: tuple[ListingView, ...]
-    counting: tuple[str, ...]
-    overloads: tuple[str, ...]
-    messages: tuple[MessageView, ...]
-    types: tuple[Legend, ...]
-    exchanges: tuple[ExchangeView, ...]
-    decisions: tuple[DecisionView, ...]
-    unknowns: Table | None
-    reserved: Table | None
-
-
-def page_view(protocol: Protocol) -> PageView:
+def page_view(protocol: Protocol) -> View:
     """Return a protocol's page. It depends on nothing else, so it can be generated alone."""
     context = Context.of(protocol)
-    return PageView(
-        title=markdown(protocol.title),
-        about=prose(protocol.about.doc),
-        facts=tuple(fact for fact in facts(protocol) if fact[1]),
-        link=tuple(link_lines(protocol.link)),
-        frames=frame_views(protocol),
-        seven_bit=protocol.byte_bits == 7,
-        listings=tuple(listing(sender, context) for sender in protocol.senders),
-        counting=counting(protocol),
-        overloads=tuple(overloads(protocol)),
-        messages=tuple(message_view(context, item) for item in ordered(protocol)),
-        types=tuple(_shared_tables(context)),
-        exchanges=tuple(exchange_view(item, protocol) for item in protocol.exchanges),
-        decisions=tuple(map(decision_view, protocol.decisions)),
-        unknowns=unknowns(protocol.messages),
-        reserved=reserved(protocol),
-    )
+    return {
+        "title": markdown(protocol.title),
+        "about": prose(protocol.about.doc),
+        "facts": [fact for fact in _facts(protocol) if fact[1]],
+        "link": [*_link_lines(protocol.link)],
+        "frames": frame_views(protocol),
+        "seven_bit": protocol.byte_bits == 7,
+        "listings": [listing(sender, context) for sender in protocol.senders],
+        "counting": counting(protocol),
+        "overloads": [*overloads(protocol)],
+        "messages": [message_view(context, item) for item in ordered(protocol)],
+        "types": [*_shared_tables(context)],
+        "exchanges": [exchange_view(item, protocol) for item in protocol.exchanges],
+        "decisions": [*map(decision_view, protocol.decisions)],
+        "unknowns": unknowns(protocol.messages),
+        "reserved": reserved(protocol),
+    }
+
+
+def _facts(protocol: Protocol) -> Iterator[tuple[str, str]]:
+    """Yield labels and texts that say what the protocol is; a text can be empty."""
+    yield "Protocol", code(protocol.name)
+    yield "Version", markdown(protocol.version or "")
+    yield "Extends", markdown(", ".join(protocol.files[1:]))
+    source = protocol.source
+    if source:
+        yield "Document", markdown(source.document or "")
+        yield "Revision", markdown(source.revision or "")
+        yield "Source", link(source.url) if source.url else ""
+        yield "Licence", markdown(source.license or "")
+        yield "Note", markdown(source.note or "")
+    yield "Spec hash", code(protocol.spec_hash)
+
+
+def _link_lines(line: Link) -> Iterator[str]:
+    """Yield paragraphs about the line."""
+    stop = plural(line.stop_bits, "stop bit")
+    form = f"{line.data_bits} data bits, parity {line.parity}, {stop}"
+    if line.baud is None:
+        yield f"No rate is given; {form}."
+    else:
+        yield f"{line.baud} baud, {form}. {_byte_time(line.baud, line.bits_per_byte)}"
+    if line.idle_timeout is not None:
+        idle = number(line.idle_timeout * 1000)
+        yield f"After {idle} ms of silence a receiver treats what it holds as ended."
+    about = about_line(line.about)
+    if about:
+        yield about
+
+
+def _byte_time(baud: int, bits: int) -> str:
+    microseconds = number(Fraction(round(Fraction(bits * 10_000_000, baud)), 10))
+    return f"A byte takes {microseconds} µs, {rate(Fraction(baud, bits))} bytes a second."
 
 
 def _shared_tables(context: Context) -> Iterator[Legend]:

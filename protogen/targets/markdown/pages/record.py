@@ -4,48 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-import msgspec
-
 from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol, ReservedIdentity
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.fields.walk import named_fields
+from protogen.targets.markdown.fields.paths import named_fields
 from protogen.targets.markdown.text.anchors import example_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place
-from protogen.targets.markdown.text.table import Table, table
+from protogen.targets.markdown.text.table import Table, View, table
 from protogen.targets.markdown.text.words import code, hex_bytes, plural, sentence, sentences
 
 _MOST_BYTES = 24
 """Bytes of an exchange's step that are printed."""
 
 
-class ExchangeView(msgspec.Struct, frozen=True, kw_only=True):
-    """A sequence of messages."""
-
-    title: str
-    about: str
-    table: Table
-
-
-class DecisionView(msgspec.Struct, frozen=True, kw_only=True):
-    """A question that the document leaves open, and what was chosen."""
-
-    name: str
-    question: str
-    document: str
-    choice: str
-    because: str
-    source: str
-
-
-def exchange_view(exchange: Exchange, protocol: Protocol) -> ExchangeView:
+def exchange_view(exchange: Exchange, protocol: Protocol) -> View:
     """Return a sequence of messages with the bytes of their examples."""
     rows = [_step(index, step, protocol) for index, step in enumerate(exchange.steps, 1)]
-    return ExchangeView(
-        title=markdown(exchange.title or exchange.name),
-        about=about_line(exchange.about),
-        table=table(("Step", "From", "Message", "Example", "Bytes", "What happens"), rows),
-    )
+    return {
+        "title": markdown(exchange.title or exchange.name),
+        "about": about_line(exchange.about),
+        "table": table(("Step", "From", "Message", "Example", "Bytes", "What happens"), rows),
+    }
 
 
 def _step(index: int, step: Step, protocol: Protocol) -> tuple[str, ...]:
@@ -66,16 +45,16 @@ def _cut(text: str) -> str:
     return text if len(text) <= room else f"{text[:room]}..."
 
 
-def decision_view(decision: Decision) -> DecisionView:
+def decision_view(decision: Decision) -> View:
     """Return a decision as sentences."""
-    return DecisionView(
-        name=decision.name,
-        question=sentence(markdown(decision.question)),
-        document=sentence(markdown(decision.document)),
-        choice=sentence(markdown(decision.choice)),
-        because=sentence(markdown(decision.because)),
-        source=place(decision.source),
-    )
+    return {
+        "name": decision.name,
+        "question": sentence(markdown(decision.question)),
+        "document": sentence(markdown(decision.document)),
+        "choice": sentence(markdown(decision.choice)),
+        "because": sentence(markdown(decision.because)),
+        "source": place(decision.source),
+    }
 
 
 def reserved(protocol: Protocol) -> Table | None:

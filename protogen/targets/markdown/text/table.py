@@ -1,10 +1,13 @@
-"""A table of Markdown texts."""
+"""Markdown texts on their way to a template: views of sections, and tables."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
+
+View = Mapping[str, object]
+"""A section: its texts, tables and views of what is inside, by their names in the template."""
 
 
 class Table(msgspec.Struct, frozen=True):

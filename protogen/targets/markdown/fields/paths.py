@@ -1,12 +1,37 @@
-"""Every field of a message, also those inside structs, arrays and cases."""
+"""Every field of a message with its path, also those inside structs, arrays and cases."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+import msgspec
+
 from protogen.model.payload_plan import AnyStep, ChooseStep, RecordStep, RepeatStep
 from protogen.model.types import Field
-from protogen.targets.markdown.text.path import ROOT, Path
+
+
+class Path(msgspec.Struct, frozen=True):
+    """The names that lead to a field, as people write them and as an anchor."""
+
+    shown: str = ""
+    anchor: str = ""
+    """Unlike `shown` it tells the cases of a switch apart, which may have fields of one name."""
+
+    def field(self, name: str) -> Path:
+        """Return the path of a field."""
+        return Path(f"{self.shown}.{name}" if self.shown else name, f"{self.anchor}-{name}")
+
+    def element(self) -> Path:
+        """Return the path of an element of an array."""
+        return Path(f"{self.shown}[i]", self.anchor)
+
+    def case(self, name: str) -> Path:
+        """Return the path of one case of a switch."""
+        return Path(self.shown, f"{self.anchor}-{name}")
+
+
+ROOT = Path()
+"""The path of the message itself."""
 
 
 def named_fields(steps: Iterable[AnyStep], path: Path = ROOT) -> Iterator[tuple[Path, Field]]:
