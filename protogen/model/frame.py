@@ -42,13 +42,10 @@ class LiteralPart(Part, frozen=True, kw_only=True):
         return len(self.bytes)
 
 
-class NumberPart(Part, frozen=True, kw_only=True):
+class TypedPart(Part, frozen=True, kw_only=True):
     """A part that is one integer."""
 
     type: PartType
-    least: int
-    greatest: int
-    """Bounds of the raw value, both included."""
 
     @property
     def size(self) -> int:
@@ -58,6 +55,14 @@ class NumberPart(Part, frozen=True, kw_only=True):
     def encode(self, value: int) -> bytes:
         """Bytes of a value, before stuffing; raises ValueError if the part can't hold it."""
         return codec(self.type).encode(value)
+
+
+class NumberPart(TypedPart, frozen=True, kw_only=True):
+    """A number that is not worked out of other bytes."""
+
+    least: int
+    greatest: int
+    """Bounds of the raw value, both included."""
 
 
 class IdentityPart(NumberPart, frozen=True, kw_only=True):
@@ -86,20 +91,14 @@ class PayloadPart(Part, frozen=True, kw_only=True):
     """The message's fields."""
 
 
-class ChecksumPart(Part, frozen=True, kw_only=True):
+class ChecksumPart(TypedPart, frozen=True, kw_only=True):
     """A checksum over other parts."""
 
-    type: PartType
     algorithm: ChecksumSpec
     covers: tuple[str, ...]
     over_wire: bool = False
     when_payload: bool = False
     """True if the part is absent where the payload is empty."""
-
-    @property
-    def size(self) -> int:
-        """Bytes before stuffing."""
-        return self.type.size
 
     @property
     def is_optional(self) -> bool:

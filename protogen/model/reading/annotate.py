@@ -21,6 +21,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
     PayloadPart,
+    TypedPart,
 )
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -103,7 +104,6 @@ class _Frame:
 
     def _part(self, part: Part) -> None:
         start = len(self._rows)
-        begin = self._cursor.position
         if isinstance(part, PayloadPart):
             self._rows += self._payload(part)
         elif self._is_absent(part):
@@ -111,9 +111,9 @@ class _Frame:
             return
         else:
             self._rows.append(self._fixed(part))
-        units = self._wire.units[begin : self._cursor.position]
-        wire = b"".join(row.wire for row in self._rows[start:])
-        self._found[part.name] = _Found(bytes(unit.byte for unit in units), wire)
+        rows = self._rows[start:]
+        content = b"".join(row.bytes for row in rows)
+        self._found[part.name] = _Found(content, b"".join(row.wire for row in rows))
 
     def _is_absent(self, part: Part) -> bool:
         payload = self._found.get(self._sender.frame.payload.name)
@@ -129,22 +129,23 @@ class _Frame:
     # --- parts of a fixed size --------------------------------------------------------------
 
     def _fixed(self, part: Part) -> Row:
-        piece = self._cursor.take(part.size)
         if isinstance(part, LiteralPart):
-            row = piece.row(part.name, "literal", subject=part)
-            if part.bytes.startswith(piece.bytes):
+            row = self._cursor.take(part.size, part.name, "literal", subject=part)
+            if part.bytes.startswith(row.bytes):
                 return row
             return replace(row, fault=f"must be {part.bytes.hex(' ').upper()}")
-        assert isinstance(part, NumberPart | ChecksumPart)
-        row = piece.row(part.name, part.type.label, subject=part, value_type=part.type)
-        if piece.missing:
+        assert isinstance(part, TypedPart)
+        label = part.type.label
+        row = self._cursor.take(part.size, part.name, label, subject=part, value_type=part.type)
+        if row.cut:
             return row
         try:
-            value = codec(part.type).decode(piece.bytes)
+            value = codec(part.type).decode(row.bytes)
         except ByteError as error:
             return replace(row, fault=str(error))
         if isinstance(part, ChecksumPart):
             return self._checksum(part, row.reads(value, ""))
+        assert isinstance(part, NumberPart)
         return self._number(part, value, row)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
@@ -171,7 +172,7 @@ class _Frame:
             return row
         pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
-        due = codec(part.type).encode(checksum_of(part.algorithm).compute(covered))
+        due = part.encode(checksum_of(part.algorithm).compute(covered))
         if row.bytes == due:
             return row
         # In the words of a decoder: bytes in wire order, which are not always the number's digits.
@@ -184,13 +185,13 @@ class _Frame:
         inside = self._cursor.part(size)
         message = self._message(size)
         if message is None:
-            rows = [inside.take(size).row(part.name, "bytes", subject=part)] if size else []
+            rows = [inside.take(size, part.name, "bytes", subject=part)] if size else []
         else:
             rows = dissect(message.plan, inside)
         if inside.left:
-            surplus = inside.take(inside.left)
-            rows.append(surplus.row(part.name, "bytes", fault=_SURPLUS, subject=part))
-        return rows or [inside.take(0).row(part.name, "", meaning="empty", subject=part)]
+            left = inside.left
+            rows.append(inside.take(left, part.name, "bytes", fault=_SURPLUS, subject=part))
+        return rows or [replace(inside.take(0, part.name, "", subject=part), meaning="empty")]
 
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""
@@ -227,8 +228,7 @@ class _Frame:
 
     def _leftovers(self) -> None:
         if self._cursor.left:
-            piece = self._cursor.take(self._cursor.left)
-            self._rows.append(piece.row("", "", fault=_SURPLUS))
+            self._rows.append(self._cursor.take(self._cursor.left, "", "", fault=_SURPLUS))
         if self._wire.rest or self._wire.fault:
             fault = self._wire.fault
             meaning = "" if fault else "stands for no byte"

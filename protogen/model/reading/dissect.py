@@ -66,70 +66,54 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         return replace(self, value=value, meaning=meaning, fault=self.fault or fault)
 
 
-class Piece(msgspec.Struct, frozen=True):
-    """Bytes that were taken for something; `missing` says how many more should be there."""
-
-    offset: int
-    units: tuple[Unit, ...]
-    missing: int
-
-    @property
-    def bytes(self) -> bytes:
-        """Without transparency."""
-        return bytes(unit.byte for unit in self.units)
-
-    def row(
-        self,
-        path: str,
-        type: str,
-        *,
-        meaning: str = "",
-        fault: str = "",
-        subject: Part | Field | None = None,
-        value_type: Scalar | None = None,
-    ) -> Row:
-        """These bytes as a row without a value."""
-        wire = b"".join(unit.wire for unit in self.units)
-        if self.missing:
-            fault = f"missing bytes: {self.missing}"
-        return Row(
-            offset=self.offset,
-            wire=wire,
-            bytes=self.bytes,
-            path=path,
-            type=type,
-            meaning=meaning,
-            fault=fault,
-            cut=bool(self.missing),
-            subject=subject,
-            value_type=value_type,
-        )
-
-
 class Cursor:
     """Takes units one after another. `offset` is the place of the first one in the frame."""
 
     def __init__(self, units: Sequence[Unit], offset: int) -> None:
         self._units = units
         self._offset = offset
-        self.position = 0
+        self._position = 0
 
     @property
     def left(self) -> int:
         """Number of units that are left."""
-        return len(self._units) - self.position
+        return len(self._units) - self._position
 
-    def take(self, count: int) -> Piece:
-        """The next `count` units, or as many as there are."""
-        taken = tuple(self._units[self.position : self.position + count])
-        piece = Piece(self._offset, taken, count - len(taken))
-        self.position += len(taken)
+    def take(
+        self,
+        count: int,
+        path: str,
+        type: str,
+        *,
+        fault: str = "",
+        subject: Part | Field | None = None,
+        value_type: Scalar | None = None,
+    ) -> Row:
+        """A row without a value of the next `count` units, or of as many as there are."""
+        offset = self._offset
+        taken = self._next(count)
+        missing = count - len(taken)
+        return Row(
+            offset=offset,
+            wire=b"".join(unit.wire for unit in taken),
+            bytes=bytes(unit.byte for unit in taken),
+            path=path,
+            type=type,
+            fault=f"missing bytes: {missing}" if missing else fault,
+            cut=bool(missing),
+            subject=subject,
+            value_type=value_type,
+        )
+
+    def _next(self, count: int) -> Sequence[Unit]:
+        taken = self._units[self._position : self._position + count]
+        self._position += len(taken)
         self._offset += sum(len(unit.wire) for unit in taken)
-        return piece
+        return taken
 
     def ends_with(self, data: bytes) -> bool:
         """True if the units that are left end with these bytes."""
-        left = self._units[self.position :]
+        left = self._units[self._position :]
         return bytes(unit.byte for unit in left[-len(data) :]) == data
 
     def skip(self, size: int) -> None:
@@ -139,7 +123,7 @@ class Cursor:
     def part(self, count: int) -> Cursor:
         """A cursor over the next `count` units, which this one passes."""
         offset = self._offset
-        return Cursor(self.take(count).units, offset)
+        return Cursor(self._next(count), offset)
 
 
 def dissect(plan: PayloadPlan, cursor: Cursor) -> list[Row]:
@@ -190,15 +174,17 @@ class _Reader:
             return
         fault = f"`{step.selector_name}` has no case {chosen}" if found is None else ""
         if self._cursor.left:
-            piece = self._cursor.take(self._cursor.left)
-            self.rows.append(piece.row(path, "bytes", fault=fault, subject=step.field))
+            left = self._cursor.left
+            row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
+            self.rows.append(row)
 
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
         size = _count(step.count, scope) if isinstance(step, BytesStep) else step.type.size
-        piece = self._cursor.take(self._cursor.left if size is None else size)
-        row = piece.row(path, step.type.label, subject=step.field, value_type=step.type)
-        self._short = bool(piece.missing)
-        if not piece.missing:
+        size = self._cursor.left if size is None else size
+        label = step.type.label
+        row = self._cursor.take(size, path, label, subject=step.field, value_type=step.type)
+        self._short = row.cut
+        if not row.cut:
             row = _read(step, row)
         if isinstance(row.value, int):
             scope[step.field.name] = row.value

@@ -25,6 +25,7 @@ from protogen.model.frame import (
     PayloadPart,
     ValuePart,
 )
+from protogen.model.origin import About
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import counted_size, payload_range
@@ -127,7 +128,7 @@ class FrameBuilder:
         if role == PAYLOAD:
             return PayloadPart(name=name, about=text)
         if role == "literal":
-            return self._literal(name, item)
+            return self._literal(name, item, text)
         type_ = self._type(name, item)
         if type_ is None:
             return None
@@ -154,15 +155,11 @@ class FrameBuilder:
             return IdentityPart(**given)
         if role == "counts":
             return LengthPart(**given, counts=self._counted(part.name, item))
-        self._default_fits(item, part)
-        if role == "counter":
-            return CounterPart(**given, default=item.default)
-        return ValuePart(**given, default=item.default)
-
-    def _default_fits(self, item: PartSyntax, part: NumberPart) -> None:
         if item.default is not None and not part.least <= item.default <= part.greatest:
             text = f"{item.default} is out of {part.least} to {part.greatest}"
             self._context.error("PG114", (*self._loc, part.name, "default"), text)
+        kind = CounterPart if role == "counter" else ValuePart
+        return kind(**given, default=item.default)
 
     def _role(self, name: str, item: PartSyntax) -> str | None:
         written = {key for key in item.model_fields_set if getattr(item, key) is not None}
@@ -186,7 +183,7 @@ class FrameBuilder:
             return PAYLOAD
         return next((role for role in _ROLES if role in written), None)
 
-    def _literal(self, name: str, item: PartSyntax) -> LiteralPart:
+    def _literal(self, name: str, item: PartSyntax, text: About) -> LiteralPart:
         if not item.literal:
             loc = (*self._loc, name, "literal")
             self._context.error("PG147", loc, "the literal has no bytes")
@@ -194,7 +191,7 @@ class FrameBuilder:
             name=name,
             bytes=item.literal or b"\0",
             unprotected=item.unprotected,
-            about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
+            about=text,
         )
 
     def _type(self, name: str, item: PartSyntax) -> PartType | None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
 
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
@@ -26,14 +25,10 @@ DATA = "data"
 def resolve_messages(context: Context, draft: Draft) -> None:
     """Fields, sizes and identity of each message whose senders all have a frame."""
     builder = FieldBuilder(context, draft.named)
-    frames = {
-        sender: _Framed(sender, frame, payload_range(frame))
-        for sender, frame in draft.frames.items()
-    }
     begun = [
-        _Resolution(context, name, syntax, [frames[sender] for sender in syntax.from_])
+        _Resolution(context, name, syntax, {item: draft.frames[item] for item in syntax.from_})
         for name, syntax in context.syntax.messages.items()
-        if frames.keys() >= set(syntax.from_)
+        if draft.frames.keys() >= set(syntax.from_)
     ]
     for resolution in begun:
         resolution.resolve_fields(builder)
@@ -42,25 +37,19 @@ def resolve_messages(context: Context, draft: Draft) -> None:
         resolution.add_to(draft)
 
 
-class _Framed(NamedTuple):
-    """Carrier of a message of one sender."""
-
-    sender: str
-    frame: Frame
-    payload: SizeSet | None
-    """The payload sizes that its length part can state."""
-
-
 class _Resolution:
     """One message on its way into the model."""
 
     def __init__(
-        self, context: Context, name: str, syntax: MessageSyntax, frames: list[_Framed]
+        self, context: Context, name: str, syntax: MessageSyntax, frames: Mapping[str, Frame]
     ) -> None:
         self._context = context
         self._name = name
         self._syntax = syntax
         self._frames = frames
+        """By sender."""
+        self._stated = [payload_range(frame) for frame in frames.values()]
+        """The payload sizes that each length part can state."""
         self._loc: Loc = ("messages", name)
         self._fields: tuple[Field, ...] = ()
         self._sound = True
@@ -107,7 +96,7 @@ class _Resolution:
             ),
             capacity=self._capacity(),
             owner=self._name,
-            delimited=all(is_delimited(framed.frame) for framed in self._frames),
+            delimited=all(map(is_delimited, self._frames.values())),
         )
 
     def _byte_order(self) -> ByteOrder | None:
@@ -121,7 +110,7 @@ class _Resolution:
 
     def _capacity(self) -> int | None:
         """The greatest payload that one of the senders can send, where all frames bound it."""
-        bounds = [item.payload.greatest for item in self._frames if item.payload is not None]
+        bounds = [stated.greatest for stated in self._stated if stated is not None]
         return max(bounds) if len(bounds) == len(self._frames) else None
 
     def _unspecified(self) -> tuple[Field, ...]:
@@ -146,8 +135,8 @@ class _Resolution:
 
     def _sizes(self, draft: Draft) -> SizeSet:
         sizes = self._stated_sizes()
-        for framed in self._frames:
-            self._fits(sizes, framed)
+        for sender, frame in self._frames.items():
+            self._fits(sizes, sender, frame)
         sizes = self._sendable(sizes)
         if sizes.greatest > GREATEST_FRAME:
             text = f"the payload can have {amount(sizes.greatest)} bytes; a frame is at most 1 MiB"
@@ -179,15 +168,15 @@ class _Resolution:
 
     def _sendable(self, sizes: SizeSet) -> SizeSet:
         """The sizes that some sender's length part can state; an encoder refuses the others."""
-        known = [framed.payload for framed in self._frames if framed.payload is not None]
+        known = [stated for stated in self._stated if stated is not None]
         if len(known) < len(self._frames):
             return sizes
         low = min(allowed.least for allowed in known)
         return sizes.within(low, max(allowed.greatest for allowed in known)) or sizes
 
-    def _fits(self, sizes: SizeSet, framed: _Framed) -> None:
-        """True if the length part can state all sizes that the schema insists on."""
-        sender, frame, allowed = framed
+    def _fits(self, sizes: SizeSet, sender: str, frame: Frame) -> None:
+        """Check that the length part can state all sizes that the schema insists on."""
+        allowed = payload_range(frame)
         if frame.length is None or allowed is None or not self._sound:
             return
         length = f"`{frame.length.name}`"
@@ -209,7 +198,7 @@ class _Resolution:
 
     def _identity(self) -> Identity | None:
         reader = IdentityReader(self._context, self._loc, f"`{self._name}`")
-        found = [reader.read(self._syntax.id, framed.frame) for framed in self._frames]
+        found = [reader.read(self._syntax.id, frame) for frame in self._frames.values()]
         known = [identity for identity in found if identity is not None]
         if len(known) < len(found):
             return None

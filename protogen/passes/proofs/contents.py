@@ -9,7 +9,7 @@ import msgspec
 from protogen.model.checksums import checksum_of
 from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
 from protogen.model.payload_plan import constant_bytes
-from protogen.model.types import Field, codec
+from protogen.model.types import Field
 from protogen.passes.framing.capacity import counted_size
 from protogen.passes.proofs.wire_code import ByteSet, code_of, part_bytes
 
@@ -70,7 +70,7 @@ def _part(
     if isinstance(part, LengthPart):
         value = _stated(frame, part, sum(stretch.count for stretch in payload))
     if isinstance(part, NumberPart) and value is not None:
-        return known_bytes(codec(part.type).encode(value))
+        return known_bytes(part.encode(value))
     return tuple(Stretch(values) for values in part_bytes(part, frozenset()))
 
 
@@ -114,7 +114,7 @@ def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes])
 
 def number_bytes(part: ChecksumPart, value: int) -> bytes:
     """The unstuffed bytes of a checksum; one that stands in for another may be too wide."""
-    return codec(part.type).encode(value & part.type.greatest)
+    return part.encode(value & part.type.greatest)
 
 
 def _on_wire(frame: Frame, name: str, plain: bytes) -> bytes:

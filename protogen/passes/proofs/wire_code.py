@@ -19,6 +19,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
     Substitution,
+    TypedPart,
 )
 from protogen.passes.proofs.codewords import Segment
 
@@ -61,9 +62,7 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
     return (payload,)
 
 
-def _number_bytes(
-    part: NumberPart | ChecksumPart, least: int, greatest: int
-) -> tuple[ByteSet, ...]:
+def _number_bytes(part: TypedPart, least: int, greatest: int) -> tuple[ByteSet, ...]:
     """The range bounds the number's most significant byte, and all of it if it is one byte."""
     type_ = part.type
     every = SEVEN_BITS if type_.byte_bits == 7 else EVERY_BYTE
@@ -97,11 +96,10 @@ def _part_segments(
         word = b"".join(code[byte] for byte in part.bytes)
         yield Segment(frozenset({word}), 1, 1, part.name in own)
         return
-    optional = isinstance(part, ChecksumPart) and part.when_payload
     for values in part_bytes(part, payload):
         words = frozenset(code[byte] for byte in values)
-        if isinstance(part, NumberPart | ChecksumPart):
-            yield Segment(words, 0 if optional else 1, 1)
+        if isinstance(part, TypedPart):
+            yield Segment(words, 0 if part.is_optional else 1, 1)
         else:
             yield Segment(words, 0, None)
 

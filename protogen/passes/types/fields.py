@@ -5,22 +5,35 @@ Turns the fields of a message or struct into resolved types, outer before inner,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from protogen.copying import replace
 from protogen.model.nesting import takes_rest
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Array, Extent, Field, Fixed, Octets, Struct, Text, Type
+from protogen.model.types import (
+    Array,
+    Case,
+    Extent,
+    Field,
+    Fixed,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+    is_integer,
+)
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
+from protogen.passes.types.constants import named_raw_value
 from protogen.passes.types.declared import Declarations, Effective, Expansion
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.setting import Setting
-from protogen.passes.types.switches import SwitchBuilder
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
+from protogen.problems import hint_for
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
@@ -32,8 +45,9 @@ class FieldBuilder:
         self._context = context
         self._named = named
         self._declarations = Declarations(context)
-        self._switches = SwitchBuilder(context, named, self)
         self._expansion = Expansion(context)
+        self._ends: dict[tuple[Loc, str], bool] = {}
+        """True where a switch ended the payload, by its place and the type that it is in."""
 
     @property
     def followed(self) -> frozenset[str]:
@@ -64,14 +78,13 @@ class FieldBuilder:
         unknown = Field(name=name, type=UNKNOWN_TYPE, position=setting.position)
         if not has_one_form(self._context, item, loc) or not self._expansion.enter(loc, setting):
             return unknown
-        effective = self.effective(item, loc, setting)
+        effective = self._effective(item, loc, setting)
         if not all(has_one_form(self._context, *link) for link in effective.chain[1:]):
             return unknown
         check_keys(self._context, name, effective)
         return meaning.attach(self._context, name, self._type(effective), effective)
 
-    def effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
-        """Effective form of a field, once declared types are followed."""
+    def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)
 
     def _behind(self, filler: str, loc: Loc) -> None:
@@ -84,7 +97,7 @@ class FieldBuilder:
     def _type(self, item: Effective) -> Type:
         if item.syntax.switch is not None:
             self._expansion.vary()
-            return self._switches.switch(item) or UNKNOWN_TYPE
+            return self._switch(item) or UNKNOWN_TYPE
         if item.syntax.type in ("ascii", "bytes"):
             return self._string(item)
         if item.syntax.count is not None:
@@ -150,6 +163,105 @@ class FieldBuilder:
         if not isinstance(extent, Fixed):
             self._expansion.vary()
         return extent
+
+    # -- switches -----------------------------------------------------------------------------
+
+    def _switch(self, item: Effective) -> Switch | None:
+        """The switch, or None where nothing can choose."""
+        selector = self._selector(item)
+        if selector is None or not item.syntax.cases:
+            if not item.syntax.cases:
+                self._context.error_at_key("PG121", item.chain[0][1], "a switch needs `cases`")
+            return None
+        places = item.at("cases")
+        cases = [
+            self._case(key, case, (*places, key), selector, item.setting)
+            for key, case in item.syntax.cases.items()
+        ]
+        known = tuple(case for case in cases if case is not None)
+        self._distinct(known, places)
+        if not known:
+            return None
+        return Switch(
+            selector=selector.name,
+            cases=known,
+            rest=self._rest(known, item),
+            byte_bits=item.setting.layout.byte_bits,
+        )
+
+    def _selector(self, item: Effective) -> Field | None:
+        name, outer = item.syntax.switch or "", item.setting.outer
+        selector = outer.get(name)
+        if selector is not None and is_integer(selector.type):
+            return selector
+        if selector is not None:
+            self._context.error("PG116", item.at("switch"), f"`{name}` is not an integer")
+        elif not item.setting.elsewhere:
+            hint = hint_for(name, outer)
+            self._context.error("PG116", item.at("switch"), f"`{name}` is no earlier field", hint)
+        return None
+
+    def _rest(self, cases: Sequence[Case], item: Effective) -> int | None:
+        """Greatest number of bytes for a value without a case; None where the end is not known."""
+        ends = item.setting.delimited and item.setting.last
+        self._same_everywhere(ends, item)
+        if not ends:
+            return None
+        if item.setting.room is not None:
+            return item.setting.room
+        return max(case.type.sizes.greatest for case in cases)
+
+    def _same_everywhere(self, ends: bool, item: Effective) -> None:
+        """A declared type is one type: its switch has a rest wherever it is used, or nowhere."""
+        loc = item.at("switch")
+        if item.setting.elsewhere:
+            return  # Where no message uses it, nobody knows what it ends.
+        if self._ends.setdefault((loc, item.setting.owner), ends) == ends:
+            return
+        types = self._context.syntax.types
+        structs = [name for name in item.setting.stack if types[name].fields]
+        around = structs[-1] if structs else item.setting.owner
+        self._context.error(
+            "PG107",
+            loc,
+            f"two different types would be called `{around}`: where it ends a payload, this "
+            "switch keeps the bytes of a value without a case, and elsewhere it can't",
+            "declare a type for each of the two uses",
+        )
+
+    def _case(
+        self, key: object, item: FieldSyntax, loc: Loc, selector: Field, setting: Setting
+    ) -> Case | None:
+        assert is_integer(selector.type)
+        named = named_raw_value(selector.type, key)
+        if named is None:
+            enum = selector.type.enum
+            hint = hint_for(str(key), [entry.name for entry in enum.values] if enum else [])
+            text = f"`{selector.name}` has no value {key}"
+            self._context.error_at_key("PG121", loc, text, hint)
+            return None
+        value, name = named
+        inner = replace(setting, owner=f"{setting.owner}_{name}")
+        return Case(value=value, name=name, type=self._case_struct(item, loc, inner))
+
+    def _case_struct(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Struct:
+        """A case that is no struct becomes one of a single field."""
+        effective = self._effective(item, loc, setting).syntax
+        if effective.fields is None or effective.count is not None:
+            inner = replace(setting, owner=f"{setting.owner}_value", position=0)
+            field = self.field("value", item, loc, inner)
+            struct = Struct(name=setting.owner, fields=(field,))
+            self._named.register(struct, loc)
+            return struct
+        type_ = self.field("value", item, loc, setting).type
+        return type_ if isinstance(type_, Struct) else Struct(name=setting.owner, fields=())
+
+    def _distinct(self, cases: Sequence[Case], loc: Loc) -> None:
+        seen: set[int] = set()
+        for case in cases:
+            if case.value in seen:
+                self._context.error("PG121", loc, f"two cases for the value {case.value}")
+            seen.add(case.value)
 
     # -- problems -----------------------------------------------------------------------------
 
