@@ -8,8 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protogen.model.checksums import ChecksumSpec, algorithm_names, find_algorithm
-from protogen.model.crc_catalogue import ALGORITHMS, ALIASES
+from protogen.model.checksums import (
+    ChecksumSpec,
+    algorithm_names,
+    crc_catalogue,
+    find_algorithm,
+)
 from protogen.runtime.checksum import (
     Checksum,
     Crc,
@@ -198,7 +202,8 @@ def crccheck_classes() -> Iterator[tuple[str, Any]]:
 
 
 CRCCHECK = dict(crccheck_classes())
-CATALOGUE_NAMES = [row[0] for row in ALGORITHMS]
+CATALOGUE_NAMES = [spec.name for spec in crc_catalogue()]
+ALIASES = {alias: spec.name for spec, found in crc_catalogue().items() for alias in found}
 
 
 def test_the_catalogue_holds_the_names_that_two_libraries_hold() -> None:

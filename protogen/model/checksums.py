@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from protogen.model.crc_catalogue import ALGORITHMS, ALIASES, Row
+from protogen.model.crc_catalogue import catalogue_rows
 from protogen.runtime import checksum as sums
 
 ChecksumKind = Literal["xor", "sum", "fletcher", "crc"]
@@ -65,36 +65,40 @@ def find_algorithm(name: str) -> ChecksumSpec | None:
 
 def algorithm_names() -> tuple[str, ...]:
     """Return every name that `find_algorithm` knows: first the algorithms' own, then aliases."""
-    return (*_by_name(), *ALIASES)
+    own = (spec.name for spec in (*SIMPLE_ALGORITHMS, *crc_catalogue()))
+    aliases = (alias for found in crc_catalogue().values() for alias in found)
+    return (*own, *aliases)
 
 
 @cache
-def _by_name() -> Mapping[str, ChecksumSpec]:
-    """Return each algorithm under its own name, in the order of the catalogue."""
-    specs = (*SIMPLE_ALGORITHMS, *map(_spec_of, ALGORITHMS))
-    return {spec.name: spec for spec in specs}
+def crc_catalogue() -> Mapping[ChecksumSpec, tuple[str, ...]]:
+    """The algorithms of the CRC catalogue up to 64 bits, in its order, each with its aliases."""
+    return {_spec_of(row): tuple(row["aliases"].split()) for row in catalogue_rows()}
+
+
+def _spec_of(row: Mapping[str, str]) -> ChecksumSpec:
+    return ChecksumSpec(
+        row["name"],
+        "crc",
+        int(row["width"]),
+        init=int(row["init"], 16),
+        poly=int(row["poly"], 16),
+        refin=row["refin"] == "true",
+        refout=row["refout"] == "true",
+        xorout=int(row["xorout"], 16),
+    )
 
 
 @cache
 def _by_folded_name() -> Mapping[str, ChecksumSpec]:
     """Return each algorithm under its own name and its aliases, all in lower case."""
-    own = _by_name()
-    aliases = {alias: own[name] for alias, name in ALIASES.items()}
-    return {name.casefold(): spec for name, spec in (*own.items(), *aliases.items())}
-
-
-def _spec_of(row: Row) -> ChecksumSpec:
-    name, width, poly, init, refin, refout, xorout = row
-    return ChecksumSpec(
-        name,
-        "crc",
-        width,
-        init=init,
-        poly=poly,
-        refin=refin,
-        refout=refout,
-        xorout=xorout,
-    )
+    simple = {spec.name: spec for spec in SIMPLE_ALGORITHMS}
+    catalogue = {
+        name.casefold(): spec
+        for spec, aliases in crc_catalogue().items()
+        for name in (spec.name, *aliases)
+    }
+    return simple | catalogue
 
 
 @cache
