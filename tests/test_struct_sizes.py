@@ -19,11 +19,11 @@ from schema_fuzzing import Schema, schemas
 from schema_fuzzing.text import to_yaml
 from tooling import require_tool
 
+from protogen.capture.layout import struct_sizes
 from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.targets.c.module import view
 from protogen.targets.c.options import COptions
-from protogen.targets.c.payload.struct_sizes import NATURAL, StructSizes
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 STATED = re.compile(
@@ -89,6 +89,5 @@ def test_random_structs(schema: Schema, tmp_path_factory: pytest.TempPathFactory
     path.write_text(to_yaml(schema.data), encoding="utf-8", newline="")
     made = compile_file(path).protocol
     assert made is not None
-    sizes = StructSizes(NATURAL)
     for item in made.messages:
-        assert sizes.of(item.plan.steps) == ctypes.sizeof(structure_of(item.fields))
+        assert struct_sizes(item)[0] == ctypes.sizeof(structure_of(item.fields))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import prod
 
 from protogen.capture.schema import (
     CaptureSchema,
@@ -95,6 +96,27 @@ def message_record(message: Message, taken: Sequence[str] = ()) -> Record:
     Where one of the names is taken, `_` stands behind it.
     """
     return record(_columns(message.plan.steps, taken, taken))
+
+
+def struct_sizes(message: Message) -> tuple[int, int]:
+    """Bytes of a message's struct in C: on 32-bit machines, and on an AVR, which aligns nothing."""
+    record = message_record(message)
+    return record.size, _packed_size(record)
+
+
+def _packed_size(shape: Shape) -> int:
+    match shape:
+        case Record():
+            return max(1, sum(map(_packed, shape.columns)))
+        case Choice():
+            rest = () if shape.rest is None else (shape.rest,)
+            return max(map(_packed, (*(case for _, case in shape.cases), *rest)))
+        case _:
+            return shape.size
+
+
+def _packed(column: Column) -> int:
+    return _packed_size(column.shape) * prod(column.counts)
 
 
 def _free(name: str, taken: Sequence[str]) -> str:

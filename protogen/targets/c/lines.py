@@ -15,7 +15,6 @@ _PLACE = re.compile(
 )
 """A line that says where the next value lies, or remembers one; one that moves is in no loop."""
 _DECLARATION = re.compile(r"const |size_t |uint8_t \*")
-_OPERATORS = re.compile(r"(?<= (?:\|\||&&)) ")
 
 
 class Lines:
@@ -35,30 +34,13 @@ class Lines:
         self._lines[:0] = [" " * (INDENT * self._depth) + line for line in lines]
 
     @contextmanager
-    def block(self, head: str) -> Iterator[None]:
+    def block(self, head: str, end: str = "}") -> Iterator[None]:
         """Lines between braces."""
-        self.add(*self._broken(f"{head} {{"))
+        self.add(f"{head} {{")
         self._depth += 1
         yield
         self._depth -= 1
-        self.add("}")
-
-    def _broken(self, head: str) -> list[str]:
-        """A condition; one that is too long for its line is broken behind its operators."""
-        if INDENT * self._depth + len(head) <= WIDTH:
-            return [head]
-        first, *others = _OPERATORS.split(head)
-        lines = [first]
-        for part in others:
-            lines.append(" " * _open_bracket(lines) + part)
-        return lines
-
-    @contextmanager
-    def indented(self) -> Iterator[None]:
-        """Lines one step further in."""
-        self._depth += 1
-        yield
-        self._depth -= 1
+        self.add(end)
 
     @contextmanager
     def switch(self, selector: str) -> Iterator[None]:
@@ -104,18 +86,6 @@ class Lines:
 
     def __bool__(self) -> bool:
         return bool(self._lines)
-
-
-def _open_bracket(lines: list[str]) -> int:
-    """The column behind the last bracket that is still open."""
-    opened: list[int] = []
-    for line in lines:
-        for column, sign in enumerate(line):
-            if sign == "(":
-                opened.append(column + 1)
-            elif sign == ")":
-                opened.pop()
-    return opened[-1] if opened else 0
 
 
 def mentions(text: str, name: str) -> bool:

@@ -6,14 +6,23 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from protogen.model.payload_plan import AnyStep, RecordStep, RepeatStep
-from protogen.model.types import Field, Float, Struct
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    Count,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+)
+from protogen.model.types import Field, Struct, Text
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT, Lines
 from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.struct_members import UNUSED, Member, Union, counter_of, value_of
-from protogen.targets.c.spelling import Names
+from protogen.targets.c.spelling import Names, counting_type, integer_type
 
 
 class StructView(msgspec.Struct, frozen=True):
@@ -55,56 +64,63 @@ class Records:
         return f"struct {self._tags[type_.name]}"
 
     def _definition(self, tag: str, doc: list[str], steps: Sequence[AnyStep]) -> str:
-        """The definition of a struct for the values of these steps."""
-        lines = Lines(0)
-        lines.add(*comments.comment(doc))
-        lines.add(f"struct {tag} {{")
-        members = Lines(1)
+        """The definition of a struct for the values of these steps.
+
+        Constants need no room: an encoder writes them, and a decoder takes nothing else. What
+        fills the payload has a second member, which says how much it is.
+        """
+        lines, members = Lines(0), Lines()
         for step in steps:
             self._field(members, step)
         if not members:
-            members.add("/** There are no fields, and C has no empty structs. */")
-            self._declare(members, UNUSED)
+            members.add(
+                "/** There are no fields, and C has no empty structs. */", "uint8_t unused;"
+            )
+        lines.add(*comments.comment(doc), f"struct {tag} {{")
         return "\n".join([*lines.lines, *members.lines, "};"])
 
     def _field(self, lines: Lines, step: AnyStep) -> None:
-        counter, value = counter_of(step), value_of(step)
-        if counter is not None:
+        if isinstance(step, BytesStep | RepeatStep) and step.fills:
             what = "elements" if isinstance(step, RepeatStep) else "bytes"
             lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))
-            self._declare(lines, counter)
-        if value is not None:
+            lines.add(f"{counting_type(step.count.greatest)} {step.count.member};")
+        if step.holds_values:
             lines.add(*comments.comment(comments.of_field(step.field), INDENT))
-            self._declare(lines, value)
+            self._member(lines, step, step.name)
 
-    def _declare(self, lines: Lines, member: Member) -> None:
-        name = "".join([member.name, *(f"[{count}]" for count in member.counts)])
-        match member.type:
-            case Float():
-                lines.add(f"{self._helpers.float_type(member.type)} {name};")
+    def _member(self, lines: Lines, step: AnyStep, name: str) -> None:
+        """The member of that name, which has the sizes of the arrays around it behind it."""
+        match step:
+            case IntegerStep():
+                lines.add(f"{integer_type(step.type)} {name};")
+            case FloatStep():
+                lines.add(f"{self._helpers.float_type(step.type)} {name};")
             case RecordStep():
-                lines.add(f"{self.spelled(member.type.type)} {name};")
-            case Union():
-                self._union(lines, member.type, name)
-            case tuple():
-                self._struct(lines, member.type, name)
-            case spelled:
-                lines.add(f"{spelled} {name};")
+                lines.add(f"{self.spelled(step.type)} {name};")
+            case BytesStep():
+                character = "char" if isinstance(step.type, Text) else "uint8_t"
+                lines.add(f"{character} {name}{_places(step.count)};")
+            case RepeatStep():
+                self._member(lines, step.element, name + _places(step.count))
+            case ChooseStep():
+                self._union(lines, step, name)
+            case ConstantStep():
+                raise AssertionError("constants have no member")
 
-    def _union(self, lines: Lines, union: Union, name: str) -> None:
-        lines.add("union {")
-        with lines.indented():
-            for case in union.cases:
-                self._declare(lines, case)
-            if union.rest is not None:
-                text = f"The bytes where {union.selector} has another value."
-                lines.add(*comments.comment([text], 8))
-                self._declare(lines, union.rest)
-        lines.add(f"}} {name};")
+    def _union(self, lines: Lines, step: ChooseStep, name: str) -> None:
+        with lines.block("union", f"}} {name};"):
+            for case in step.cases:
+                if case.step.holds_values:
+                    self._member(lines, case.step, case.step.name)
+            if step.rest is not None:
+                text = f"The bytes where {step.selector_name} has another value."
+                lines.add(*comments.comment([text], 2 * INDENT))
+                count = step.rest.count
+                with lines.block("struct", f"}} {step.rest.name};"):
+                    lines.add(f"{counting_type(count.greatest)} size;")
+                    lines.add(f"uint8_t bytes{_places(count)};")
 
-    def _struct(self, lines: Lines, members: Sequence[Member], name: str) -> None:
-        lines.add("struct {")
-        with lines.indented():
-            for member in members:
-                self._declare(lines, member)
-        lines.add(f"}} {name};")
+
+def _places(count: Count) -> str:
+    """The size of an array; C has no empty ones."""
+    return f"[{max(1, count.greatest)}]"

@@ -10,7 +10,6 @@ from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType
-from protogen.targets.c.payload.struct_sizes import BYTES, NATURAL, StructSizes
 from protogen.targets.markdown.fields.paths import named_fields
 
 
@@ -24,7 +23,6 @@ class Context(msgspec.Struct, frozen=True):
     """The enums and flags that several fields use: they are explained once."""
     framings: Mapping[tuple[str, str], MessageFraming]
     """The sizes and the rate of each message, by its sender and its name."""
-    structs: tuple[StructSizes, StructSizes]
 
     @classmethod
     def of(cls, protocol: Protocol) -> Context:
@@ -36,13 +34,7 @@ class Context(msgspec.Struct, frozen=True):
             for sender in protocol.senders
             for framing in sender.framing.messages
         }
-        structs = StructSizes(NATURAL), StructSizes(BYTES)
-        return cls(protocol, users, shared, framings, structs)
-
-    def struct_sizes(self, message: Message) -> tuple[int, int]:
-        """Return the bytes of a message's struct in C: on 32-bit machines, and on an AVR."""
-        natural, small = self.structs
-        return natural.of(message.plan.steps), small.of(message.plan.steps)
+        return cls(protocol, users, shared, framings)
 
 
 def _users(messages: Iterable[Message]) -> dict[str, list[NumberType]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from protogen.capture.layout import struct_sizes
 from protogen.model.frame import Frame
 from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message, Overload
@@ -72,7 +73,7 @@ def _facts(context: Context, message: Message) -> Iterator[str]:
         if framing.per_second is not None:
             yield f"{rate(framing.per_second)} a second"
     yield f"payload {plural(message.sizes, 'byte')}"
-    yield _struct_size(*context.struct_sizes(message))
+    yield _struct_size(*struct_sizes(message))
     source = place(message.about.source)
     if source:
         yield source
