@@ -14,10 +14,10 @@ _HEAD = re.compile(r"(?P<function>\w[\w *]*)\((?P<arguments>[^()]+)\)(?P<end>;| 
 """The head of a function without functions among its arguments."""
 _VALUE = re.compile(r"\s*(?:return |[^=(]* = )?")
 """Text in front of a value outside of brackets."""
-
-
 _OPERATOR = re.compile(r"(?:&&| \||\|\|)$")
 """Operators behind which a line is broken."""
+_CONDITION = re.compile(r"(?:&&|\|\|)$")
+"""Operators behind which it is broken even where what stands in front is too long."""
 
 
 class _Break(msgspec.Struct, frozen=True):
@@ -47,8 +47,12 @@ def _lines(line: str) -> Iterator[str]:
 def _parts(line: str, margins: tuple[int, ...]) -> Iterator[str]:
     found = None
     if len(line) > WIDTH and not line.lstrip().startswith(("*", "/*", "#")):
-        breaks = [item for item in _breaks(line, margins) if item.end <= WIDTH]
-        found = min(breaks, key=lambda item: (len(item.margins), -item.end), default=None)
+        breaks = _breaks(line, margins)
+        found = min(
+            (item for item in breaks if item.end <= WIDTH),
+            key=lambda item: (len(item.margins), -item.end),
+            default=next((item for item in breaks if _CONDITION.search(line, 0, item.end)), None),
+        )
     if found is None:
         yield line
         return
