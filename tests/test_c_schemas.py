@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import islice
+from pathlib import Path
 from random import Random
 from types import ModuleType
 
@@ -164,3 +165,65 @@ def check_streams(
         if material.frames:
             data = stream_of(material, dice, PIECES).data
         check_events(process, module, sender.name, steps_of(data, dice))
+
+
+# --- schemas that were drawn once, and are easily missed ------------------------------------------
+
+DECISION = "decisions: {accepted: {question: Q, document: D, choice: C, because: B}}\n"
+END_BEGINS_A_START = """
+byte_bits: 7
+frame:
+  sync: {literal: {hex: 76 67 67}}
+  kind: {type: byte, id: true}
+  payload: {}
+  end: {literal: {hex: 76}, unprotected: accepted}
+transparency: {escape: {byte: 0x35, of: [0x35, 0x67, 0x76], transform: invert}}
+messages:
+  gyro: {id: 0, from: station, fields: {rate: byte, rest: {type: bytes, size: 4}}}
+"""
+IDENTITY_BEHIND_PAYLOAD = """
+byte_bits: 7
+byte_order: little
+frame:
+  start: {literal: {hex: FF}, unprotected: accepted}
+  group: {type: byte, id: true}
+  payload: {}
+  kind: {type: uint8, id: true}
+  end: {literal: {hex: FF}, unprotected: accepted}
+messages:
+  ping: {id: {group: 0, kind: 0}, from: station, fields: {echo: byte}}
+"""
+
+
+def protocol_of(text: str, folder: Path) -> Protocol:
+    path = folder / "drawn.yaml"
+    path.write_text(f"protocol: drawn\nendpoints: {{station: Station}}{text}{DECISION}")
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    return protocol
+
+
+def test_an_end_of_an_unknown_message_starts_no_other(tmp_path: Path) -> None:
+    """The last byte of what nobody asked for belongs to it, though a start begins alike."""
+    protocol = protocol_of(END_BEGINS_A_START, tmp_path)
+    process = Process(protocol, COptions(events="messages"))
+    unknown, rest = "76 67 67 6C 1C 0A 7E 76", "67 67 00 20 1A 3A 0C 06 76"
+    known = "76 67 67 00 01 02 03 04 05 76"
+    with imported(protocol) as module:
+        steps = [("feed", bytes.fromhex(unknown + rest + known)), ("flush",)]
+        check_events(process, module, "station", steps)
+    process.close()
+
+
+def test_a_payload_whose_size_is_told_behind_it_may_hold_an_end(tmp_path: Path) -> None:
+    protocol = protocol_of(IDENTITY_BEHIND_PAYLOAD, tmp_path)
+    process = Process(protocol, COptions())
+    sender = protocol.sender("station")
+    with imported(protocol) as module:
+        made = [
+            check_frame(process, module, sender, sender.messages[0], {"echo": echo}, {})
+            for echo in (0xFE, 0xFF)
+        ]
+    process.close()
+    # A group of 00, FE, and a kind in two bytes of seven bits; an FF would end the frame.
+    assert made == [bytes.fromhex("FF 00 FE 00 00 FF"), None]

@@ -360,6 +360,18 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
         return bool(self.start_bytes) and self.start_bytes == self.end_bytes
 
     @property
+    def end_begins_start(self) -> bool:
+        """True if a start may seem to begin inside of an end that belongs to the frame before."""
+        if self.shares_delimiter:
+            return False
+        start, end = self.start_bytes, self.end_bytes
+        endings = [end[place:] for place in range(len(end))]
+        if self.start is StartRule.SET:
+            return any(byte in self.start_set for byte in end)
+        begins = any(item.startswith(start) or start.startswith(item) for item in endings)
+        return bool(start) and (begins or end in start[1:])
+
+    @property
     def store(self) -> Store:
         """Bytes that a decoder keeps of a candidate."""
         if self.region is None:

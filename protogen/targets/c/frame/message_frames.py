@@ -86,7 +86,8 @@ class MessageFrame(msgspec.Struct, frozen=True):
         plan = self.decoder.plan
         group = next((g for g in plan.groups if self.message in g.messages), None)
         is_fixed = group is not None and group.fixed is not None
-        return plan.cut_ambiguous and plan.length is None and not is_fixed
+        is_known = is_fixed and plan.size_known_at is not None
+        return plan.cut_ambiguous and plan.length is None and not is_known
 
     @property
     def needs_idle_check(self) -> bool:

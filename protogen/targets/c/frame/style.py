@@ -44,7 +44,8 @@ def decoder_style(plan: FramePlan, events: Events) -> DecoderStyle:
 
 def can_open(plan: FramePlan, events: Events) -> bool:
     """True if the payload of some frame has no size until its end is seen."""
-    if events == "messages" and plan.store is Store.CONTENT and plan.identity_is_early:
+    is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
+    if events == "messages" and not is_kept_whole and plan.identity_is_early:
         # What nobody asked for is given up at once: no frame can start inside of it.
         return plan.length is None and bool(plan.end_bytes) and plan.has_open_groups
     return plan.opens
