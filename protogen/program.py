@@ -15,25 +15,22 @@ _LIBRARIES = ("construct", "jinja2", "msgspec", "pydantic", "yaml")
 
 
 def program() -> str:
-    """Return a hash of the program: its files as they are now, and what it was built on.
+    """Return a hash of the program: its files and libraries, by their places, sizes and times.
 
     A version alone would not do: a checkout that is installed as it is changes without one.
+    Libraries are not imported for that.
     """
     parts = [VERSION, sys.version]
     for root, folders, names in os.walk(_PACKAGE):
         folders[:] = sorted(name for name in folders if name != "__pycache__")
-        parts += (_file_part(Path(root, name)) for name in sorted(names))
-    return sha256("\n".join([*parts, *map(_library, _LIBRARIES)]).encode()).hexdigest()
+        parts += (_stamp(Path(root, name)) for name in sorted(names))
+    specs = (find_spec(name) for name in _LIBRARIES)
+    parts += (
+        _stamp(Path(spec.origin)) for spec in specs if spec is not None and spec.origin is not None
+    )
+    return sha256("\n".join(parts).encode()).hexdigest()
 
 
-def _file_part(path: Path) -> str:
-    return f"{path.relative_to(_PACKAGE).as_posix()} {sha256(path.read_bytes()).hexdigest()}"
-
-
-def _library(name: str) -> str:
-    """Return where a library is and since when; it is not imported for that."""
-    spec = find_spec(name)
-    if spec is None or spec.origin is None:
-        return name
-    status = Path(spec.origin).stat()
-    return f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}"
+def _stamp(path: Path) -> str:
+    status = path.stat()
+    return f"{path} {status.st_size} {status.st_mtime_ns}"

@@ -146,7 +146,7 @@ def test_a_changed_file_of_the_package(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(program, "_PACKAGE", tmp_path)
     before = program.program()
     assert program.program() == before
-    (tmp_path / "a.py").write_text("2")
+    (tmp_path / "a.py").write_text("longer")
     changed = program.program()
     (tmp_path / "b.j2").write_text("")
     assert len({before, changed, program.program()}) == 3
