@@ -14,7 +14,7 @@ from c_engine import Process, process_of
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
 
 from protogen.compiler import compile_file
-from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Sent
+from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.model.protocol import Protocol
@@ -77,7 +77,7 @@ def test_a_frame_that_is_sent_has_the_same_bytes(path: Path, sender: str, messag
     for values, parts, frame in frames_of(path, sender, message):
         assert frame is not None, "a frame can be refused only once all of it is known"
         sent = process.do(process.calls.send(sender, message, values, parts))
-        assert sent == Sent(OK, frame)
+        assert sent == Encoded(OK, frame)
 
 
 def test_frames_are_sent_byte_by_byte_where_nothing_in_them_depends_on_what_follows() -> None:

@@ -43,7 +43,7 @@ class Call(msgspec.Struct, Generic[T], frozen=True):
 
 
 class Encoded(msgspec.Struct, frozen=True):
-    """Result of encoding."""
+    """Result of encoding, or of sending byte by byte."""
 
     result: int
     data: bytes
@@ -51,13 +51,6 @@ class Encoded(msgspec.Struct, frozen=True):
     """Nothing was written outside of the buffer, and no size where there is none."""
     exact: bool = True
     """No other byte of the buffer was changed."""
-
-
-class Sent(msgspec.Struct, frozen=True):
-    """Result of sending byte by byte."""
-
-    result: int
-    data: bytes
 
 
 class Decoded(msgspec.Struct, frozen=True):
@@ -138,7 +131,7 @@ class Calls:
 
     def send(
         self, sender: str, message: str, values: Values, parts: Mapping[str, int]
-    ) -> Call[Sent]:
+    ) -> Call[Encoded]:
         """Send a frame byte by byte; raises Unfit."""
         frame = self._driver.frame(sender, message)
         head = b"S" + number(frame.index, 2)
@@ -226,9 +219,9 @@ def _read_encoded(answers: Answers) -> Encoded:
     return Encoded(result, data, bool(intact), bool(exact))
 
 
-def _read_sent(answers: Answers) -> Sent:
+def _read_sent(answers: Answers) -> Encoded:
     data = bytearray()
     while (mark := answers.number(1)) != 0:
         assert mark == 1, "the writer was called with something else"
         data += answers.take(1)
-    return Sent(answers.number(1), bytes(data))
+    return Encoded(answers.number(1), bytes(data))

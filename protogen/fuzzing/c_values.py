@@ -3,15 +3,18 @@
 The members of a struct one after another, numbers in big-endian order and as wide as their members
 are, so that the bytes are the same for every machine. Of arrays, texts and bytes only what is in
 use; of a union only the case that the selector chooses. A driver's functions in C do the same.
+There and here one walk takes and gives values, so that the two can't differ.
 """
 
 from __future__ import annotations
 
 import math
 import struct
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, BinaryIO
 
+from protogen.fuzzing.choices import constant_value
 from protogen.fuzzing.samples import Values
 from protogen.model.payload_plan import (
     AnyStep,
@@ -23,6 +26,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     PayloadPlan,
     RecordStep,
+    Reference,
     RepeatStep,
     RestStep,
 )
@@ -63,167 +67,133 @@ def number(value: int, size: int, *, signed: bool = False) -> bytes:
         raise Unfit from None
 
 
-class _Walk:
-    """The numbers of the records around a step, which count and select."""
-
-    def __init__(self) -> None:
-        self._records: list[Mapping[str, Any]] = []
-
-    def _count(self, count: Count, filled: int) -> int:
-        """Number of elements or bytes; `filled` if they fill the payload."""
-        if count.by is not None:
-            return int(self._records[count.by.level][count.by.name])
-        return filled if count.known is None else count.known
-
-    def _chosen(self, step: ChooseStep) -> AnyStep | RestStep | None:
-        by = step.selector
-        return step.case(by if isinstance(by, int) else int(self._records[by.level][by.name]))
-
-
-# --- values into bytes ----------------------------------------------------------------------------
-
-
 def pack(plan: PayloadPlan, values: Mapping[str, Any]) -> bytes:
     """The bytes of a struct with these values; raises Unfit where no struct can have them."""
-    return _Pack().record(plan.steps, values)
-
-
-class _Pack(_Walk):
-    def record(self, steps: Sequence[AnyStep], values: Mapping[str, Any]) -> bytes:
-        self._records.append(values)
-        data = b"".join(
-            self._bytes(step, values[step.name]) for step in steps if step.field.const is None
-        )
-        self._records.pop()
-        return data
-
-    def _bytes(self, step: AnyStep | RestStep | None, value: Any) -> bytes:
-        match step:
-            case FloatStep():
-                return _float_bytes(step.type.bits, float(value))
-            case IntegerStep(type=type_):
-                return number(value, type_.width // 8, signed=type_.signed)
-            case BytesStep():
-                data = _of_text(step, value)
-                return self._prefix(step.count, len(data)) + self._padded(data, step.count)
-            case RecordStep(steps=steps):
-                return self.record(steps, value)
-            case RepeatStep():
-                return self._elements(step, value)
-            case ChooseStep():
-                chosen = self._chosen(step)
-                return b"" if value is None else self._bytes(chosen, value)
-            case RestStep():
-                data = bytes.fromhex(value)
-                if len(data) > step.count.greatest:
-                    raise Unfit
-                return _counted(len(data), step.count.greatest) + data
-            case _:
-                return b""
-
-    def _elements(self, step: RepeatStep, values: Sequence[Any]) -> bytes:
-        prefix, size = self._prefix(step.count, len(values)), len(values)
-        if size != self._count(step.count, size) or size > step.count.greatest:
-            raise Unfit
-        return prefix + b"".join(self._bytes(step.element, item) for item in values)
-
-    def _padded(self, data: bytes, count: Count) -> bytes:
-        size = self._count(count, len(data))
-        if len(data) > size or size > count.greatest:
-            raise Unfit
-        return data.ljust(size, b"\0")
-
-    def _prefix(self, count: Count, size: int) -> bytes:
-        return _counted(size, count.greatest) if count.fills else b""
-
-
-def _of_text(step: BytesStep, value: str) -> bytes:
-    return value.encode("latin-1") if isinstance(step.type, Text) else bytes.fromhex(value)
-
-
-def _counted(size: int, greatest: int) -> bytes:
-    return number(size, counting_bits(greatest) // 8)
-
-
-def _float_bytes(bits: int, value: float) -> bytes:
-    try:
-        return struct.pack(">f" if bits == 32 else ">d", value)
-    except OverflowError:
-        raise Unfit from None
-
-
-# --- bytes into values ----------------------------------------------------------------------------
+    request = _Request()
+    request.record(plan.steps, values)
+    return bytes(request.data)
 
 
 def unpack(plan: PayloadPlan, answers: Answers) -> Values:
     """The values of a struct."""
-    return _Unpack(answers).record(plan.steps)
+    return _Answer(answers).record(plan.steps, {})
 
 
-class _Unpack(_Walk):
-    def __init__(self, answers: Answers) -> None:
-        super().__init__()
-        self._answers = answers
+class _Exchange(ABC):
+    """Values of a struct on their way: given ones are put into bytes, or they are read."""
 
-    def record(self, steps: Sequence[AnyStep]) -> Values:
-        found: Values = {}
-        self._records.append(found)
+    def __init__(self) -> None:
+        self._records: list[Values] = []
+        """The records around a step, whose numbers count and select."""
+
+    @abstractmethod
+    def octets(self, given: bytes, size: int) -> bytes:
+        """So many bytes: those that are given, or what is read instead."""
+
+    def record(self, steps: Sequence[AnyStep], given: Mapping[str, Any]) -> Values:
+        """The values of a record."""
+        values: Values = {}
+        self._records.append(values)
         for step in steps:
-            found[step.name] = self._value(step)
+            values[step.name] = self._value(step, given.get(step.name))
         self._records.pop()
-        return found
+        return values
 
-    def _value(self, step: AnyStep | RestStep | None) -> Any:
+    def _value(self, step: AnyStep | RestStep, given: Any) -> Any:
         match step:
             case FloatStep():
-                return self._float(step.type.bits)
+                return self._float(step.type.bits, float(0 if given is None else given))
             case IntegerStep(type=type_):
-                raw = self._answers.number(type_.width // 8, signed=type_.signed)
+                raw = self._number(given or 0, type_.width // 8, signed=type_.signed)
                 return bool(raw) if type_.role == "bool" else raw
             case ConstantStep():
-                return _shown(step)
+                return constant_value(step)
             case BytesStep():
-                return self._text(step, self._answers.take(self._size(step.count)))
+                return self._text(step, given or "")
             case RecordStep(steps=steps):
-                return self.record(steps)
+                return self.record(steps, given or {})
             case RepeatStep():
-                return [self._value(step.element) for _ in range(self._size(step.count))]
+                return self._elements(step, given)
             case ChooseStep():
-                chosen = self._chosen(step)
+                chosen = step.case(self._said(step.selector))
                 is_empty = isinstance(chosen, RecordStep) and not chosen.steps
-                return None if is_empty else self._value(chosen)
+                return None if chosen is None or is_empty else self._value(chosen, given)
             case RestStep():
-                return self._answers.take(self._filled(step.count.greatest)).hex()
-            case _:
-                raise AssertionError("a decoder takes no value without a case")
+                data = bytes.fromhex(given or "")
+                return self.octets(data, self._filled(step.count, len(data))).hex()
 
-    def _float(self, bits: int) -> float | str:
-        data = self._answers.take(bits // 8)
-        value: float = struct.unpack(">f" if bits == 32 else ">d", data)[0]
+    def _number(self, given: int, size: int, *, signed: bool = False) -> int:
+        data = self.octets(number(given, size, signed=signed), size)
+        return int.from_bytes(data, "big", signed=signed)
+
+    def _float(self, bits: int, given: float) -> float | str:
+        form = ">f" if bits == 32 else ">d"
+        try:
+            data = struct.pack(form, given)
+        except OverflowError:
+            raise Unfit from None
+        value: float = struct.unpack(form, self.octets(data, bits // 8))[0]
         return value if math.isfinite(value) else str(value)
 
-    def _size(self, count: Count) -> int:
-        return self._count(count, self._filled(count.greatest) if count.fills else 0)
-
-    def _filled(self, greatest: int) -> int:
-        return self._answers.number(counting_bits(greatest) // 8)
-
-    @staticmethod
-    def _text(step: BytesStep, data: bytes) -> str:
-        if not isinstance(step.type, Text):
+    def _text(self, step: BytesStep, given: str) -> str:
+        is_text = isinstance(step.type, Text)
+        data = given.encode("latin-1") if is_text else bytes.fromhex(given)
+        size = self._size(step.count, len(data))
+        if len(data) > size:
+            raise Unfit
+        data = self.octets(data.ljust(size, b"\0"), size)
+        if not is_text:
             return data.hex()
         text = data.decode("latin-1")
         return text.rstrip("\0") if isinstance(step.type.extent, Fixed) else text
 
+    def _elements(self, step: RepeatStep, given: Sequence[Any] | None) -> list[Any]:
+        size = self._size(step.count, len(given or ()))
+        if given is not None and len(given) != size:
+            raise Unfit
+        elements = [None] * size if given is None else given
+        return [self._value(step.element, item) for item in elements]
 
-def _shown(step: ConstantStep) -> Any:
-    """A constant as JSON lines have it."""
-    constant, value = step.field.const, step.value
-    if isinstance(value, FloatStep):
-        assert isinstance(constant, int | float)
-        return float(constant)
-    if isinstance(value, IntegerStep) and value.type.role == "bool":
-        return bool(constant)
-    if isinstance(constant, bytes):
-        return constant.hex()
-    return list(constant) if isinstance(constant, tuple) else constant
+    def _said(self, number: int | Reference) -> int:
+        if isinstance(number, int):
+            return number
+        return int(self._records[number.level][number.name])
+
+    def _size(self, count: Count, given: int) -> int:
+        """Number of elements or bytes; where they fill the payload, it stands in front."""
+        if count.fills:
+            return self._filled(count, given)
+        size = self._said(count.by) if count.by is not None else count.known
+        if size is None or size > count.greatest:
+            raise Unfit
+        return size
+
+    def _filled(self, count: Count, given: int) -> int:
+        if given > count.greatest:
+            raise Unfit
+        return self._number(given, counting_bits(count.greatest) // 8)
+
+
+class _Request(_Exchange):
+    """Puts values into bytes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.data = bytearray()
+
+    def octets(self, given: bytes, size: int) -> bytes:
+        """The bytes that are given, put behind the others."""
+        self.data += given
+        return given
+
+
+class _Answer(_Exchange):
+    """Reads values."""
+
+    def __init__(self, answers: Answers) -> None:
+        super().__init__()
+        self._answers = answers
+
+    def octets(self, given: bytes, size: int) -> bytes:
+        """The next bytes."""
+        return self._answers.take(size)

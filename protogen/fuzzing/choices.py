@@ -140,16 +140,17 @@ def scalar_choices(
             return _text_choices(step, lengths)
 
 
-def constant_choices(step: ConstantStep) -> Choices:
-    """The only value of a constant."""
-    constant = step.field.const
+def constant_value(step: ConstantStep) -> Any:
+    """A constant as JSON lines have it."""
+    constant, value = step.field.const, step.value
     if isinstance(constant, bytes):
-        return _only(constant.hex())
+        return constant.hex()
     if isinstance(constant, tuple):
-        return _only(list(constant))
-    if isinstance(step.value, FloatStep) and isinstance(constant, int):
-        return _only(float(constant))
-    return _only(constant)
+        return list(constant)
+    if isinstance(value, FloatStep) and isinstance(constant, int):
+        return float(constant)
+    is_bool = isinstance(value, IntegerStep) and value.type.role == "bool"
+    return bool(constant) if is_bool else constant
 
 
 def _integer_choices(step: IntegerStep, need: Need | None) -> Choices:
@@ -210,10 +211,8 @@ def _float_choices(step: FloatStep) -> Choices:
         return Choices((low, high), lambda random: _rounded(random.uniform(low, high), bits))
     form = "<f" if bits == 32 else "<d"
     greatest = (2 - 2**-23) * 2.0**127 if bits == 32 else math.ldexp(2 - 2**-52, 1023)
-    values = (0.0, -0.0, 1.0, -1.5, greatest, -greatest, math.inf, -math.inf, math.nan)
-    return Choices(
-        [_json_float(value) for value in values], lambda random: _any_float(form, random)
-    )
+    values = (0.0, -0.0, 1.0, -1.5, greatest, -greatest, "inf", "-inf", "nan")
+    return Choices(values, lambda random: _any_float(form, random))
 
 
 def _fitting(value: Fraction, bits: int, towards: float) -> float:
@@ -236,10 +235,6 @@ def _rounded(value: float, bits: int) -> float:
 
 def _any_float(form: str, random: Random) -> float | str:
     value: float = struct.unpack(form, random.randbytes(struct.calcsize(form)))[0]
-    return _json_float(value)
-
-
-def _json_float(value: float) -> float | str:
     return value if math.isfinite(value) else str(value)
 
 
@@ -292,10 +287,6 @@ def lengths_of(count: Count, said: int) -> Lengths:
 
 def _any_length(least: int, greatest: int, random: Random) -> int:
     return random.randint(least, min(greatest, least + _USUAL_COUNT))
-
-
-def _only(value: Any) -> Choices:
-    return Choices((value,), lambda random: value)
 
 
 def _distinct(values: Iterable[Any]) -> list[Any]:

@@ -7,6 +7,7 @@ structs.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import count
 from random import Random
 from typing import Any
 
@@ -15,7 +16,7 @@ from protogen.fuzzing.choices import (
     Choices,
     Need,
     bytes_choices,
-    constant_choices,
+    constant_value,
     count_choices,
     lengths_of,
     needs_of,
@@ -44,20 +45,25 @@ Values = dict[str, Any]
 class Boundaries:
     """Takes the boundaries of each value in turn, one in each round."""
 
-    def __init__(self, round: int) -> None:
+    def __init__(self, round: int, rounds: set[int], cases: int = 1) -> None:
         self._round = round
+        self._rounds = rounds
+        """Takes up how many rounds each value needs."""
+        self._cases = cases
 
     def choose(self, choices: Choices) -> Any:
         """The boundary that is due in this round."""
-        return choices.boundaries[self._round % len(choices.boundaries)]
+        count = len(choices.boundaries)
+        self._rounds.add(count * self._cases)
+        return choices.boundaries[self._round % count]
 
     def element(self, index: int) -> Boundaries:
         """For an element of an array: neighbours take different boundaries."""
-        return Boundaries(self._round + index)
+        return Boundaries(self._round + index, self._rounds, self._cases)
 
     def inside(self, cases: int) -> Boundaries:
         """For what is inside one of `cases`, which is due only every so many rounds."""
-        return Boundaries(self._round // cases)
+        return Boundaries(self._round // cases, self._rounds, self._cases * cases)
 
 
 class Chance:
@@ -90,8 +96,7 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
     The first `boundary_rounds` of them hold every boundary of every value: the least and the
     greatest, names, special values, single bits, empty and full arrays.
     """
-    for round in range(boundary_rounds(message, frame)):
-        yield _sample(message, frame, Boundaries(round))
+    yield from _boundary_samples(message, frame)
     chance = Chance(random)
     while True:
         yield _sample(message, frame, chance)
@@ -99,10 +104,15 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
 
 def boundary_rounds(message: Message, frame: Frame) -> int:
     """Number of samples that have each boundary once."""
-    parts = [len(part_choices(part).boundaries) for part in frame.caller_parts]
-    if message.unspecified:
-        return max([len(unspecified_choices(message).boundaries), *parts])
-    return max([1, _rounds_of(message.plan.steps), *parts])
+    return sum(1 for _ in _boundary_samples(message, frame))
+
+
+def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, Values]]:
+    rounds = {1}
+    for round in count():
+        if round == max(rounds):
+            return
+        yield _sample(message, frame, Boundaries(round, rounds))
 
 
 def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values]:
@@ -112,35 +122,6 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
         fields = _Sampler().record(message.plan.steps, chooser)
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
     return fields, parts
-
-
-# --- how many rounds ----------------------------------------------------------------------------
-
-
-def _rounds_of(steps: Sequence[AnyStep], level: int = 0) -> int:
-    needs = needs_of(steps, level)
-    rounds = (_rounds(step, level, needs.get((level, step.name))) for step in steps)
-    return max(rounds, default=1)
-
-
-def _rounds(step: AnyStep, level: int, need: Need | None = None) -> int:
-    match step:
-        case RecordStep():
-            return _rounds_of(step.steps, level + 1)
-        case RepeatStep():
-            counts = count_choices(lengths_of(step.count, 0)).boundaries
-            return max(len(counts), _rounds(step.element, level))
-        case ChooseStep():
-            return _branches(step) * max(_rounds(case.step, level) for case in step.cases)
-        case ConstantStep():
-            return 1
-        case _:
-            lengths = lengths_of(step.count, 0) if isinstance(step, BytesStep) else (0, 0)
-            return len(scalar_choices(step, lengths, need).boundaries)
-
-
-def _branches(step: ChooseStep) -> int:
-    return len(step.cases) + (step.rest is not None)
 
 
 # --- composites ---------------------------------------------------------------------------------
@@ -174,7 +155,7 @@ class _Sampler:
             case ChooseStep():
                 return self._case(step, chooser)
             case ConstantStep():
-                return chooser.choose(constant_choices(step))
+                return constant_value(step)
             case _:
                 lengths = self._lengths(step.count) if isinstance(step, BytesStep) else (0, 0)
                 return chooser.choose(scalar_choices(step, lengths, need))
@@ -188,7 +169,7 @@ class _Sampler:
         return lengths_of(count, 0 if count.by is None else self._number(count.by))
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
-        inside = chooser.inside(_branches(step))
+        inside = chooser.inside(len(step.cases) + (step.rest is not None))
         chosen = step.case(self._number(step.selector))
         if isinstance(chosen, RecordStep) and not chosen.steps:
             return None
