@@ -1,4 +1,4 @@
-"""What other programs use protogen for: load a schema, generate files, get a codec."""
+"""Functions for other programs: load a schema, generate files, get a codec."""
 
 from __future__ import annotations
 

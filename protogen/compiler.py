@@ -14,7 +14,7 @@ from protogen.schema.load import load_syntax
 
 
 class Compilation(msgspec.Struct, frozen=True):
-    """What became of one schema file. There is a protocol exactly where there is no error."""
+    """Outcome for one schema file. There is a protocol exactly where there is no error."""
 
     path: str
     protocol: Protocol | None

@@ -1,4 +1,4 @@
-"""Does each example of a schema hold?
+"""Verification that each example of a schema holds.
 
 An example is decoded and encoded by the Python that would be generated, so there is no second
 codec whose mistakes could hide in the first. What a document prints without delimiters is put into
@@ -7,13 +7,15 @@ a frame first.
 
 from __future__ import annotations
 
+import io
+from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
 
 import msgspec
 
 from protogen.live.codec import module_of
-from protogen.model.frame import ChecksumPart, Frame, LiteralPart, NumberPart, PayloadPart
+from protogen.model.frame import Frame, LiteralPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
@@ -34,7 +36,7 @@ def verify_examples(protocol: Protocol, problems: Problems) -> None:
 
 
 class _Reading(msgspec.Struct, frozen=True):
-    """What a decoder makes of the example's frame."""
+    """Result of decoding the example's frame."""
 
     fails: str
     """The reason, `unknown`, or nothing where it is a message."""
@@ -94,23 +96,15 @@ class _Verification:
 
     def _wire(self) -> bytes | None:
         """The example as a frame on the wire."""
-        if self._example.covers is None:
-            return self._example.bytes
-        pieces = _pieces(self._frame, self._example)
+        covers, data = self._example.covers, self._example.bytes
+        if covers is None:
+            return data
+        pieces = _pieces(self._frame, covers, data)
         if pieces is None:
-            size = len(self._example.bytes)
-            self._report("PG162", f"{size} bytes are too few for {', '.join(self._covers)}")
+            self._report("PG162", f"{len(data)} bytes are too few for {', '.join(covers)}")
             return None
-        payload = pieces[_payload_name(self._frame)] if self._holds_payload else b""
+        payload = pieces.get(self._frame.payload.name, b"")
         return join_parts(self._sender, payload, self._numbers(), pieces)
-
-    @property
-    def _covers(self) -> tuple[str, ...]:
-        return self._example.covers or ()
-
-    @property
-    def _holds_payload(self) -> bool:
-        return _payload_name(self._frame) in self._covers
 
     def _numbers(self) -> dict[str, int]:
         """Identity, counters and values of the parts that the example does not print."""
@@ -181,37 +175,21 @@ class _Verification:
                 self._report("PG163", "its bytes mean just what the document says")
 
 
-def _payload_name(frame: Frame) -> str:
-    return next(part.name for part in frame.parts if isinstance(part, PayloadPart))
-
-
-def _pieces(frame: Frame, example: Example) -> dict[str, bytes] | None:
+def _pieces(frame: Frame, covers: Sequence[str], data: bytes) -> dict[str, bytes] | None:
     """The printed bytes by part; None where they are too few for the parts of fixed size."""
-    covers = example.covers or ()
-    sizes = {name: _size(frame, name) for name in covers}
-    left = len(example.bytes) - sum(sizes.values())
-    if left < 0 or (left and _payload_name(frame) not in covers):
+    sizes = {name: frame.part(name).size for name in covers}
+    left = len(data) - sum(sizes.values())
+    if left < 0 or (left and frame.payload.name not in covers):
         return None
-    sizes[_payload_name(frame)] = left
-    pieces: dict[str, bytes] = {}
-    place = 0
-    for name in covers:
-        pieces[name] = example.bytes[place : place + sizes[name]]
-        place += sizes[name]
-    return pieces
-
-
-def _size(frame: Frame, name: str) -> int:
-    match frame.part(name):
-        case LiteralPart(bytes=literal):
-            return len(literal)
-        case NumberPart(type=type_) | ChecksumPart(type=type_):
-            return type_.size
-    return 0
+    stream = io.BytesIO(data)
+    return {
+        name: stream.read(left if name == frame.payload.name else size)
+        for name, size in sizes.items()
+    }
 
 
 def _differences(message: Any, stated: dict[str, Any]) -> list[str]:
-    """What the example says of fields, where the bytes say something else."""
+    """Statements of the example about fields that the bytes contradict."""
     found = message.to_dict()
     texts = []
     for name, value in stated.items():

@@ -24,7 +24,7 @@ def protocol_of(protocol: Protocol | str | os.PathLike[str]) -> Protocol:
 
 
 def sender_of(protocol: Protocol, name: str) -> Sender:
-    """Who sent the bytes. Raises CaptureError that lists who sends."""
+    """Sender of the bytes. Raises CaptureError that lists who sends."""
     try:
         return protocol.sender(name)
     except KeyError:

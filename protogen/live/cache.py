@@ -34,7 +34,7 @@ class Compiled(msgspec.Struct, frozen=True):
 
 
 def read(schema: Path) -> Compiled | None:
-    """What is kept of a schema; None if there is nothing, or something has changed since."""
+    """Return what is kept of a schema; None if that is nothing, or something has changed since."""
     try:
         folder = safe_folder(cache_folder(_FOLDER))
         file = folder / _name(schema)

@@ -23,7 +23,7 @@ class Target(Interface):
 
     @property
     def name(self) -> str:
-        """What the command line calls it."""
+        """Name on the command line."""
 
     @property
     def folder(self) -> str:

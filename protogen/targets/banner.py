@@ -20,7 +20,7 @@ _DIGITS = 12
 
 
 class CommentSyntax(msgspec.Struct, frozen=True):
-    """How a language writes a comment of one line."""
+    """Syntax of a comment of one line in a language."""
 
     opening: str
     closing: str
@@ -58,5 +58,5 @@ def spec_hash(protocols: Sequence[Protocol]) -> str:
 
 
 def is_banner(line: str) -> bool:
-    """Whether some version of protogen wrote this first line."""
+    """True if some version of protogen wrote this first line."""
     return _BANNER.fullmatch(line.rstrip("\r\n")) is not None

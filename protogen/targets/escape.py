@@ -16,7 +16,7 @@ _UNDERSCORE = re.compile(r"(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])")
 _HASH = re.compile(r"(?:^|(?<= ))#")
 """A hash that could open a heading, or close one."""
 _FIRST = re.compile(r"^([-+=](?=[-= ]|$)|\d+(?=[.)](?: |$)))")
-"""What would make a list, a rule or an underline at the start of a line."""
+"""Start of a line that would make a list, a rule or an underline at the start of a line."""
 _CODE = re.compile(r"(?<!`)(`[A-Za-z0-9_.,:+/-]+`)(?!`)")
 """A name between backticks, as people write names in prose."""
 _QUOTE = re.compile(r'"(?="|\Z)')

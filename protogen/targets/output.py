@@ -56,7 +56,7 @@ class File(msgspec.Struct, frozen=True):
 
 
 class State(StrEnum):
-    """How what is in the folder differs from what should be there."""
+    """Difference between what is in the folder and what should be there."""
 
     MISSING = "missing"
     STALE = "stale"
@@ -78,7 +78,7 @@ class Difference(msgspec.Struct, frozen=True):
 
 
 class Report(msgspec.Struct, frozen=True):
-    """What `write_files` did. With anything refused before the first write, nothing was written."""
+    """Result of `write_files`. With a refusal before the first write, nothing was written."""
 
     written: tuple[PurePosixPath, ...] = ()
     removed: tuple[PurePosixPath, ...] = ()
@@ -145,18 +145,15 @@ def expected_files(
 def is_current(
     expected: Mapping[PurePosixPath, str | None], folder: Path, *, prune: bool = True
 ) -> bool:
-    """Whether the folder holds what `expected_files` said, and with `prune` no more of ours."""
+    """True if the folder holds what `expected_files` said, and with `prune` no more of ours."""
     if not all(_holds(folder / path, digest) for path, digest in expected.items()):
         return False
     return not prune or not any(_extras(set(expected), folder, _read_manifest(folder)))
 
 
 def _holds(path: Path, digest: str | None) -> bool:
-    try:
-        content = path.read_bytes()
-    except OSError:
-        return False
-    return digest is None or sha256(content).hexdigest() == digest
+    content = _read(path)
+    return content is not None and digest in (None, sha256(content).hexdigest())
 
 
 # --- what is there ------------------------------------------------------------------------------
@@ -222,7 +219,11 @@ def _extras(
     wanted: set[PurePosixPath], folder: Path, listed: Mapping[str, str]
 ) -> Iterator[Difference]:
     for path in _present(folder):
-        if path not in wanted and _is_ours(path, _head(folder / path, str(path) in listed), listed):
+        if path in wanted:
+            continue
+        whole = path == MANIFEST or str(path) in listed
+        content = _read(folder / path, -1 if whole else _LONGEST_BANNER)
+        if content is not None and _is_ours(path, content, listed):
             yield Difference(path, State.EXTRA)
 
 
@@ -243,13 +244,13 @@ def _is_regular(path: Path) -> bool:
         return False
 
 
-def _head(path: Path, whole: bool) -> bytes:
-    """Read the start of a file, or all of it where its hash is asked; empty if it can't be read."""
+def _read(path: Path, size: int = -1) -> bytes | None:
+    """Read a file, or the start of it; None if it can't be read."""
     try:
         with path.open("rb") as stream:
-            return stream.read(-1 if whole or path.name == MANIFEST.name else _LONGEST_BANNER)
+            return stream.read(size)
     except OSError:
-        return b""
+        return None
 
 
 # --- the manifest -------------------------------------------------------------------------------
@@ -257,9 +258,7 @@ def _head(path: Path, whole: bool) -> bytes:
 
 def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...]:
     """The files that the folder should hold, with the manifest if one of them has no banner."""
-    due = tuple(
-        file for file in files if (prune or not _stays(file, folder)) and not _is_kept(file, folder)
-    )
+    due = tuple(file for file in files if not _stays(file, folder, prune))
     kept = {} if prune else _read_manifest(folder)
     hashes = kept | {
         str(file.path): sha256(file.bytes).hexdigest()
@@ -269,15 +268,11 @@ def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...
     return (*due, _manifest(hashes)) if hashes else due
 
 
-def _stays(file: File, folder: Path) -> bool:
-    """Whether the file tells of schemas that are not generated now."""
-    return file.shared and (folder / file.path).is_file()
-
-
-def _is_kept(file: File, folder: Path) -> bool:
-    """Whether the file was made before, and belongs to its user now."""
+def _stays(file: File, folder: Path, prune: bool) -> bool:
+    """True if what is there stays: for other schemas that it tells of, or for its user."""
     path = folder / file.path
-    return file.once and (path.exists() or path.is_symlink())
+    for_others = file.shared and not prune and path.is_file()
+    return for_others or (file.once and (path.exists() or path.is_symlink()))
 
 
 def _manifest(hashes: Mapping[str, str]) -> File:
@@ -286,10 +281,7 @@ def _manifest(hashes: Mapping[str, str]) -> File:
 
 
 def _read_manifest(folder: Path) -> dict[str, str]:
-    try:
-        return _parse_manifest((folder / MANIFEST).read_bytes()) or {}
-    except OSError:
-        return {}
+    return _parse_manifest(_read(folder / MANIFEST) or b"") or {}
 
 
 def _parse_manifest(content: bytes) -> dict[str, str] | None:

@@ -1,4 +1,4 @@
-"""How templates are found and printed: the same for every target."""
+"""Templates, found and printed in the same way for every target."""
 
 from __future__ import annotations
 

@@ -15,12 +15,9 @@ from protogen.copying import replace
 from protogen.model.frame import (
     FULL_GROUP,
     Base16,
-    ChecksumPart,
     Cobs,
     Frame,
     LengthPart,
-    LiteralPart,
-    NumberPart,
     Part,
     PayloadPart,
 )
@@ -126,7 +123,11 @@ def _from_last(distance: int) -> str:
 def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
     """Return where each part lies in frames with such a payload; absent parts are left out."""
     sized = [(part, part_sizes(part, payload)) for part in _parts_on_wire(frame)]
-    present = [(part, sizes) for part, sizes in sized if _is_present(part, sizes)]
+    present = [
+        (part, sizes)
+        for part, sizes in sized
+        if sizes.greatest > 0 or isinstance(part, PayloadPart)
+    ]
     shown = [sizes.times(SizeSet.exactly(wire_scale(frame, part))) for part, sizes in present]
     starts = accumulate(shown, initial=_NOTHING)
     rests = reversed([*accumulate(reversed(shown))])
@@ -151,28 +152,12 @@ def _parts_on_wire(frame: Frame) -> tuple[Part, ...]:
     return (*frame.parts[:first], CodePart(size=size), *frame.parts[first:])
 
 
-def _is_present(part: Part, sizes: SizeSet) -> bool:
-    return sizes.greatest > 0 or isinstance(part, PayloadPart)
-
-
 def part_sizes(part: Part, payload: SizeSet) -> SizeSet:
     """Return the unstuffed bytes of a part in frames whose payload has such sizes."""
-    match part:
-        case LiteralPart():
-            return SizeSet.exactly(len(part.bytes))
-        case ChecksumPart():
-            return _checksum_sizes(part, payload)
-        case NumberPart():
-            return SizeSet.exactly(part.type.size)
-        case CodePart():
-            return SizeSet.exactly(part.size)
-        case _:
-            return payload
-
-
-def _checksum_sizes(part: ChecksumPart, payload: SizeSet) -> SizeSet:
-    sizes = SizeSet.exactly(part.type.size)
-    if not part.when_payload or payload.least > 0:
+    if isinstance(part, PayloadPart):
+        return payload
+    sizes = SizeSet.exactly(part.size)
+    if not part.is_optional or payload.least > 0:
         return sizes
     return _NOTHING if payload.greatest == 0 else sizes | _NOTHING
 
@@ -185,28 +170,16 @@ def length_values(frame: Frame, part: LengthPart, payload: SizeSet) -> SizeSet:
 
 def wire_scale(frame: Frame, part: Part) -> int:
     """Return how many bytes on the wire stand for each byte of a part, stuffing aside."""
-    transparency = frame.transparency
-    if transparency is None or not isinstance(transparency.encoding, Base16):
-        return 1
-    return 2 if part in _region(frame) else 1
-
-
-def _region(frame: Frame) -> tuple[Part, ...]:
-    """Return the parts that transparency covers."""
-    if frame.transparency is None:
-        return ()
-    names = [part.name for part in frame.parts]
-    first, last = frame.transparency.first, frame.transparency.last
-    return frame.parts[names.index(first) : names.index(last) + 1]
+    return 2 if isinstance(frame.encoding, Base16) and part.name in frame.stuffed else 1
 
 
 def is_stuffed(frame: Frame) -> bool:
     """True if bytes on the wire can lie further on than positions say, by any number."""
-    encoding = None if frame.transparency is None else frame.transparency.encoding
-    return encoding is not None and not isinstance(encoding, Base16 | Cobs)
+    return not isinstance(frame.encoding, Base16 | Cobs | None)
 
 
 def has_further_codes(frame: Frame, payload: SizeSet) -> bool:
     """True if a region can be so long that COBS puts a second code byte into it."""
-    region = sum((part_sizes(part, payload) for part in _region(frame)), start=_NOTHING)
+    stuffed = (part_sizes(frame.part(name), payload) for name in frame.stuffed)
+    region = sum(stuffed, start=_NOTHING)
     return bool(frame.code_size) and region.greatest > FULL_GROUP
