@@ -10,39 +10,32 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-import msgspec
-
 from protogen.layout.nodes import Collection, Comment, Item, Scalar, walk
 
 _COMMENT = re.compile(r"(?<!\S)#[^\n]*")
 
 
-class _Found(msgspec.Struct, frozen=True):
-    text: str
-    start: int
-    column: int
-    is_alone: bool
-    is_lined_up: bool
-    """True if more than the usual two spaces stand in front of it."""
-    below_blank: bool
-
-
 def place_comments(text: str, root: Collection) -> None:
     """Put every comment, and the blank lines in front of items, to the items of `root`."""
-    for comment in _comments(text, root):
-        if comment.is_alone:
-            _place_alone(comment, root)
+    for match in _comments(text, root):
+        start, comment = match.start(), match[0].rstrip()
+        line_start = text.rfind("\n", 0, start) + 1
+        before = text[line_start:start]
+        if before.strip():
+            # More than the usual two spaces line it up with others.
+            column = len(before) if before.endswith("   ") else 0
+            _place_beside(Comment(comment, column), start, root)
         else:
-            _place_beside(comment, root)
+            lines = [""] * _below_blank(text, line_start) + [comment]
+            _place_alone(lines, start, len(before), root)
     _place_blanks(text, root)
 
 
-def _comments(text: str, root: Collection) -> Iterator[_Found]:
+def _comments(text: str, root: Collection) -> Iterator[re.Match[str]]:
     position = 0
     spans = [_content(text, node) for node in walk(root) if isinstance(node, Scalar)]
     for start, end in [*spans, (len(text), len(text))]:
-        for match in _COMMENT.finditer(text, position, max(start, position)):
-            yield _found(text, match.start(), match[0])
+        yield from _COMMENT.finditer(text, position, max(start, position))
         position = max(position, end)
 
 
@@ -55,32 +48,18 @@ def _content(text: str, scalar: Scalar) -> tuple[int, int]:
     return start, max(start, scalar.end)
 
 
-def _found(text: str, start: int, comment: str) -> _Found:
-    line_start = text.rfind("\n", 0, start) + 1
-    before = text[line_start:start]
-    return _Found(
-        text=comment.rstrip(),
-        start=start,
-        column=start - line_start,
-        is_alone=not before.strip(),
-        is_lined_up=before.endswith("   "),
-        below_blank=_below_blank(text, line_start),
-    )
-
-
 def _below_blank(text: str, line_start: int) -> bool:
     above = text[text.rfind("\n", 0, max(line_start - 1, 0)) + 1 : line_start]
     return line_start > 0 and not above.strip()
 
 
-def _place_alone(comment: _Found, within: Collection) -> None:
-    lines = [""] * comment.below_blank + [comment.text]
-    before = _last_before(within, comment.start)
-    following = _first_behind(within, comment.start)
-    if before is not None and _is_inside(comment, before, within):
+def _place_alone(lines: list[str], start: int, column: int, within: Collection) -> None:
+    before = _last_before(within, start)
+    following = _first_behind(within, start)
+    if before is not None and _is_inside(start, column, before, within):
         assert isinstance(before.value, Collection)
-        _place_alone(comment, before.value)
-    elif before is not None and comment.start < before.value.start:
+        _place_alone(lines, start, column, before.value)
+    elif before is not None and start < before.value.start:
         before.leading += lines
     elif following is not None:
         following.leading += lines
@@ -88,30 +67,29 @@ def _place_alone(comment: _Found, within: Collection) -> None:
         within.foot += lines
 
 
-def _is_inside(comment: _Found, item: Item, within: Collection) -> bool:
+def _is_inside(start: int, column: int, item: Item, within: Collection) -> bool:
     inner = item.value
     if not isinstance(inner, Collection) or not inner.items:
         return False
     if inner.is_flow:
-        return inner.start < comment.start < inner.end
-    deeper = comment.column > within.column
-    return deeper or _first_behind(inner, comment.start) is not None
+        return inner.start < start < inner.end
+    return column > within.column or _first_behind(inner, start) is not None
 
 
-def _place_beside(comment: _Found, within: Collection) -> None:
-    item = _last_before(within, comment.start)
+def _place_beside(comment: Comment, start: int, within: Collection) -> None:
+    item = _last_before(within, start)
     while item is not None:
         inner = item.value
-        if not isinstance(inner, Collection) or (inner.is_flow and comment.start >= inner.end):
+        if not isinstance(inner, Collection) or (inner.is_flow and start >= inner.end):
             break
-        deeper = _last_before(inner, comment.start)
+        deeper = _last_before(inner, start)
         if deeper is None:
             break
         item = deeper
     if item is None:
         within.items[0].leading.append(comment.text)
     else:
-        item.beside.append(Comment(comment.text, comment.column if comment.is_lined_up else 0))
+        item.beside.append(comment)
 
 
 def _last_before(collection: Collection, position: int) -> Item | None:

@@ -53,13 +53,9 @@ def _has_fixed_keys(schema: JsonObject) -> bool:
 def _sort(node: Collection, order: list[str]) -> None:
     ranks = {name: rank for rank, name in reversed(list(enumerate(order)))}
     ordered = sorted(node.items, key=lambda item: ranks.get(_name(item), len(ranks)))
-    if _anchors_stay_first(node.items, ordered):
+    # Every alias has to mean what it meant.
+    if _bindings(node.items) == _bindings(ordered):
         node.items = ordered
-
-
-def _anchors_stay_first(items: list[Item], ordered: list[Item]) -> bool:
-    """Tell whether every alias still means what it meant."""
-    return _bindings(items) == _bindings(ordered)
 
 
 def _bindings(items: list[Item]) -> dict[int, int | None]:

@@ -23,35 +23,30 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
     if not protocols:
         return ()
     ordered = sorted(protocols, key=lambda protocol: protocol.name)
-    pages = [_page(protocol) for protocol in ordered]
-    index = _file("index", ordered, view=index_view(ordered))
-    fidelity = _file("fidelity", ordered, view=fidelity_view(ordered))
-    return (*pages, index, fidelity)
-
-
-def _page(protocol: Protocol) -> File:
-    text = page_text(protocol)
-    return File(PurePosixPath(f"{protocol.name}.md"), text, banner(MARKDOWN, [protocol]))
+    pages = [
+        File(PurePosixPath(f"{item.name}.md"), page_text(item), banner(MARKDOWN, [item]))
+        for item in ordered
+    ]
+    first_line = banner(MARKDOWN, ordered)
+    views = {"index": index_view(ordered), "fidelity": fidelity_view(ordered)}
+    shared = [
+        File(PurePosixPath(f"{name}.md"), _render(name, view), first_line, shared=True)
+        for name, view in views.items()
+    ]
+    return (*pages, *shared)
 
 
 def page_text(protocol: Protocol) -> str:
-    """Return a protocol's page without its banner."""
-    return _linked(_render("protocol", view=page_view(protocol)), protocol)
+    """Return a protocol's page without its banner.
 
-
-def _linked(text: str, protocol: Protocol) -> str:
-    """Turn "decision NAME", as the texts of a schema refer to one, into a link."""
+    "decision NAME", as the texts of a schema refer to one, becomes a link.
+    """
+    text = _render("protocol", page_view(protocol))
     names = "|".join(decision.name for decision in protocol.decisions)
-    return re.sub(rf"\bdecision `?({names})\b`?", _decision_link, text) if names else text
-
-
-def _decision_link(match: re.Match[str]) -> str:
-    return f"decision {decision_link(match[1])}"
-
-
-def _file(name: str, protocols: Sequence[Protocol], view: object) -> File:
-    return File(
-        PurePosixPath(f"{name}.md"), _render(name, view), banner(MARKDOWN, protocols), shared=True
+    if not names:
+        return text
+    return re.sub(
+        rf"\bdecision `?({names})\b`?", lambda found: f"decision {decision_link(found[1])}", text
     )
 
 

@@ -25,6 +25,9 @@ _FEW = 4
 """So many names, without anything to add, are listed where they are used."""
 
 
+Named = Sequence[NamedValue] | Sequence[NamedBit]
+
+
 class Anchors(msgspec.Struct, frozen=True):
     """Anchors of the tables of values: with their message, or once for all that share them."""
 
@@ -50,12 +53,14 @@ def type_anchor(named: Enum | Flags) -> str:
 
 def range_text(field: Field, path: Path, anchors: Anchors) -> str:
     """Say which raw values the field at `path` takes, with links to the tables of its values."""
+    integer = field.integer
     texts = (
-        _constant_text(field),
-        "" if field.const is not None else _named_text(field, path, anchors),
+        _named_text(field, path, anchors)
+        if field.const is None
+        else f"always {constant(field.const, integer)}",
         _bounds_text(field),
-        _default_text(field),
-        _special_text(field, anchors.of_special(path)),
+        "" if field.default is None else f"default {constant(field.default, integer)}",
+        values_text(field.special, anchors.of_special(path), "special value"),
     )
     return "; ".join(text for text in texts if text)
 
@@ -76,7 +81,7 @@ def constant(value: Constant, type_: NumberType | None) -> str:
 def raw_text(value: int, type_: NumberType) -> str:
     """Print a raw value: a character as one, its name behind it where it has one."""
     shown = character(value) if type_.role == "char" else ""
-    name = name_of(value, type_.enum)
+    name = _enum_name(value, type_.enum)
     return " ".join(filter(None, (shown, code(short_number(value)), name)))
 
 
@@ -85,22 +90,13 @@ def character(value: int) -> str:
     return markdown(f"'{chr(value)}'") if 0x20 < value < 0x7F else ""
 
 
-def name_of(value: int, enum: Enum | None) -> str:
-    """Return the enum's name of a raw value; empty if it has none."""
-    values = enum.values if enum else ()
+def _name_of(value: int, values: Sequence[NamedValue]) -> str:
+    """Return the name of a raw value; empty if it has none."""
     return next((item.name for item in values if item.value == value), "")
 
 
-def _constant_text(field: Field) -> str:
-    if field.const is None:
-        return ""
-    return f"always {constant(field.const, field.integer)}"
-
-
-def _default_text(field: Field) -> str:
-    if field.default is None:
-        return ""
-    return f"default {constant(field.default, field.integer)}"
+def _enum_name(value: int, enum: Enum | None) -> str:
+    return _name_of(value, enum.values) if enum else ""
 
 
 def _named_text(field: Field, path: Path, anchors: Anchors) -> str:
@@ -111,29 +107,20 @@ def _named_text(field: Field, path: Path, anchors: Anchors) -> str:
     if integer.enum:
         return values_text(integer.enum.values, anchor)
     if integer.flags:
-        return _bits_text(integer.flags.bits, anchor)
+        bits = integer.flags.bits
+        return _linked([f"bit {item.bit} {item.name}" for item in bits], bits, "flag", anchor)
     return f"[bit ranges](#{anchor})" if integer.bit_fields else ""
 
 
-def values_text(values: Sequence[NamedValue], anchor: str) -> str:
+def values_text(values: Sequence[NamedValue], anchor: str, noun: str = "value") -> str:
     """List named values if they are few; link to their table where that tells more."""
     names = [f"{code(short_number(item.value))} {item.name}" for item in values]
-    return _linked(names, "value", anchor if tells_more(values) else "")
+    return _linked(names, values, noun, anchor)
 
 
-def _bits_text(bits: Sequence[NamedBit], anchor: str) -> str:
-    names = [f"bit {item.bit} {item.name}" for item in bits]
-    return _linked(names, "flag", anchor if tells_more(bits) else "")
-
-
-def _special_text(field: Field, anchor: str) -> str:
-    names = [f"{code(short_number(item.value))} {item.name}" for item in field.special]
-    return _linked(names, "special value", anchor if tells_more(field.special) else "")
-
-
-def _linked(names: Sequence[str], noun: str, anchor: str) -> str:
+def _linked(names: Sequence[str], items: Named, noun: str, anchor: str) -> str:
     text = ", ".join(names) if len(names) <= _FEW else plural(len(names), noun)
-    return f"[{text}](#{anchor})" if anchor else text
+    return f"[{text}](#{anchor})" if tells_more(items) else text
 
 
 def _bounds_text(field: Field) -> str:
@@ -142,14 +129,11 @@ def _bounds_text(field: Field) -> str:
     named = integer and (integer.enum or integer.flags or integer.bit_fields)
     if field.least is None and field.greatest is None:
         return ""
-    if not field.ranged and (named or field.const is not None or _is_plain_char(integer)):
+    is_plain = integer is not None and integer.role in ("char", "bool")
+    if not field.ranged and (named or field.const is not None or is_plain):
         return ""
     raw = bounds(field.least, field.greatest)
     return f"{raw} ({_physical_bounds(field)})" if field.scaled else raw
-
-
-def _is_plain_char(type_: NumberType | None) -> bool:
-    return type_ is not None and type_.role in ("char", "bool")
 
 
 def _physical_bounds(field: Field) -> str:
@@ -182,14 +166,15 @@ def _formula(field: Field) -> str:
     return f"{text} {sign} {number(abs(field.offset))}" if field.offset else text
 
 
-def tells_more(items: Sequence[NamedValue] | Sequence[NamedBit]) -> bool:
+def tells_more(items: Named) -> bool:
     """True if a table has more to show than a list in a cell."""
     return len(items) > _FEW or any(item.about != About() for item in items)
 
 
 def value_meaning(value: int, field: Field, type_: NumberType) -> str:
     """Say what a raw value means: its names, else its physical value, else what the field is."""
-    named = _special_name(value, field) or _names(value, type_)
+    special = _name_of(value, field.special)
+    named = code(special) if special else _names(value, type_)
     if named:
         return named
     if field.unit or field.scaled:
@@ -198,20 +183,14 @@ def value_meaning(value: int, field: Field, type_: NumberType) -> str:
     return markdown(field.about.doc)
 
 
-def _special_name(value: int, field: Field) -> str:
-    return next((code(item.name) for item in field.special if item.value == value), "")
-
-
 def _names(value: int, type_: NumberType) -> str:
     if type_.enum:
-        name = name_of(value, type_.enum)
+        name = _enum_name(value, type_.enum)
         return code(name) if name else "no name"
     if type_.flags:
         names = [code(item.name) for item in type_.flags.bits if value >> item.bit & 1]
         return ", ".join(names) or "no flag"
     runs = ((bits, (value & bits.mask) >> bits.low) for bits in type_.bit_fields)
-    return ", ".join(f"{code(bits.name)} {_run_text(run, bits.enum)}" for bits, run in runs)
-
-
-def _run_text(value: int, enum: Enum | None) -> str:
-    return f"{value} {name_of(value, enum)}".strip()
+    return ", ".join(
+        f"{code(bits.name)} {run} {_enum_name(run, bits.enum)}".strip() for bits, run in runs
+    )

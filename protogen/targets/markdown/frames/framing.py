@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from protogen.model.framing import Framing
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
 from protogen.targets.escape import markdown
@@ -17,9 +16,6 @@ from protogen.targets.markdown.frames.parts import (
 from protogen.targets.markdown.pages.context import by_frame
 from protogen.targets.markdown.text.table import View
 from protogen.targets.markdown.text.words import capital, code, listed, plural, sentence
-
-Property = tuple[str, str]
-"""A label and a text."""
 
 Sentences = tuple[str, ...]
 
@@ -62,8 +58,8 @@ def sender_title(sender: Sender, protocol: Protocol) -> str:
     return f"{code(sender.name)}, {markdown(titles[sender.name])}"
 
 
-def _shared_properties(senders: Sequence[Sender]) -> tuple[Property, ...]:
-    """Return the properties of several senders; what differs names the sender."""
+def _shared_properties(senders: Sequence[Sender]) -> tuple[tuple[str, str], ...]:
+    """Return what senders have in common, label by label; what differs names the sender."""
     columns = [dict(_properties(sender)) for sender in senders]
     return tuple(
         (label, _merged(senders, [column[label] for column in columns])) for label in columns[0]
@@ -89,7 +85,8 @@ def _properties(sender: Sender) -> Iterator[tuple[str, Sentences]]:
     yield "Self-synchronising", (f"{sync} {_said(framing.why_synchronising)}".strip(),)
     yield "Frame size", (f"{sizes} on the wire.",)
     yield "Overhead", (_overhead(sender),)
-    yield "Single-byte errors that go unnoticed", _undetected(framing)
+    undetected = tuple(map(_said, framing.undetected)) or ("None.",)
+    yield "Single-byte errors that go unnoticed", undetected
     yield "Ambiguity", (_AMBIGUITY[framing.cut_ambiguous],)
 
 
@@ -99,10 +96,6 @@ def _overhead(sender: Sender) -> str:
     if code_bytes:
         return f"{overhead} besides the payload, with the first COBS code byte."
     return f"{overhead} besides the payload, before any stuffing or encoding."
-
-
-def _undetected(framing: Framing) -> Sentences:
-    return tuple(_said(text) for text in framing.undetected) or ("None.",)
 
 
 def _said(text: str) -> str:

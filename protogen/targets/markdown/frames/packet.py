@@ -13,7 +13,6 @@ import msgspec
 from protogen.model.frame import Frame, LiteralPart, PayloadPart
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Field
 from protogen.targets.markdown.frames.layout import Slot, slots
 from protogen.targets.markdown.text.words import hex_bytes, size_text, span
 
@@ -67,15 +66,12 @@ def message_diagram(frame: Frame, message: Message) -> str | None:
 
 
 def _blocks(slot: Slot, message: Message) -> Iterator[Block]:
-    if isinstance(slot.part, PayloadPart) and slot.start is not None:
-        yield from _field_blocks(message.fields, slot.start, slot.scale)
-    else:
+    start = slot.start
+    if not isinstance(slot.part, PayloadPart) or start is None:
         yield _part_block(slot)
-
-
-def _field_blocks(fields: Iterable[Field], start: int, scale: int) -> Iterator[Block]:
-    for field in fields:
-        size = (field.size or 0) * scale
+        return
+    for field in message.fields:
+        size = (field.size or 0) * slot.scale
         if size:
             yield Block(span(start, size), field.name, size)
         start += size
