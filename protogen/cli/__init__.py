@@ -1,58 +1,78 @@
-"""The command line. This module only registers the commands; each has a module of its own.
+"""The command line. This module only names the commands; each has a module of its own.
 
-Nothing heavy is imported here or at the top of a command's module: a command imports what it needs
-when it runs, so that `--help` and completion are quick.
+A command's module is imported when the command is asked for. Nothing heavy is imported at the top
+of any of them either: a command imports what it needs when it runs, so that `--help` is quick.
 """
 
 from __future__ import annotations
 
 import io
 import sys
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
+from typer.main import get_command
 
-from protogen.cli import check, fmt, fuzz, init, native, schema_json
 from protogen.cli.command import Command
-from protogen.cli.evolution import breaking, diff, lock, rules
 from protogen.cli.exits import guarded
-from protogen.cli.generation import generate, size
-from protogen.cli.wire import convert, decode, encode, explain
+
+_MODULES = {
+    "init": "init",
+    "check": "check",
+    "generate": "generation.generate",
+    "fmt": "fmt",
+    "decode": "wire.decode",
+    "encode": "wire.encode",
+    "convert": "wire.convert",
+    "explain": "wire.explain",
+    "fuzz": "fuzz",
+    "diff": "evolution.diff",
+    "breaking": "evolution.breaking",
+    "lock": "evolution.lock",
+    "rules": "evolution.rules",
+    "size": "generation.size",
+    "schema-json": "schema_json",
+    "native": "native",
+}
+"""Module of each command, in the order of the help."""
+
+
+class _Commands(TyperGroup):
+    """Commands whose modules are imported when somebody asks for them."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands = dict.fromkeys(_MODULES)  # type: ignore[assignment]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command by its name, or None if there is no such command."""
+        if cmd_name in _MODULES and self.commands[cmd_name] is None:
+            self.commands[cmd_name] = _command(cmd_name)
+        return self.commands.get(cmd_name)
+
+
+def _command(name: str) -> Any:
+    module = import_module(f"protogen.cli.{_MODULES[name]}")
+    if hasattr(module, "GROUP"):
+        return get_command(module.GROUP)
+    single = typer.Typer(add_completion=False, rich_markup_mode=None)
+    cls = getattr(module, "CLASS", Command)
+    run = getattr(module, name.replace("-", "_"))
+    single.command(name, cls=cls, epilog=module.EXAMPLE)(guarded(run))
+    return get_command(single)
+
 
 app = typer.Typer(
     name="protogen",
+    cls=_Commands,
     help="A compiler for serial protocols: one YAML file in, codecs and documents out.",
     epilog="Example: protogen check schemas && protogen generate schemas -o generated",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-app.command("init", cls=Command, epilog=init.EXAMPLE)(guarded(init.init))
-app.command("check", cls=Command, epilog=check.EXAMPLE)(guarded(check.check))
-app.command("generate", cls=Command, epilog=generate.EXAMPLE)(guarded(generate.generate))
-app.command("fmt", cls=Command, epilog=fmt.EXAMPLE)(guarded(fmt.fmt))
-app.command("decode", cls=Command, epilog=decode.EXAMPLE)(guarded(decode.decode))
-app.command("encode", cls=Command, epilog=encode.EXAMPLE)(guarded(encode.encode))
-app.command("convert", cls=convert.ConvertCommand, epilog=convert.EXAMPLE)(guarded(convert.convert))
-app.command("explain", cls=Command, epilog=explain.EXAMPLE)(guarded(explain.explain))
-app.command("fuzz", cls=Command, epilog=fuzz.EXAMPLE)(guarded(fuzz.fuzz))
-app.command("diff", cls=Command, epilog=diff.EXAMPLE)(guarded(diff.diff))
-app.command("breaking", cls=Command, epilog=breaking.EXAMPLE)(guarded(breaking.breaking))
-app.command("lock", cls=Command, epilog=lock.EXAMPLE)(guarded(lock.lock))
-app.command("rules", cls=Command, epilog=rules.EXAMPLE)(guarded(rules.rules))
-app.command("size", cls=Command, epilog=size.EXAMPLE)(guarded(size.size))
-native_app = typer.Typer(
-    help="Compiled decoders that read captures fast: build them ahead, find them, remove them.",
-    no_args_is_help=True,
-)
-native_app.command("build", cls=Command, epilog=native.BUILD_EXAMPLE)(guarded(native.build))
-native_app.command("path", cls=Command, epilog=native.PATH_EXAMPLE)(guarded(native.path))
-native_app.command("clean", cls=Command, epilog=native.CLEAN_EXAMPLE)(guarded(native.clean))
-app.add_typer(native_app, name="native")
-app.command("schema-json", cls=Command, epilog=schema_json.EXAMPLE)(
-    guarded(schema_json.schema_json)
 )
 
 

@@ -8,21 +8,26 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from protogen.cli.exits import CLEAN, UsageError
+from protogen.cli.command import Command
+from protogen.cli.exits import CLEAN, UsageError, guarded
 from protogen.cli.options import SchemaPaths
 from protogen.convert.formats import OutputFormat
 
 if TYPE_CHECKING:
     from protogen.convert.columns.tables import Tables
 
-BUILD_EXAMPLE = "Example: protogen native build schemas"
-PATH_EXAMPLE = "Example: du -sh $(protogen native path)"
-CLEAN_EXAMPLE = "Example: protogen native clean"
+GROUP = typer.Typer(
+    name="native",
+    help="Compiled decoders that read captures fast: build them ahead, find them, remove them.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+)
 
 
-def build(
-    schemas: SchemaPaths,
-) -> int:
+@GROUP.command(cls=Command, epilog="Example: protogen native build schemas")
+@guarded
+def build(schemas: SchemaPaths) -> int:
     """Compile what reads captures of these schemas fast, ahead of its first use.
 
     Uses the compiler that CC names, else one on the PATH, else that of the package ziglang.
@@ -63,12 +68,16 @@ def _say(what: str, *, is_new: bool) -> None:
     typer.echo(f"{what}: {'compiled' if is_new else 'is there'}")
 
 
+@GROUP.command(cls=Command, epilog="Example: du -sh $(protogen native path)")
+@guarded
 def path() -> int:
     """Print the folder that the compiled libraries are kept in."""
     typer.echo(str(_folder()))
     return CLEAN
 
 
+@GROUP.command(cls=Command, epilog="Example: protogen native clean")
+@guarded
 def clean() -> int:
     """Remove all compiled libraries. They are compiled again when they are used."""
     from protogen.native.cache import clean as clean_cache

@@ -114,6 +114,9 @@ class ConvertCommand(Command):
         return super().parse_args(ctx, written)
 
 
+CLASS = ConvertCommand
+
+
 def _fleet(
     to: OutputFormat, address: str | None, workers: int | None, part_size: int | None
 ) -> Fleet | None:

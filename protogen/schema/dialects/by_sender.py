@@ -9,8 +9,7 @@ from functools import partial
 
 from protogen.schema.dialects.directives import read_directives
 from protogen.schema.syntax.protocol import is_by_sender
-from protogen.schema.text.edit import edit_at, items_of, keys_of
-from protogen.schema.text.nodes import MappingNode, Node, to_data
+from protogen.schema.text.nodes import MappingNode, Node, edit_at, items_of, keys_of, to_data
 from protogen.schema.text.scalars import Scalar
 
 _SHARED = ("frame", "transparency")

@@ -10,8 +10,7 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.schema.syntax.protocol import keyed_by_names
-from protogen.schema.text.edit import items_of
-from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
+from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode, items_of
 
 
 class _Origin(msgspec.Struct, frozen=True):

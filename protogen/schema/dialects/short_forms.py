@@ -11,8 +11,7 @@ from typing import Any
 from protogen.schema.references import form_under
 from protogen.schema.syntax.forms import Form
 from protogen.schema.syntax.protocol import SCHEMA
-from protogen.schema.text.edit import edit_at, items_of
-from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, to_data
+from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, edit_at, items_of, to_data
 
 _OTHER_KINDS = ("fields", "switch")
 """Keys of a field that make it something else, so that the base's type is not meant."""

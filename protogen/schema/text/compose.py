@@ -17,9 +17,8 @@ import yaml
 
 from protogen.problems import Problems, Span
 from protogen.problems.sources import Position
-from protogen.schema.text.building import OpenNode
-from protogen.schema.text.keys import Keys
 from protogen.schema.text.nodes import Node, ScalarNode
+from protogen.schema.text.open_nodes import OpenList, OpenMapping
 from protogen.schema.text.places import Places, end_of_span, position_of
 from protogen.schema.text.scalars import resolve
 
@@ -103,7 +102,7 @@ class _Composer:
     def __init__(self, text: str, file: str, problems: Problems) -> None:
         self._places = Places(text, file)
         self._problems = problems
-        self._open: list[OpenNode] = []
+        self._open: list[OpenList] = []
         self._anchors: dict[str, _Anchored | None] = {}
         self._count = 0
         self._root: Node | None = None
@@ -168,8 +167,10 @@ class _Composer:
         self._check_depth(1, span)
         if event.anchor is not None:
             self._anchors[event.anchor] = None
-        keys = Keys(self._problems) if isinstance(event, yaml.MappingStartEvent) else None
-        self._open.append(OpenNode(event, begin, self._count - 1, keys))
+        if isinstance(event, yaml.MappingStartEvent):
+            self._open.append(OpenMapping(event, begin, self._count - 1, self._problems))
+        else:
+            self._open.append(OpenList(event, begin, self._count - 1))
 
     def _end(self, event: Any) -> None:
         done = self._open.pop()
@@ -215,7 +216,7 @@ class _Composer:
 
     def _empty_place(self, event: Any) -> Position:
         """Return the place of a value that was left out: right behind its key."""
-        if self._open and self._open[-1].keys is not None:
+        if self._open and isinstance(self._open[-1], OpenMapping):
             return self._open[-1].end
         return position_of(event.end_mark)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -81,6 +81,24 @@ class SequenceNode(_Inside):
 
 
 Node = ScalarNode | MappingNode | SequenceNode
+
+
+def edit_at(node: Node, key: Scalar, edit: Callable[[Node], Node]) -> Node:
+    """Return the mapping with the value of ``key`` edited; anything else as it is."""
+    if not isinstance(node, MappingNode) or node.item(key) is None:
+        return node
+    items = ((name, edit(value) if name.value == key else value) for name, value in node.items)
+    return MappingNode(tuple(items), node.span)
+
+
+def items_of(node: Node | None) -> tuple[Item, ...]:
+    """Return the items of a mapping; anything else has none."""
+    return node.items if isinstance(node, MappingNode) else ()
+
+
+def keys_of(node: Node | None) -> set[Scalar]:
+    """Return the keys of a mapping; anything else has none."""
+    return {key.value for key, _ in items_of(node)}
 
 
 def to_data(node: Node) -> Any:

@@ -1,0 +1,87 @@
+"""Lists and mappings that are being read, whose end was not seen yet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from protogen.problems import Problems, Span
+from protogen.problems.sources import Position
+from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, SequenceNode
+from protogen.schema.text.scalars import Scalar
+
+
+class OpenList:
+    """A list."""
+
+    def __init__(self, event: Any, begin: Position, counted: int) -> None:
+        self.event = event
+        self.begin = begin
+        self.counted = counted
+        """Number of nodes counted before it."""
+        self.end = begin
+        """End of the last thing inside."""
+        self.height = 1
+        self._elements: list[Node] = []
+
+    def put(self, node: Node, height: int, end: Position) -> None:
+        """Add a node that is complete, ``height`` collections high, and ends at ``end``."""
+        self.end = end
+        self.height = max(self.height, height + 1)
+        self._elements.append(node)
+
+    def close(self, span: Span) -> Node:
+        """Return the complete node."""
+        return SequenceNode(tuple(self._elements), span)
+
+
+class OpenMapping(OpenList):
+    """A mapping. Its keys are names and integers, each once; others are left out."""
+
+    def __init__(self, event: Any, begin: Position, counted: int, problems: Problems) -> None:
+        super().__init__(event, begin, counted)
+        self._problems = problems
+        self._keys: dict[Scalar, ScalarNode] = {}
+        self._items: list[Item] = []
+        self._key: ScalarNode | None = None
+
+    def put(self, node: Node, height: int, end: Position) -> None:
+        """Add a key or its value, which come by turns."""
+        super().put(node, height, end)
+        if len(self._elements) % 2:
+            self._key = self._accepted(node)
+        elif self._key is not None:
+            self._items.append((self._key, node))
+
+    def close(self, span: Span) -> Node:
+        """Return the complete node."""
+        return MappingNode(tuple(self._items), span)
+
+    def _accepted(self, key: Node) -> ScalarNode | None:
+        """Return the key if it can be used; otherwise report why not."""
+        if not isinstance(key, ScalarNode):
+            kind = "list" if isinstance(key, SequenceNode) else "mapping"
+            self._problems.add("PG009", key.span, f"a {kind} can't be a key")
+        elif key.plain and key.text == "<<":
+            message = "the merge key `<<` is no part of YAML 1.2"
+            self._problems.add("PG012", key.span, message, "repeat the keys, or use `extends`")
+        elif not isinstance(key.value, str | int):
+            self._report_scalar(key)
+        elif key.value in self._keys:
+            self._report_duplicate(key, self._keys[key.value])
+        else:
+            self._keys[key.value] = key
+            return key
+        return None
+
+    def _report_scalar(self, key: ScalarNode) -> None:
+        if not key.text:
+            self._problems.add("PG009", key.span, "a key is missing")
+            return
+        kind = "nothing" if key.value is None else "a fraction"
+        message = f"`{key.text}` means {kind}, so it can't be a key"
+        self._problems.add("PG009", key.span, message, f'write `"{key.text}"` if it is a name')
+
+    def _report_duplicate(self, key: ScalarNode, first: ScalarNode) -> None:
+        same = "" if key.text == first.text else f", which is the same as `{first.text}`"
+        message = f"the key `{key.text}` stands twice{same}"
+        self._problems.add("PG006", key.span, message, notes=[(first.span, "it stands here first")])
