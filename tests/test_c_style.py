@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from protogen.api import load
+from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.style import DecoderStyle, decoder_style
 from protogen.targets.c.options import Events
 
@@ -49,4 +50,5 @@ def test_the_style_of_a_decoder(
     schema: str, sender: str, events: Events, style: DecoderStyle
 ) -> None:
     plan = load(ROOT / f"{schema}.yaml").sender(sender).plan
-    assert decoder_style(plan, events) is style
+    frame = ReceivedFrame("protocol", sender, plan, groups=(), events=events)
+    assert decoder_style(frame) is style

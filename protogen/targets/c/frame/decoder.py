@@ -24,7 +24,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @cached_property
     def flat(self) -> FlatDecoder | None:
         """View of a flat decoder, if this is one."""
-        is_flat = decoder_style(self.plan, self.events) is DecoderStyle.FLAT
+        is_flat = decoder_style(self) is DecoderStyle.FLAT
         return FlatDecoder(*astuple(self)) if is_flat else None
 
     @cached_property

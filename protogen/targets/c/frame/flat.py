@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from protogen.targets.c.frame import style
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.groups import GroupView
 from protogen.targets.c.frame.numbers import NumberView
@@ -73,11 +72,6 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def sees_start(self) -> str:
         """The condition that a byte is a start."""
         return "byte > 0x7FU" if self.gives_up_high_bytes else self.is_start("byte")
-
-    @property
-    def identity_is_start(self) -> bool:
-        """True if a start is the whole identity, and tells the payload's size."""
-        return style.identity_is_start(self.plan)
 
     @property
     def keeps_start(self) -> bool:

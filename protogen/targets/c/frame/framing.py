@@ -17,13 +17,6 @@ from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.writers import is_stateless
 
 
-class Sum(msgspec.Struct, frozen=True):
-    """The register of a checksum that is worked out while a frame is written."""
-
-    name: str
-    type: str
-
-
 class FramingView(msgspec.Struct, frozen=True):
     """Everything that the templates print of frames and decoders."""
 
@@ -32,7 +25,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """One of each kind: senders with the same frame share what builds it."""
     messages: tuple[MessageFrame, ...]
     checksums: tuple[Algorithm, ...]
-    sums: tuple[Sum, ...]
+    sums: dict[str, str]
+    """Types of the registers of checksums that are worked out while a frame is written."""
     sinks: tuple[str, ...]
     """Functions that the payloads share where they are written byte by byte."""
     dispatches: tuple[Dispatch, ...]
@@ -67,7 +61,7 @@ class FramingView(msgspec.Struct, frozen=True):
     @property
     def sums_blocks(self) -> tuple[str, ...]:
         """The kinds of checksums that add sixteen bytes at a time."""
-        return tuple(sorted({c.kind for c in self.checksums} & {"sum", "xor"}))
+        return tuple(sorted({c.spec.kind for c in self.checksums} & {"sum", "xor"}))
 
     @property
     def finds_high(self) -> bool:
@@ -88,24 +82,24 @@ def framing_view(
         decoder_view(protocol.name, sender, views, options.events) for sender in senders
     )
     frames = _frames(senders, decoders)
-    distinct = _distinct(frames)
+    distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
     message_frames = tuple(_message_frames(protocol, frames, decoders, views))
+    algorithms = [item.checksum for decoder in decoders for item in decoder.checksums]
+    streaming = tuple(dict.fromkeys(m.frame.decoder.name for m in message_frames if m.sends))
     puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.sends))
     used = _used(sinks, list(puts))
     return FramingView(
         decoders=decoders,
         frames=distinct,
         messages=message_frames,
-        checksums=tuple({c.function: c for d in decoders for c in _checksums(d)}.values()),
-        sums=tuple(
-            Sum(f"{frame.decoder.name}_{item.name}", item.checksum.register)
+        checksums=tuple({item.function: item for item in algorithms}.values()),
+        sums={
+            f"{frame.decoder.name}_{item.name}": item.checksum.type
             for frame in distinct
-            if any(m.sends and m.frame is frame for m in message_frames)
+            if frame.decoder.name in streaming
             for item in frame.decoder.checksums
-        ),
-        streaming=tuple(
-            dict.fromkeys(item.frame.decoder.name for item in message_frames if item.sends)
-        ),
+        },
+        streaming=streaming,
         puts=puts,
         stateless=is_stateless(protocol),
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
@@ -132,14 +126,10 @@ def _used(functions: tuple[str, ...], users: list[str]) -> tuple[str, ...]:
 
 def _frames(senders: list[Sender], decoders: tuple[DecoderView, ...]) -> dict[str, FrameView]:
     """The frame of each sender; one for all that have the same."""
-    views: list[tuple[Sender, FrameView]] = []
     frames: dict[str, FrameView] = {}
     for sender, decoder in zip(senders, decoders, strict=True):
-        known = next((view for other, view in views if other.frame == sender.frame), None)
-        if known is None:
-            known = FrameView(decoder)
-            views.append((sender, known))
-        frames[sender.name] = known
+        same = (view for view in frames.values() if view.plan.frame == sender.frame)
+        frames[sender.name] = next(same, None) or FrameView(decoder)
     return frames
 
 
@@ -158,16 +148,7 @@ def _message_frames(
             yield message_frame(frames[name], by_name[name], sender, message, view, suffix)
 
 
-def _distinct(frames: dict[str, FrameView]) -> tuple[FrameView, ...]:
-    """Each frame once, in the order of the senders."""
-    return tuple({frame.decoder.name: frame for frame in frames.values()}.values())
-
-
 def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions) -> bool:
     if options.senders is not None and sender.name not in options.senders:
         return False
     return any(message.name in views for message in sender.messages)
-
-
-def _checksums(decoder: DecoderView) -> list[Algorithm]:
-    return [item.checksum for item in decoder.checksums]

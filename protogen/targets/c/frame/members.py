@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import msgspec
 
 from protogen.targets.c.frame.decoder import DecoderView
@@ -13,37 +11,6 @@ _POINTERS = 2
 """The handler and what it is given."""
 _SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
-_ABOUT = {
-    "offset": "Offset of the first byte that is in no event yet.",
-    "noise": "Bytes of noise that are in no event yet.",
-    "wire": "Bytes of the candidate on the wire.",
-    "content": "Bytes of the candidate without stuffing.",
-    "payload": "Size of the payload, or the most that there is room for.",
-    "limit": "Bytes of content that the frame has, or can have.",
-    "count": "Bytes in the buffer.",
-    "next": "Place in the buffer of the byte to read next.",
-    "failed": "Bytes of the candidate that failed.",
-    "extra": "Bytes behind a failed candidate that may belong to a start.",
-    "due": "Bytes of content at which the payload is measured again.",
-    "open_from": "Bytes on the wire in front of the first that may be a start.",
-    "passed": "Bytes on the wire that are part of the candidate's content.",
-    "state": "Seeking, taking or failed.",
-    "reason": "Why the candidate failed.",
-    "flags": "What is known of the candidate.",
-    "group": "Number of the identity whose payload is measured.",
-    "behind": "Last bytes of the candidate that begin the next one.",
-    "match": "Bytes of a delimiter that the input ends with.",
-    "shared": "Bytes of the candidate that ended the frame before.",
-    "held": "Bytes of a delimiter that are held back.",
-    "end_left": "Bytes of the end that are due.",
-    "region": "In front of the stuffed region, inside, or behind.",
-    "node": "Place inside a sequence of the stuffing; 0 outside.",
-    "code": "First half of a byte, or the code of a group.",
-    "sequence": "Bytes that may be a sequence of the stuffing.",
-    "buffer": "Bytes of the candidate.",
-    "unstuffed": "Content of the candidate.",
-    "ends": "Where each byte of content ends on the wire.",
-}
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
 
 
@@ -52,6 +19,8 @@ class Member(msgspec.Struct, frozen=True):
 
     type: str
     name: str
+    about: str
+    """Description of what it holds."""
     count: int | None = None
     """Elements of an array."""
 
@@ -61,19 +30,9 @@ class Member(msgspec.Struct, frozen=True):
         return f"{self.type} {self.name}" + ("" if self.count is None else f"[{self.count}]")
 
     @property
-    def about(self) -> str:
-        """Description of what it holds."""
-        return _ABOUT[self.name]
-
-    @property
     def size(self) -> int:
         """Bytes of memory."""
         return _SIZES[self.type] * (1 if self.count is None else self.count)
-
-
-def members_of(view: DecoderView) -> tuple[Member, ...]:
-    """The members, behind the handler and its `user` where there is one; the buffers last."""
-    return (*_counters(view), *_states(view), *_buffers(view))
 
 
 def memory_of(view: DecoderView) -> int:
@@ -82,58 +41,60 @@ def memory_of(view: DecoderView) -> int:
     return pointers * _SMALL_POINTER + sum(member.size for member in members_of(view))
 
 
-def _counters(view: DecoderView) -> Iterator[Member]:
-    type_, push = view.counter, view.push
-    if view.flat:
-        yield Member(type_, "content")
-        if view.only_size is None:
-            yield Member(type_, "limit")
-        return
-    if view.all_events:
-        yield Member("uint32_t", "offset")
-    named = {
-        "noise": view.all_events,
-        "wire": push.counts_wire,
-        "content": True,
-        "payload": True,
-        "limit": not view.simple,
-        "count": view.keeps_wire,
-        "next": view.keeps_wire,
-        "failed": view.keeps_wire or push.decides_later,
-        "extra": push.decides_later,
-        "due": view.plan.measures,
-        "open_from": view.ends_at_start,
-        "passed": push.wire_ends,
-    }
-    yield from (Member(type_, name) for name, is_there in named.items() if is_there)
-
-
-def _states(view: DecoderView) -> Iterator[Member]:
-    stuffing, push = view.stuffing, view.push
+def members_of(view: DecoderView) -> tuple[Member, ...]:
+    """The members, behind the handler and its `user` where there is one; the buffers last."""
+    plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
-    named = {
-        "state": is_push,
-        "reason": view.all_events and (view.keeps_wire or push.decides_later),
-        "flags": is_push and push.has_flags,
-        "group": view.plan.measures,
-        "behind": is_push and push.keeps_behind,
-        "match": is_push and push.keeps_match,
-        "shared": view.plan.shares_delimiter,
-        "held": is_push and push.searches and push.holds_delimiter,
-        "end_left": push.awaits_end,
-        "region": push.crosses_region,
-        "node": stuffing is not None,
-        "code": kind in (StuffingKind.BASE16, StuffingKind.COBS),
-    }
-    yield from (Member("uint8_t", name) for name, is_there in named.items() if is_there)
+    has_limit = not view.simple if is_push else view.only_size is None
+    fails = view.keeps_wire or push.decides_later
+    holds = is_push and push.searches and push.holds_delimiter
+    begins_next = is_push and push.keeps_behind
+    has_code = kind in (StuffingKind.BASE16, StuffingKind.COBS)
+    extra = "Bytes behind a failed candidate that may belong to a start."
+    open_from = "Bytes on the wire in front of the first that may be a start."
+    counters = (
+        (view.all_events, "noise", "Bytes of noise that are in no event yet."),
+        (is_push and push.counts_wire, "wire", "Bytes of the candidate on the wire."),
+        (True, "content", "Bytes of the candidate without stuffing."),
+        (is_push, "payload", "Size of the payload, or the most that there is room for."),
+        (has_limit, "limit", "Bytes of content that the frame has, or can have."),
+        (view.keeps_wire, "count", "Bytes in the buffer."),
+        (view.keeps_wire, "next", "Place in the buffer of the byte to read next."),
+        (fails, "failed", "Bytes of the candidate that failed."),
+        (push.decides_later, "extra", extra),
+        (plan.measures, "due", "Bytes of content at which the payload is measured again."),
+        (view.ends_at_start, "open_from", open_from),
+        (push.wire_ends, "passed", "Bytes on the wire that are part of the candidate's content."),
+    )
+    states = (
+        (is_push, "state", "Seeking, taking or failed."),
+        (view.all_events and fails, "reason", "Why the candidate failed."),
+        (is_push and push.has_flags, "flags", "What is known of the candidate."),
+        (plan.measures, "group", "Number of the identity whose payload is measured."),
+        (begins_next, "behind", "Last bytes of the candidate that begin the next one."),
+        (is_push and push.keeps_match, "match", "Bytes of a delimiter that the input ends with."),
+        (plan.shares_delimiter, "shared", "Bytes of the candidate that ended the frame before."),
+        (holds, "held", "Bytes of a delimiter that are held back."),
+        (push.awaits_end, "end_left", "Bytes of the end that are due."),
+        (push.crosses_region, "region", "In front of the stuffed region, inside, or behind."),
+        (stuffing is not None, "node", "Place inside a sequence of the stuffing; 0 outside."),
+        (has_code, "code", "First half of a byte, or the code of a group."),
+    )
+    found = [
+        *(Member(view.counter, name, about) for is_there, name, about in counters if is_there),
+        *(Member("uint8_t", name, about) for is_there, name, about in states if is_there),
+    ]
+    if view.all_events:
+        offset = "Offset of the first byte that is in no event yet."
+        found.insert(0, Member("uint32_t", "offset", offset))
     if stuffing is not None and kind is StuffingKind.LENIENT_CODES:
-        yield Member("uint8_t", "sequence", stuffing.longest)
-
-
-def _buffers(view: DecoderView) -> Iterator[Member]:
-    yield Member("uint8_t", "buffer", view.buffer_size)
+        about = "Bytes that may be a sequence of the stuffing."
+        found.append(Member("uint8_t", "sequence", about, stuffing.longest))
+    found.append(Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size))
     if view.keeps_both:
-        yield Member("uint8_t", "unstuffed", view.plan.greatest)
-    if view.push.wire_ends:
-        yield Member(view.counter, "ends", view.plan.greatest)
+        found.append(Member("uint8_t", "unstuffed", "Content of the candidate.", plan.greatest))
+    if push.wire_ends:
+        about = "Where each byte of content ends on the wire."
+        found.append(Member(view.counter, "ends", about, plan.greatest))
+    return tuple(found)

@@ -11,7 +11,6 @@ from functools import cached_property
 import msgspec
 
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
-from protogen.targets.c.frame import style
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.groups import GroupView, key_from, key_type
@@ -24,7 +23,7 @@ from protogen.targets.c.frame.numbers import (
     literals_of,
     numbers_of,
 )
-from protogen.targets.c.frame.stuffing import Node, Stuffing, stuffing_of
+from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
 from protogen.targets.c.options import Events
 
 
@@ -127,7 +126,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def first_head(self) -> int:
         """Bytes of a start."""
-        return style.first_head(self.plan)
+        return self.start_size if self.plan.start is StartRule.LITERAL else 1
 
     def is_start(self, at: str) -> str:
         """The condition that a byte is a start of one byte."""
@@ -164,23 +163,56 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def region_to_end(self) -> bool:
-        """True if nothing but the end stands behind the stuffed region, and tells that it fits."""
-        return style.reaches_end(self.plan)
+        """True if nothing but the end stands behind the stuffed region, with nothing to check.
+
+        Where no end is looked for, a region's own end has to be seen to fit.
+        """
+        region, stuffing = self.plan.region, self.stuffing
+        if region is None or stuffing is None:
+            return False
+        may_not_fit = stuffing.is_cobs or region.lenient
+        return region.reaches_end and (self.plan.end_is_unique or not may_not_fit)
+
+    @property
+    def is_stuffed_behind_start(self) -> bool:
+        """True if all that is stuffed is what stands between a start and an end."""
+        region = self.plan.region
+        return region is not None and self.region_to_end and region.before == self.first_head
 
     @cached_property
     def escape_starts(self) -> bool:
-        """True if delimiters are told by the nodes of the stuffing."""
-        return style.escape_starts(self.plan, self.stuffing)
+        """True if delimiters are told by the nodes of the stuffing.
+
+        They have two bytes, the first of which always leads to a node that ends with it.
+        """
+        stuffing = self.stuffing
+        delimiters = [self.plan.start_bytes, *filter(None, [self.plan.end_bytes])]
+        if stuffing is None or stuffing.kind is not StuffingKind.CODES:
+            return False
+        if any(len(delimiter) != 2 for delimiter in delimiters):
+            return False
+        first = delimiters[0][0]
+        seconds = {delimiter[1] for delimiter in delimiters}
+        taken = {branch.byte for node in self.escape_nodes for branch in node.branches}
+        return (
+            all(delimiter[0] == first for delimiter in delimiters)
+            and len(seconds) == len(delimiters)
+            and first not in seconds
+            and any(node.beginning == bytes((first,)) for node in self.escape_nodes)
+            and not any(code.sequence[-1] == first for code in stuffing.codes)
+            and not taken & seconds
+        )
 
     @cached_property
     def escape_nodes(self) -> tuple[Node, ...]:
         """The nodes behind a delimiter's first byte, the one behind nothing else first."""
-        return style.escape_nodes(self.plan, self.stuffing)
+        nodes = () if self.stuffing is None else self.stuffing.nodes
+        return tuple(node for node in nodes if node.beginning.endswith(self.plan.start_bytes[:1]))
 
     @cached_property
     def never_passed(self) -> tuple[int, ...]:
         """Bytes that are a start or an end by themselves, so that nothing else sees them."""
-        return style.never_passed(self.plan)
+        return (*(self.plan.start_set or self.plan.start_bytes), *self.plan.end_bytes)
 
     # --- parts ------------------------------------------------------------------------------------
 
@@ -253,7 +285,12 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def can_open(self) -> bool:
         """True if the payload of some frame has no size until its end is seen."""
-        return style.can_open(self.plan, self.events)
+        plan = self.plan
+        is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
+        if not self.all_events and not is_kept_whole and plan.identity_is_early:
+            # What nobody asked for is given up at once: no frame can start inside of it.
+            return plan.length is None and bool(plan.end_bytes) and plan.has_open_groups
+        return plan.opens
 
     @property
     def simple(self) -> bool:
@@ -269,8 +306,8 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     @property
     def known_from(self) -> int:
-        """Bytes of content that tell the payload's size, where that is simple."""
-        return style.known_from(self.plan)
+        """Bytes of content that tell the payload's size, where the head tells it; else 0."""
+        return self.plan.size_known_at or 0
 
     @property
     def known_by_identity(self) -> bool:
@@ -278,6 +315,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return self.length is None and self.plan.identity_is_early
 
     @property
+    def identity_is_start(self) -> bool:
+        """True if a start of one byte is the whole identity, and tells the payload's size."""
+        is_told = any(n.identifies and n.last == 0 for n in self.head_numbers)
+        return self.plan.start is StartRule.SET and is_told
+
+    @property
     def gives_up_high_bytes(self) -> bool:
         """True if a high byte is either the identity of a frame, or ends what goes before it."""
-        return style.ends_with_high_byte(self.plan)
+        all_end = self.identity_is_start and self.plan.seven_bit and not self.plan.end_bytes
+        return all_end and self.plan.start_set.start == 128

@@ -2,43 +2,27 @@
 
 from __future__ import annotations
 
-import msgspec
-
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.received import ReceivedFrame
 
 
-class FollowStep(msgspec.Struct, frozen=True):
-    """Bytes of a literal that the input ends with, behind one byte."""
+def _followed(literal: bytes) -> list[dict[str, int]]:
+    """States of a literal that is tracked byte by byte.
 
-    byte: str
-    matched: int
-
-
-class Followed(msgspec.Struct, frozen=True):
-    """A literal that is tracked byte by byte."""
-
-    name: str
-    states: tuple[tuple[FollowStep, ...], ...]
-    """For each size that was seen before: what the next byte makes of it."""
-
-
-def followed(name: str, literal: bytes) -> Followed:
-    """The states of a literal."""
-    return Followed(name, tuple(_steps(literal, seen) for seen in range(len(literal) + 1)))
-
-
-def _steps(literal: bytes, matched: int) -> tuple[FollowStep, ...]:
-    """For each byte that goes on with some of the literal: how much of it stands there then."""
-    found = []
-    for value in dict.fromkeys(literal):
-        seen = literal[:matched] + bytes((value,))
-        sizes = range(min(len(seen), len(literal)), 0, -1)
-        longest = next((size for size in sizes if seen.endswith(literal[:size])), 0)
-        if longest:
-            found.append(FollowStep(byte(value), longest))
-    return tuple(found)
+    For each size that was seen before: the bytes that go on with some of the literal, and how much
+    of it the input ends with then.
+    """
+    states: list[dict[str, int]] = []
+    for matched in range(len(literal) + 1):
+        states.append({})
+        for value in dict.fromkeys(literal):
+            seen = literal[:matched] + bytes((value,))
+            sizes = range(min(len(seen), len(literal)), 0, -1)
+            longest = next((size for size in sizes if seen.endswith(literal[:size])), 0)
+            if longest:
+                states[-1][byte(value)] = longest
+    return states
 
 
 class PushStates(ReceivedFrame, frozen=True, dict=True):
@@ -69,13 +53,13 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         )
 
     @property
-    def literals(self) -> tuple[Followed, ...]:
-        """The literals of several bytes that are tracked."""
+    def literals(self) -> dict[str, list[dict[str, int]]]:
+        """States of the literals of several bytes that are tracked, by their names."""
         is_end = self.plan.start is StartRule.AFTER_END
         tracked = {"end" if is_end else "start": self.matches}
         if self.searches:
             tracked["end" if self.plan.end_bytes else "start"] = self.delimiter
-        return tuple(followed(name, item) for name, item in tracked.items() if len(item) > 1)
+        return {name: _followed(item) for name, item in tracked.items() if len(item) > 1}
 
     @property
     def has_flags(self) -> bool:

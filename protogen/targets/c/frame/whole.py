@@ -5,7 +5,6 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.frame_plan import StartRule
-from protogen.targets.c.frame import style
 from protogen.targets.c.frame.expressions import equals
 from protogen.targets.c.frame.groups import GroupView
 from protogen.targets.c.frame.numbers import NumberView
@@ -85,7 +84,7 @@ def _unstuffs(decoder: WholeFrames) -> bool:
         return True
     return (
         stuffing.kind is StuffingKind.CODES
-        and style.is_stuffed_behind_start(decoder.plan)
+        and decoder.is_stuffed_behind_start
         and len(decoder.specials) <= _MOST_SPECIALS
         and all(len(code.sequence) > 1 for code in stuffing.codes)
     )
