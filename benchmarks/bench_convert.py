@@ -56,8 +56,8 @@ def converted(case: Case, capture: Path, format: OutputFormat, folder: Path) -> 
     before = time.process_time()
     (result,) = convert(job, plan(job, [str(capture)]), print, lambda count: None)
     taken = time.process_time() - before
-    assert list(result.tally.messages) == [case.message], result.tally
-    written = sum((folder / file).stat().st_size for file in result.files)
+    assert list(result.done.tally.messages) == [case.message], result.done.tally
+    written = sum((folder / file).stat().st_size for file in result.done.files)
     rmtree(folder)  # To write over it would count what it takes to forget it.
     return Found(taken, written)
 

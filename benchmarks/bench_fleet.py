@@ -60,7 +60,7 @@ def converted(case: Case, capture: Path, client: Any, part_size: int, folder: Pa
     before, start = _processor(client), time.monotonic()
     (result,) = convert_fleet(job, named, fleet, print, lambda count: None)
     found = Found(time.monotonic() - start, _processor(client) - before)
-    assert list(result.tally.messages) == [case.message], result.tally
+    assert list(result.done.tally.messages) == [case.message], result.done.tally
     rmtree(folder)
     return found
 

@@ -23,9 +23,9 @@ parquet = pytest.importorskip("pyarrow.parquet")
 
 from protogen.convert.columns.arrays import Lists, Numbers  # noqa: E402
 from protogen.convert.columns.arrow_tables import array_of, batch_of, schema_of  # noqa: E402
-from protogen.convert.columns.batches import Batch, Tally  # noqa: E402
+from protogen.convert.columns.batches import Batch, BatchDecoder, Tally  # noqa: E402
 from protogen.convert.columns.composite_arrays import Scattered, Structs  # noqa: E402
-from protogen.convert.columns.decoders import open_decoder  # noqa: E402
+from protogen.convert.columns.decoders import column_decoders, open_decoder  # noqa: E402
 from protogen.convert.columns.physical_values import NameFinder, physical  # noqa: E402
 from protogen.convert.columns.python_values import as_list  # noqa: E402
 from protogen.convert.columns.tables import (  # noqa: E402
@@ -74,13 +74,17 @@ def batches_of(
     sender: str,
     data: bytes,
     engine: str | None,
-    start: int = 0,
     timed: bool = False,
     to: OutputFormat = OutputFormat.PARQUET,
 ) -> list[Batch]:
     protocol = protocol_of(path)
     tables = tables_of(protocol, protocol.sender(sender))
-    decoder = open_decoder(tables, module_at(path).PROTOCOL.sender(sender), to, engine, start)
+    decoder = open_decoder(tables, module_at(path).PROTOCOL.sender(sender), to, engine)
+    return fed(decoder, data, timed)
+
+
+def fed(decoder: BatchDecoder, data: bytes, timed: bool) -> list[Batch]:
+    """What a decoder makes of portions of a capture."""
     found: list[Batch] = []
     dice = Random(7)
     for place, piece in enumerate(portions(data, dice)):
@@ -149,13 +153,27 @@ def test_are_those_of_events(path: Path, sender: str, engine: str | None) -> Non
 @EVERY_SENDER
 def test_have_the_same_times_and_offsets(path: Path, sender: str) -> None:
     data = capture_of(path, sender, 12, 60)
-    expected = batches_of(path, sender, data, "events", 1 << 40, timed=True)
-    found = batches_of(path, sender, data, None, 1 << 40, timed=True)
+    expected = batches_of(path, sender, data, "events", timed=True)
+    found = batches_of(path, sender, data, None, timed=True)
     assert rows_of(found) == rows_of(expected)
-    lines = lines_of(
-        batches_of(path, sender, data, None, 1 << 40, timed=True, to=OutputFormat.JSONL)
-    )
+    lines = lines_of(batches_of(path, sender, data, None, timed=True, to=OutputFormat.JSONL))
     assert lines == lines_of(expected)
+
+
+@EVERY_SENDER
+@pytest.mark.parametrize("engine", [None, "python"])
+def test_that_begin_far_behind_the_start_count_on(
+    path: Path, sender: str, engine: str | None
+) -> None:
+    data, start = capture_of(path, sender, 12, 60), 1 << 40
+    protocol = protocol_of(path)
+    make = column_decoders(tables_of(protocol, protocol.sender(sender)), engine)
+    expected = rows_of(batches_of(path, sender, data, "events", timed=True))
+    moved = {
+        name: [(start + offset, *others) for offset, *others in rows]
+        for name, rows in expected.items()
+    }
+    assert rows_of(fed(make(start), data, timed=True)) == moved
 
 
 @pytest.mark.parametrize("sender", ["pc", "board"])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import gzip
 import io
-import json
 import os
 import pickle
 import signal
@@ -36,7 +35,6 @@ from protogen.convert.errors import ConvertError  # noqa: E402
 from protogen.convert.inputs.sources import Source  # noqa: E402
 from protogen.convert.runs.byte_ranges import (  # noqa: E402
     END,
-    GREATEST,
     START,
     Frame,
     RangeDecoder,
@@ -48,10 +46,11 @@ from protogen.convert.runs.capture_parts import (  # noqa: E402
     Work,
     convert_part,
     read_marker,
+    write_marker,
 )
 from protogen.convert.runs.conversion import Fleet, Job, convert, plan  # noqa: E402
 from protogen.convert.runs.fleet import LOCAL_CLUSTER, convert_fleet  # noqa: E402
-from protogen.convert.runs.journal import MARKERS, marker_of  # noqa: E402
+from protogen.convert.runs.journal import MARKERS  # noqa: E402
 from protogen.convert.runs.run_record import RECORD  # noqa: E402
 from protogen.convert.writers.format_writers import OutputFormat  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
@@ -174,19 +173,6 @@ def test_ranges_meet_terabytes_behind_the_start() -> None:
     assert guess_entry(_Far(data), size, middle, 500, splitter.make) == decoder.exit
 
 
-def test_a_capture_is_as_large_as_parts_can_be_told_to_fit(tmp_path: Path) -> None:
-    from protogen.convert.runs import fleet
-
-    (tmp_path / "run.bin").write_bytes(bytes(10))
-    job = job_of(RN1, "brain", tmp_path / "out")
-    source = Source(str(tmp_path / "run.bin"))
-    whole = fleet._planned(job, "run", source, {"size": GREATEST}, 1 << 40)
-    assert [part.span for part in whole.parts][-1] == (GREATEST - (1 << 40), GREATEST)
-    with pytest.raises(ConvertError, match=r"run\.bin has 8796093022209 bytes") as caught:
-        fleet._planned(job, "run", source, {"size": GREATEST + 1}, 1 << 40)
-    assert caught.value.hint
-
-
 def test_a_capture_that_became_shorter_is_an_error() -> None:
     splitter = Splitter(RN1, "brain", bytes(100))
     decoder = RangeDecoder(io.BytesIO(bytes(50)), 100, (0, 100), START, splitter.make)
@@ -232,11 +218,11 @@ def test_parts_that_fit_are_not_looked_at_again() -> None:
 
     done, count = Counted(), 100
     parts = [Part(f"run.{place}", "run.bin", "run", {}, None) for place in range(count)]
-    capture = fleet._Capture("run", Source("run.bin"), "", "", {}, parts, done)
+    capture = fleet._Capture("run", Source("run.bin"), Path(), "", {}, parts, done)
     frames = [START, *(Frame(place, 1) for place in range(count))]
     for place in range(count):
         assert not capture.is_done
-        done[place] = PartDone("", frames[place], frames[place + 1], Tally(), ())
+        done[place] = PartDone(frames[place], frames[place + 1], Tally(), ())
         assert not list(capture.wrong())
     assert capture.is_done
     assert done.looks < 3 * count
@@ -463,10 +449,12 @@ def test_a_fleet_has_wrong_guesses_done_again(tmp_path: Path, monkeypatch: Any) 
         scheduler = Fleet(cluster.scheduler_address, None, 97)
         named = plan(job, [str(tmp_path / "run.bin")])
         (result,) = convert_fleet(job, named, scheduler, pytest.fail, lambda amount: None)
-    assert dict(result.tally.messages) == {"dump": 60}
-    found = dataset.dataset([str(out / file) for file in result.files]).to_table()
+    assert dict(result.done.tally.messages) == {"dump": 60}
+    found = dataset.dataset([str(out / file) for file in result.done.files]).to_table()
     assert found.column("address").to_pylist() == list(range(60))
-    assert {path.name for path in out.rglob("*.parquet")} == {Path(f).name for f in result.files}
+    assert {path.name for path in out.rglob("*.parquet")} == {
+        Path(f).name for f in result.done.files
+    }
 
 
 @pytest.mark.parametrize("ended", ["_finished", "finish"], ids=["in_front", "when_it_is_recorded"])
@@ -500,7 +488,9 @@ def test_what_a_fleet_did_not_finish_is_not_left_beside_it(
             (result,) = convert(job, named, pytest.fail, lambda amount: None)
         else:
             (result,) = convert_in_parts(second)
-    assert {file.relative_to(out).as_posix() for file in out.rglob("*.parquet")} == {*result.files}
+    assert {file.relative_to(out).as_posix() for file in out.rglob("*.parquet")} == {
+        *result.done.files
+    }
     assert sorted(item.name for item in out.iterdir() if item.name.startswith(".")) == [RECORD]
 
 
@@ -687,10 +677,8 @@ def test_workers_on_this_machine_take_no_port_that_others_have(
 def test_a_marker_holds_only_for_what_it_was_made_of(tmp_path: Path) -> None:
     part = Part("run.000000", "run.bin", "run", {"size": 3}, None)
     assert read_marker(tmp_path, part) is None
-    done = PartDone(part.name, START, Frame(5, 8), Tally(3), ["a/run.000000.parquet"], ["lost"])
-    marker = marker_of(tmp_path, part.name)
-    marker.parent.mkdir()
-    marker.write_text(json.dumps(done.as_json(part.stamp)))
+    done = PartDone(START, Frame(5, 8), Tally(3), ["a/run.000000.parquet"], ["lost"])
+    write_marker(tmp_path, part, done)
     assert read_marker(tmp_path, part) is None  # its file is gone
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "run.000000.parquet").write_text("")

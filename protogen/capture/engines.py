@@ -21,6 +21,9 @@ EngineName = Literal["native", "python"]
 class Engine(Protocol):
     """A stream that becomes tables."""
 
+    def start(self, offset: int) -> None:
+        """Begin a stream at this byte of the capture."""
+
     def feed(self, data: bytes | memoryview) -> Iterator[Tables]:
         """Take the next bytes: the tables of a stretch of the stream, or of several."""
 

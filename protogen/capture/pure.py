@@ -50,9 +50,12 @@ class PythonEngine:
 
     def __init__(self, reading: Reading) -> None:
         self._reading = reading
-        self._decoder = Decoder(reading.spec)
-        self._fed = 0
-        self._offset = 0
+        self.start(0)
+
+    def start(self, offset: int) -> None:
+        """Begin a stream at this byte of the capture."""
+        self._decoder = Decoder(self._reading.spec)
+        self._first = self._fed = self._offset = offset
         self._sequence = 0
 
     def feed(self, data: bytes | memoryview) -> Iterator[Tables]:
@@ -72,7 +75,7 @@ class PythonEngine:
         self._offset = self._fed - self._decoder.pending
         self._sequence += len(events)
         unknown = by_kind["unknown"]
-        return Tables(
+        found = Tables(
             schema=self._reading.schema,
             engine=self.name,
             messages=self._messages(by_kind["message"]),
@@ -84,6 +87,10 @@ class PythonEngine:
             sequence=sequence,
             events=len(events),
         )
+        *tables, _ = found.every
+        for table in tables:
+            table["offset"] += numpy().uint64(self._first)
+        return found
 
     def _messages(self, numbered: Sequence[tuple[int, Any]]) -> dict[str, Rows]:
         by_name: dict[str, list[tuple[int, Any]]] = {}

@@ -289,11 +289,6 @@ def number(place: Place, others: Others) -> Step:
     return Step([*odd, *_put_float(place.value, others).lines], _MAX_FLOAT)
 
 
-def offset_of(place: Place) -> Step:
-    """Print an offset in the capture, whose first byte need not be the one that was fed first."""
-    return Step([f"out = put_natural(out, {place.value} + job->start);"], _MAX_INTEGER)
-
-
 def physical(
     place: Place,
     scale: Fraction,

@@ -40,7 +40,6 @@ class _Job(ctypes.Structure):
     _fields_ = (
         ("line", ctypes.c_void_p),
         ("base", ctypes.c_uint64),
-        ("start", ctypes.c_uint64),
         ("repr", ctypes.c_void_p),
         ("release", ctypes.c_void_p),
     )
@@ -91,15 +90,13 @@ class Printer:
         self._release = _address("PyMem_Free")
         self._room = numpy().empty(_ROOM, "u1")
 
-    def texts(
-        self, tables: Sequence[PrintedRows], line: bytes, base: int = 0, start: int = 0
-    ) -> Iterator[bytes]:
+    def texts(self, tables: Sequence[PrintedRows], line: bytes, base: int = 0) -> Iterator[bytes]:
         """The rows of all tables by their offsets, in pieces of text.
 
-        `line` has the bytes of the capture from offset `base` on. `start` is added to the offsets.
+        `line` has the bytes of the capture from offset `base` on.
         """
         whole = _bytes(line)
-        job = _Job(whole.ctypes.data, base, start, self._repr, self._release)
+        job = _Job(whole.ctypes.data, base, self._repr, self._release)
         payloads = [_bytes(table.payloads) for table in tables]
         pairs = zip(tables, payloads, strict=True)
         lent = (_Rows * len(tables))(*(_lent(table, held) for table, held in pairs))

@@ -94,7 +94,7 @@ def convert(  # noqa: PLR0913 - each option is one argument
         for result in results:
             _print_result(result, output)
     complaints.report()
-    return FINDINGS if any(result.lost_lines for result in results) else CLEAN
+    return FINDINGS if any(result.done.lost_lines for result in results) else CLEAN
 
 
 LOCAL = "local"
@@ -190,18 +190,18 @@ def _print_result(result: Result, folder: Path) -> None:
     if result.was_done:
         typer.echo(f"{result.place}: done before, nothing has changed since")
     else:
-        typer.echo(f"{result.place}: {result.format}, {result.tally.bytes} bytes")
+        typer.echo(f"{result.place}: {result.done.format}, {result.done.tally.bytes} bytes")
     amounts = _amounts(result)
     width = max([24, *(len(name) for name, _ in amounts)])
     for name, amount in amounts:
         typer.echo(f"  {name:<{width}} {amount}")
     if not result.was_done:
-        tables = [file for file in result.files if not file.endswith(".columns.json")]
+        tables = [file for file in result.done.files if not file.endswith(".columns.json")]
         typer.echo(f"  wrote {len(tables)} {'file' if len(tables) == 1 else 'files'} in {folder}")
 
 
 def _amounts(result: Result) -> list[tuple[str, str]]:
-    tally = result.tally
+    tally = result.done.tally
     amounts = [(name, f"{count:>12}") for name, count in sorted(tally.messages.items())]
     if tally.unknown:
         amounts.append(("unknown frames", f"{tally.unknown:>12}"))

@@ -25,35 +25,19 @@ class Tally(msgspec.Struct):
 
     bytes: int = 0
     """Bytes of the line."""
-    messages: Counter[str] = msgspec.field(default_factory=Counter)
+    messages: dict[str, int] = msgspec.field(default_factory=dict)
     """Frames of each message."""
     unknown: int = 0
     """Frames of unknown identity."""
-    invalid: Counter[str] = msgspec.field(default_factory=Counter)
+    invalid: dict[str, int] = msgspec.field(default_factory=dict)
     """Bytes that are no frame, by reason."""
 
     def add(self, other: Tally) -> None:
         """Add what was in another part."""
         self.bytes += other.bytes
-        self.messages += other.messages
+        self.messages = Counter(self.messages) + Counter(other.messages)
         self.unknown += other.unknown
-        self.invalid += other.invalid
-
-    def as_json(self) -> dict[str, Any]:
-        """The numbers for JSON."""
-        return {
-            "bytes": self.bytes,
-            "messages": dict(sorted(self.messages.items())),
-            "unknown": self.unknown,
-            "invalid": dict(sorted(self.invalid.items())),
-        }
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Tally:
-        """The tally of what `as_json` gave."""
-        return cls(
-            data["bytes"], Counter(data["messages"]), data["unknown"], Counter(data["invalid"])
-        )
+        self.invalid = Counter(self.invalid) + Counter(other.invalid)
 
 
 class Batch(Protocol):
@@ -96,12 +80,10 @@ def batches_of(decoder: BatchDecoder, chunks: Iterable[Chunk]) -> Iterator[Batch
 class EventDecoder:
     """Decodes with the generated Python, an object for each event. It needs no other package."""
 
-    def __init__(self, tables: Tables, spec: SenderSpec[Any, Any], start: int = 0) -> None:
-        """Begin at offset `start`, that of the first byte that will be fed."""
+    def __init__(self, tables: Tables, spec: SenderSpec[Any, Any]) -> None:
         self._tables = tables
         self._decoder = Decoder(spec)
         self._clock = Clock()
-        self._start = start
 
     def feed(self, chunk: Chunk) -> Iterator[EventBatch]:
         """Take the next bytes of the capture; what is certain now."""
@@ -116,7 +98,7 @@ class EventDecoder:
         times = self._clock.at([event.offset + event.size - 1 for event in events])
         if events:
             self._clock.forget(events[-1].offset + events[-1].size)
-        return EventBatch(self._tables, events, times, self._start)
+        return EventBatch(self._tables, events, times)
 
 
 class EventBatch(msgspec.Struct, frozen=True):
@@ -125,22 +107,20 @@ class EventBatch(msgspec.Struct, frozen=True):
     tables: Tables
     events: Sequence[Any]
     times: Sequence[int | None]
-    start: int = 0
-    """Added to the offsets of the events."""
 
     @property
     def tally(self) -> Tally:
         """Counts of what is in it."""
-        tally = Tally()
+        messages, invalid = Counter[str](), Counter[str]()
+        unknown = 0
         for event in self.events:
-            tally.bytes += event.size
             if event.kind == "message":
-                tally.messages[event.message.NAME] += 1
+                messages[event.message.NAME] += 1
             elif event.kind == "unknown":
-                tally.unknown += 1
+                unknown += 1
             else:
-                tally.invalid[event.reason] += event.size
-        return tally
+                invalid[event.reason] += event.size
+        return Tally(sum(event.size for event in self.events), messages, unknown, invalid)
 
     def rows(self) -> Iterator[Rows]:
         """The rows of each table that has some."""
@@ -165,7 +145,7 @@ class EventBatch(msgspec.Struct, frozen=True):
             values = {"payload": event.payload}
         else:
             values = {"reason": event.reason, "raw": event.raw}
-        frame = {"offset": self.start + event.offset, "size": event.size, "t_ns": when}
+        frame = {"offset": event.offset, "size": event.size, "t_ns": when}
         return [
             *(_frame_value(column, frame, event) for column in table.frame_columns),
             *(value_in(column, values) for column in table.columns),
@@ -183,7 +163,6 @@ class EventBatch(msgspec.Struct, frozen=True):
 
     def _line(self, event: Any, when: int | None) -> str:
         line = event.as_json()
-        line["offset"] += self.start
         ordered = {key: line.pop(key) for key in _ORDER if key in line}
         timed = {} if when is None else {"t_ns": when}
         return json.dumps({**ordered, **line, **timed}, ensure_ascii=False) + "\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, Protocol
@@ -143,8 +142,6 @@ class ColumnBatch(msgspec.Struct):
     """The bytes of the line that the rows cover, and maybe more behind them."""
     times: Times
     printer: BatchPrinter | None = None
-    start: int = 0
-    """Added to the offsets of the rows."""
 
     @property
     def tally(self) -> Tally:
@@ -152,11 +149,8 @@ class ColumnBatch(msgspec.Struct):
         filled = self.filled
         counts = {name: len(rows) for name, rows in filled.messages.items() if len(rows)}
         sizes = np.bincount(filled.invalid["reason"], filled.invalid["size"], 9)
-        invalid: Counter[str] = Counter()
-        for reason in InvalidReason:
-            if sizes[reason]:
-                invalid[reason.word] = int(sizes[reason])
-        return Tally(filled.size, Counter(counts), len(filled.unknown), invalid)
+        invalid: dict[str, int] = {it.word: int(sizes[it]) for it in InvalidReason if sizes[it]}
+        return Tally(filled.size, counts, len(filled.unknown), invalid)
 
     def rows(self) -> Iterator[Rows]:
         """The rows of each table that has some."""
@@ -178,24 +172,9 @@ class ColumnBatch(msgspec.Struct):
         assert self.printer is not None, "decoded for a format that has no lines"
         return self.printer.table_lines(self)
 
-    def with_rows(self, filled: Filled) -> ColumnBatch:
-        """The same batch with only these of its rows."""
-        return ColumnBatch(self.readings, filled, self.data, self.times, self.printer, self.start)
-
-    def raw(self, offset: int, size: int) -> bytes:
-        """The bytes on the wire of an event."""
-        place = offset - self.filled.offset
-        return self.data[place : place + size]
-
-    def times_of(self, rows: Any) -> Values:
-        """Time of each row's last byte, in nanoseconds."""
-        return self.times.of(rows)
-
     def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
-        offset, *rest = (reader(rows) for reader in readers)
-        moved = Numbers(offset.values + np.uint64(self.start)) if self.start else offset
-        size, *parts = rest
-        return [moved, size, self.times_of(rows), *parts]
+        offset, size, *parts = (reader(rows) for reader in readers)
+        return [offset, size, self.times.of(rows), *parts]
 
     def _message_rows(self, reading: Reading, rows: Any) -> Rows:
         frame = self._frame(reading.frame, rows)
@@ -244,10 +223,10 @@ class ColumnDecoder:
         self._readings = readings
         self._engine = engine
         self._printer = printer
-        self._start = start
         self._data = b""
-        self._offset = 0
-        self._fed = 0
+        self._offset = start
+        self._fed = start
+        engine.start(start)
         self._ends: Array = np.zeros(0, "u8")
         self._times: Array = np.zeros(0, "i8")
 
@@ -270,7 +249,7 @@ class ColumnDecoder:
     def _batch(self, filled: Filled) -> ColumnBatch:
         times = Times(self._ends, self._times)
         data = self._data[filled.offset - self._offset :]
-        batch = ColumnBatch(self._readings, filled, data, times, self._printer, self._start)
+        batch = ColumnBatch(self._readings, filled, data, times, self._printer)
         covered = filled.offset + filled.size
         self._data = self._data[covered - self._offset :]
         self._offset = covered

@@ -26,24 +26,23 @@ def open_decoder(
     spec: SenderSpec[Any, Any],
     format: OutputFormat,
     engine: str | None = None,
-    start: int = 0,
 ) -> BatchDecoder:
-    """A decoder of bytes whose first has the offset `start`.
+    """A decoder of a capture.
 
     Every engine gives the same rows and lines. Without a C compiler, lines are made of events.
     """
     if engine == EVENTS or (engine is None and find_spec("numpy") is None):
-        return EventDecoder(tables, spec, start)
+        return EventDecoder(tables, spec)
     if format not in (OutputFormat.JSONL, OutputFormat.CSV):
-        return column_decoders(tables, engine)(start)
+        return column_decoders(tables, engine)(0)
     from protogen.capture.engines import makers
     from protogen.convert.columns.column_batches import ColumnDecoder
 
     maker, is_native = makers(tables.protocol, tables.sender, cast(Any, engine))
     printer = _printer(tables, format) if is_native else None
     if printer is None:
-        return EventDecoder(tables, spec, start)
-    return ColumnDecoder(printer.readings, maker(), start, printer)
+        return EventDecoder(tables, spec)
+    return ColumnDecoder(printer.readings, maker(), printer=printer)
 
 
 def column_decoders(tables: Tables, engine: str | None) -> Callable[[int], ColumnDecoder]:

@@ -17,28 +17,26 @@ By induction from the capture's start, all rows are those of one decoder, whatev
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from protogen.capture.tables import Tables as Filled
+from protogen.capture.cuts import Frame as Place
+from protogen.capture.cuts import frames_of
 from protogen.convert.columns.column_batches import ColumnBatch, ColumnDecoder
 from protogen.convert.inputs.chunks import Chunk
 from protogen.convert.inputs.remote_files import Stream
+from protogen.copying import replace
 
 PIECE = 1 << 20
 """Bytes that are decoded at once."""
 _STEP = 1 << 16
 """The same where two decoders run side by side."""
-_SIZE_BITS = 21
-"""A frame has at most 1 MiB. So its place and size fit a number of 64 bits, up to `GREATEST`."""
-GREATEST = 1 << (64 - _SIZE_BITS)
-"""The most bytes of a capture whose parts can be told to fit each other: 8 TiB."""
 
 
-class Frame(msgspec.Struct, frozen=True):
+class Frame(msgspec.Struct, frozen=True, array_like=True):
     """Frame at which decoders meet: its offset and size in the capture."""
 
     offset: int
@@ -64,8 +62,7 @@ class Track:
 
     def __init__(self, stream: Stream, size: int, start: int, make: MakeDecoder) -> None:
         self._stream = stream
-        self._size = size
-        self._start = start
+        self.size = size
         self._decoder = make(start)
         self.fed = start
         """The decoder has been given all bytes in front of this one."""
@@ -79,55 +76,52 @@ class Track:
         while self.fed < end:
             data = self._stream.read(min(PIECE, end - self.fed))
             if not data:
-                raise EOFError(f"the capture ends at byte {self.fed}, not at {self._size}")
+                raise EOFError(f"the capture ends at byte {self.fed}, not at {self.size}")
             self.fed += len(data)
             found += self._decoder.feed(Chunk(data))
-        if self.fed == self._size:
+        if self.fed == self.size:
             found += self._decoder.flush()
         for batch in found:
-            self.covered = self._start + batch.filled.offset + batch.filled.size
+            self.covered = _end(batch)
         return found
 
 
-def keys_of(batch: ColumnBatch) -> Any:
-    """Place and size of each frame of a batch, in one number each."""
-    filled: Filled = batch.filled
-    tables = [*filled.messages.values(), filled.unknown]
-    parts = [
-        ((rows["offset"] + np.uint64(batch.start)) << np.uint64(_SIZE_BITS)) | rows["size"]
-        for rows in tables
-        if len(rows)
-    ]
-    return np.concatenate(parts).astype("u8") if parts else np.zeros(0, "u8")
+def _meet(front: Track, other: Track, low: int) -> Iterator[tuple[list[ColumnBatch], Frame | None]]:
+    """Run two decoders side by side, until both have completed a frame from the byte `low` on.
+
+    What the first one finds, step by step, and with the last that frame, or the capture's end.
+    """
+    mine, theirs = set[Place](), set[Place]()
+    while True:
+        step = min(front.size, front.fed + _STEP)
+        found = front.advance(step)
+        mine |= _frames(found, low)
+        theirs |= _frames(other.advance(step), low)
+        if common := mine & theirs:
+            yield found, Frame(*min(common))
+            return
+        if front.fed == front.size:
+            yield found, END
+            return
+        yield found, None
+        # Only what the slower of both has not decoded yet can still be met at.
+        low = max(low, min(front.covered, other.covered))
+        mine, theirs = ({it for it in places if it[0] >= low} for places in (mine, theirs))
 
 
-def _frame(key: int) -> Frame:
-    return Frame(key >> _SIZE_BITS, key & ((1 << _SIZE_BITS) - 1))
+def _frames(batches: Iterable[ColumnBatch], low: int) -> set[Place]:
+    """The frames of batches that begin at `low` or later."""
+    return {place for batch in batches for place in frames_of(batch.filled, low)}
 
 
 def guess_entry(stream: Stream, size: int, start: int, lead: int, make: MakeDecoder) -> Frame:
     """The frame at which a decoder from `lead` bytes before and one from `start` meet."""
     before = Track(stream, size, max(0, start - lead), make)
-    before_keys = [keys_of(batch) for batch in before.advance(start)]
-    own = Track(stream, size, start, make)
-    own_keys: list[Any] = []
-    while True:
-        step = min(size, own.fed + _STEP)
-        before_keys += [keys_of(batch) for batch in before.advance(step)]
-        own_keys += [keys_of(batch) for batch in own.advance(step)]
-        common = np.intersect1d(np.concatenate(before_keys), np.concatenate(own_keys))
-        if len(common):
-            return _frame(int(common[0]))
-        if own.fed == size:
-            return END
-        # Only what the slower of both has not decoded yet can still be met at.
-        low = min(before.covered, own.covered)
-        before_keys = [_from(np.concatenate(before_keys), low)]
-        own_keys = [_from(np.concatenate(own_keys), low)]
-
-
-def _from(keys: Any, low: int) -> Any:
-    return keys[keys >= np.uint64(low << _SIZE_BITS)]
+    before.advance(start)
+    entry = END
+    for _, met in _meet(before, Track(stream, size, start, make), start):
+        entry = met or END
+    return entry
 
 
 class RangeDecoder:
@@ -160,61 +154,44 @@ class RangeDecoder:
         """Go on until a decoder that begins at the range's end has completed the same frame."""
         other = Track(self._stream, self._size, self._end, self._make)
         waiting: list[ColumnBatch] = []
-        own_keys, other_keys = np.zeros(0, "u8"), np.zeros(0, "u8")
-        while True:
-            step = min(self._size, own.fed + _STEP)
-            found = own.advance(step)
+        # In front of the entry this decoder need not be right.
+        for found, met in _meet(own, other, max(self._end, self._entry.offset)):
             waiting += found
-            own_keys = np.concatenate([own_keys, *map(keys_of, found)])
-            other_keys = np.concatenate([other_keys, *map(keys_of, other.advance(step))])
-            # In front of the entry this decoder need not be right.
-            common = _from(np.intersect1d(own_keys, other_keys), max(0, self._entry.offset))
-            if len(common):
-                self.exit = _frame(int(common[0]))
+            if met is not None:
+                self.exit = met
                 break
             # What the other has decoded without meeting is ours; the rest has to wait for it.
             ready = [batch for batch in waiting if _end(batch) <= other.covered]
             waiting = waiting[len(ready) :]
             yield from (between(batch, self._entry.end, None) for batch in ready)
-            low = min(own.covered, other.covered)
-            own_keys, other_keys = _from(own_keys, low), _from(other_keys, low)
-            if own.fed == self._size:
-                break
         last = None if self.exit == END else self.exit.end
         yield from (between(batch, self._entry.end, last) for batch in waiting)
 
 
 def _end(batch: ColumnBatch) -> int:
-    return batch.start + batch.filled.offset + batch.filled.size
+    return batch.filled.offset + batch.filled.size
 
 
 def between(batch: ColumnBatch, low: int, high: int | None) -> ColumnBatch:
     """The rows of a batch that begin at `low` or later, and before `high`."""
-    first = batch.start + batch.filled.offset
-    last = _end(batch)
+    filled = batch.filled
+    first, last = filled.offset, _end(batch)
     above = max(low, first)
     below = last if high is None else min(high, last)
     if (above, below) == (first, last):
         return batch
-    filled = batch.filled
-    kept = Filled(
-        schema=filled.schema,
-        engine=filled.engine,
+    kept = replace(
+        filled,
         messages={
-            name: _rows_between(rows, batch.start, above, below)
-            for name, rows in filled.messages.items()
+            name: _rows_between(rows, above, below) for name, rows in filled.messages.items()
         },
-        invalid=_rows_between(filled.invalid, batch.start, above, below),
-        unknown=_rows_between(filled.unknown, batch.start, above, below),
-        payloads=filled.payloads,
-        offset=filled.offset,
+        invalid=_rows_between(filled.invalid, above, below),
+        unknown=_rows_between(filled.unknown, above, below),
         size=max(0, below - above),
-        sequence=filled.sequence,
-        events=filled.events,
     )
-    return batch.with_rows(kept)
+    return replace(batch, filled=kept)
 
 
-def _rows_between(rows: Any, start: int, low: int, high: int) -> Any:
-    offsets = rows["offset"] + np.uint64(start)
+def _rows_between(rows: Any, low: int, high: int) -> Any:
+    offsets = rows["offset"]
     return rows[(offsets >= np.uint64(low)) & (offsets < np.uint64(max(low, high)))]

@@ -63,38 +63,34 @@ class Part(msgspec.Struct, frozen=True):
 class PartDone(msgspec.Struct, frozen=True):
     """Result of a part."""
 
-    name: str
     entry: Frame
     exit: Frame
     tally: Tally
     files: Sequence[str]
     complaints: Sequence[str] = ()
 
-    def as_json(self, stamp: Mapping[str, Any]) -> dict[str, Any]:
-        """A marker."""
-        return {
-            "stamp": dict(stamp),
-            "entry": [self.entry.offset, self.entry.size],
-            "exit": [self.exit.offset, self.exit.size],
-            "tally": self.tally.as_json(),
-            "files": list(self.files),
-            "complaints": list(self.complaints),
-        }
+
+class _Marker(msgspec.Struct):
+    stamp: Mapping[str, Any]
+    done: PartDone
 
 
 def read_marker(folder: Path, part: Part) -> PartDone | None:
     """Result of a part in an earlier run; None where it is not done, or things changed."""
     try:
-        data = json.loads(marker_of(folder, part.name).read_text(encoding="utf-8"))
-        if data["stamp"] != dict(part.stamp):
-            return None
-        entry, exit = Frame(*data["entry"]), Frame(*data["exit"])
-        tally = Tally.from_json(data["tally"])
-    except (OSError, ValueError, KeyError, TypeError):
+        text = marker_of(folder, part.name).read_text(encoding="utf-8")
+        marker = msgspec.convert(json.loads(text), _Marker)
+    except (OSError, ValueError):
         return None
-    there = all((folder / file).is_file() for file in data["files"])
-    done = PartDone(part.name, entry, exit, tally, data["files"], data["complaints"])
-    return done if there else None
+    holds = marker.stamp == part.stamp
+    there = all((folder / file).is_file() for file in marker.done.files)
+    return marker.done if holds and there else None
+
+
+def write_marker(folder: Path, part: Part, done: PartDone) -> None:
+    """Write down that a part is done. Raises OSError."""
+    text = json.dumps(msgspec.to_builtins(_Marker(part.stamp, done)))
+    write_whole(marker_of(folder, part.name), text.encode(), token=uuid4().hex[:12])
 
 
 def convert_part(work: Work, part: Part) -> PartDone:
@@ -110,8 +106,7 @@ def convert_part(work: Work, part: Part) -> PartDone:
             raise ConvertError(f"{part.place}: {error}", "convert it again") from None
         name_place(error, folder)
         raise
-    text = json.dumps(done.as_json(part.stamp))
-    write_whole(marker_of(folder, part.name), text.encode(), token=uuid4().hex[:12])
+    write_marker(folder, part, done)
     return done
 
 
@@ -143,7 +138,7 @@ def _whole(work: Work, part: Part, pending: Pending) -> PartDone:
     decoder = open_decoder(tables, spec, OutputFormat.PARQUET, work.engine)
     with opened(Source(part.place), kind, work.sender, senders, complaints.append) as capture:
         write_all(writer, batches_of(decoder, capture.chunks), tally)
-    return PartDone(part.name, START, END, tally, pending.relatives, complaints)
+    return PartDone(START, END, tally, pending.relatives, complaints)
 
 
 def _range(work: Work, part: Part, pending: Pending) -> PartDone:
@@ -161,7 +156,7 @@ def _range(work: Work, part: Part, pending: Pending) -> PartDone:
         decoder = RangeDecoder(stream, part.size, part.span, entry, make)
         writer = ParquetWriter(part.name, pending, part.capture)
         write_all(writer, decoder.batches(), tally)
-    return PartDone(part.name, entry, decoder.exit, tally, pending.relatives)
+    return PartDone(entry, decoder.exit, tally, pending.relatives)
 
 
 def lead_of(tables: Tables) -> int:

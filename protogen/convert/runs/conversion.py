@@ -51,12 +51,12 @@ class Job(msgspec.Struct, frozen=True, dict=True):
         """The tables that the conversion fills."""
         return tables_of(self.protocol, self.sender)
 
-    def decoder(self, start: int = 0) -> BatchDecoder:
-        """A decoder of bytes from `start` on."""
+    def decoder(self) -> BatchDecoder:
+        """A decoder of a capture."""
         from protogen.convert.columns.decoders import open_decoder
 
         spec = self.runtime.sender(self.sender.name)
-        return open_decoder(self.tables, spec, self.format, self.engine, start)
+        return open_decoder(self.tables, spec, self.format, self.engine)
 
     def stamp(self, source: Source) -> dict[str, Any]:
         """All that the result depends on, to see whether an earlier one still holds."""
@@ -85,14 +85,9 @@ class Result(msgspec.Struct, frozen=True):
     """Result of one capture."""
 
     place: str
-    format: str
-    """Format of the capture, in words."""
-    tally: Tally
-    files: Sequence[str]
+    done: Done
     was_done: bool = False
     """True if an earlier run did it."""
-    lost_lines: int = 0
-    """Lines or records that could not be used."""
 
 
 def plan(job: Job, places: Sequence[str]) -> list[tuple[str, Source]]:
@@ -125,8 +120,7 @@ def convert(
         else:
             advance(stamp["size"])
         forget_parts(job, name, done.files)
-        lost = done.lost_lines
-        yield Result(source.place, done.format, done.tally, done.files, was_done, lost)
+        yield Result(source.place, done, was_done)
 
 
 def _convert_one(

@@ -19,7 +19,7 @@ import msgspec
 from protogen.convert.columns.batches import Tally
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.inputs.sources import Source, format_of
-from protogen.convert.runs.byte_ranges import GREATEST, START
+from protogen.convert.runs.byte_ranges import START
 from protogen.convert.runs.capture_parts import Part, PartDone, Work, convert_part, read_marker
 from protogen.convert.runs.conversion import (
     Advance,
@@ -55,7 +55,7 @@ class _Capture(msgspec.Struct):
 
     name: str
     source: Source
-    folder: str
+    folder: Path
     format: str
     stamp: Mapping[str, Any]
     parts: list[Part]
@@ -108,9 +108,7 @@ def convert_fleet(
         else:
             advance(stamp["size"] or 0)
             forget_parts(job, name, before.files)
-            yield Result(
-                source.place, before.format, before.tally, before.files, True, before.lost_lines
-            )
+            yield Result(source.place, before, was_done=True)
     if waiting:
         _check_names(waiting)
         for capture in waiting:
@@ -124,7 +122,7 @@ def convert_fleet(
                     yield done[capture.name]
             finally:
                 # Of all at once: it takes a look at every file that there is.
-                files = [file for result in done.values() for file in result.files]
+                files = [file for result in done.values() for file in result.done.files]
                 finish(job.folder, {name: parts[name] for name in done}, files)
 
 
@@ -137,26 +135,15 @@ def _planned(
     kind = job.input and job.input.value
     if not format.is_plain or not size:
         whole = {**stamp, "span": None}
-        return _Capture(
-            name,
-            source,
-            str(job.folder),
-            str(format),
-            stamp,
-            [Part(name, place, name, whole, kind)],
-        )
-    if size > GREATEST:
-        raise ConvertError(
-            f"{source.place} has {size} bytes; parts are made of at most {GREATEST}",
-            "convert it without --dask, or cut it into several captures",
-        )
+        parts = [Part(name, place, name, whole, kind)]
+        return _Capture(name, source, job.folder, str(format), stamp, parts)
     parts = []
     for number, start in enumerate(range(0, size, part_size)):
         span = (start, min(size, start + part_size))
         of_part = {**stamp, "span": list(span)}
         part = Part(part_name(name, number), place, name, of_part, kind, size, span)
         parts.append(replace(part, entry=START) if number == 0 else part)
-    return _Capture(name, source, str(job.folder), str(format), stamp, parts)
+    return _Capture(name, source, job.folder, str(format), stamp, parts)
 
 
 def _check_names(captures: Sequence[_Capture]) -> None:
@@ -176,19 +163,18 @@ def _check_names(captures: Sequence[_Capture]) -> None:
 def _finished(job: Job, state: State, capture: _Capture, complain: Complain) -> Result:
     """Take note that a capture is done, and remove what is left of other attempts."""
     key = f"{capture.name}.{job.format}"
-    done = [capture.done[place] for place in range(len(capture.parts))]
-    files = sorted(file for part in done for file in part.files)
+    parts = [capture.done[place] for place in range(len(capture.parts))]
+    files = sorted(file for part in parts for file in part.files)
     tally = Tally()
-    lost = 0
-    for found in done:
-        tally.add(found.tally)
-        lost += len(found.complaints)
-        for problem in found.complaints:
-            complain(f"{capture.source.place}: {problem}")
-    stale = [file for file in state.files(key) if file not in files]
-    remove(job.folder, stale)
-    state.record(key, Done(capture.stamp, files, tally, capture.format, lost))
-    return Result(capture.source.place, capture.format, tally, files, lost_lines=lost)
+    for part in parts:
+        tally.add(part.tally)
+    problems = [problem for part in parts for problem in part.complaints]
+    for problem in problems:
+        complain(f"{capture.source.place}: {problem}")
+    remove(job.folder, [file for file in state.files(key) if file not in files])
+    done = Done(capture.stamp, files, tally, capture.format, len(problems))
+    state.record(key, done)
+    return Result(capture.source.place, done)
 
 
 # --- workers --------------------------------------------------------------------------------------
@@ -269,7 +255,7 @@ class _Workers:
         """
         for capture in captures:
             for place, part in enumerate(capture.parts):
-                earlier = None if fresh else read_marker(Path(capture.folder), part)
+                earlier = None if fresh else read_marker(capture.folder, part)
                 if earlier is None:
                     self._submit(capture, place, part)
                 else:

@@ -29,7 +29,16 @@ class Done(msgspec.Struct, frozen=True):
     files: Sequence[str]
     tally: Tally
     format: str
+    """Format of the capture, in words."""
     lost_lines: int = 0
+    """Lines or records that could not be used."""
+
+
+class _Record(msgspec.Struct):
+    """The file."""
+
+    version: int
+    captures: dict[str, Done]
 
 
 class State:
@@ -115,32 +124,14 @@ def _version(path: Path) -> tuple[int, int] | None:
 
 
 def _text(done: Done) -> str:
-    return json.dumps(
-        {
-            "stamp": dict(done.stamp),
-            "files": list(done.files),
-            "tally": done.tally.as_json(),
-            "format": done.format,
-            "lost_lines": done.lost_lines,
-        }
-    )
+    # Names of files may hold what is no text, for which JSON of `msgspec` has no place.
+    return json.dumps(msgspec.to_builtins(done))
 
 
 def _read(path: Path) -> dict[str, Done]:
     """The record; nothing where there is none that can be read."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if data["version"] != _VERSION:
-            return {}
-        return {
-            name: Done(
-                item["stamp"],
-                item["files"],
-                Tally.from_json(item["tally"]),
-                item["format"],
-                item["lost_lines"],
-            )
-            for name, item in data["captures"].items()
-        }
-    except (OSError, ValueError, KeyError, TypeError):
+        record = msgspec.convert(json.loads(path.read_text(encoding="utf-8")), _Record)
+    except (OSError, ValueError):
         return {}
+    return record.captures if record.version == _VERSION else {}

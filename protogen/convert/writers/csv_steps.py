@@ -38,7 +38,6 @@ from protogen.native.print_steps import (
     literal,
     named,
     number,
-    offset_of,
     physical,
     quoted,
     when,
@@ -75,8 +74,7 @@ def _frame_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
         case ("t_ns",):
             return when(Condition.TIMED, [TIME])
         case _:
-            (role,) = column.path
-            return offset_of(places[role]) if role == "offset" else number(places[role], IN_CELLS)
+            return number(places[column.path[0]], IN_CELLS)
 
 
 def _event_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:

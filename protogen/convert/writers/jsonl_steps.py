@@ -22,7 +22,6 @@ from protogen.native.print_steps import (
     literal,
     named,
     number,
-    offset_of,
     when,
 )
 
@@ -79,7 +78,7 @@ def places_of(columns: Sequence[Column]) -> dict[str, Place]:
 
 def _start(places: Mapping[str, Place], words: Mapping[str, str]) -> Iterator[Step]:
     yield literal('{"offset": ')
-    yield offset_of(places["offset"])
+    yield number(places["offset"], IN_LINES)
     yield literal(', "size": ')
     yield number(places["size"], IN_LINES)
     for name, value in words.items():

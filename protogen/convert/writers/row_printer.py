@@ -41,7 +41,7 @@ class RowPrinter:
             yield table, self._texts(batch, [rows])
 
     def _texts(self, batch: ColumnBatch, each: list[PrintedRows]) -> Iterator[bytes]:
-        return self._printer.texts(each, batch.data, batch.filled.offset, batch.start)
+        return self._printer.texts(each, batch.data, batch.filled.offset)
 
     def _tables(self, batch: ColumnBatch) -> Iterator[tuple[Table, PrintedRows]]:
         filled, tables = batch.filled, self.readings.tables
@@ -76,7 +76,7 @@ class RowPrinter:
 def _printed(
     batch: ColumnBatch, table: int, rows: Any, differs: Array | None = None, payloads: bytes = b""
 ) -> PrintedRows:
-    found = batch.times_of(rows)
+    found = batch.times.of(rows)
     if isinstance(found, Nothing):
         return PrintedRows(table, rows, differs, payloads=payloads)
     missing = found.missing

@@ -23,7 +23,6 @@
 struct job {
     const uint8_t *line; /* The bytes of the capture from offset `base` on. */
     uint64_t base;
-    uint64_t start; /* Is added to the offsets of rows. */
     char *(*repr)(double value, char format, int precision, int flags, int *type);
     void (*release)(void *memory);
 };
