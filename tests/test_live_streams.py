@@ -366,6 +366,19 @@ frame:
   check: {type: uint3, algorithm: CRC-3/GSM, covers: id..payload}
 """
     + TWO_MESSAGES.replace("0x4", "0x8"),
+    "digits behind numbers that are none": """
+byte_order: little
+frame:
+  sync: {literal: 0x01}
+  number: {type: uint8, default: 0x41, range: [0x40, 0xFF]}
+  id: {type: uint8, id: true}
+  count: {type: uint8, counts: payload}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id..payload}
+  end: {literal: {hex: 02 03}}
+transparency: {encoding: base16-upper, covers: id..check}
+"""
+    + TWO_MESSAGES.replace("uint7", "uint8"),
     "the byte that starts a frame may begin its end": """
 frame:
   begin: {type: uint8, range: [0x80, 0xED]}
@@ -423,6 +436,20 @@ messages:
   list: {id: 2, from: station, fields: {a: {type: bytes, size: fill}}}
 decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
 """,
+    "digits between numbers that are none": """
+byte_order: little
+decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
+frame:
+  sync: {literal: 0x01, unprotected: accepted}
+  number: {type: uint8, default: 0x41}
+  id: {type: uint8, id: true}
+  count: {type: uint8, counts: payload}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: id..payload}
+  end: {literal: 0x02, unprotected: accepted}
+transparency: {encoding: base16-upper, covers: id..payload}
+"""
+    + TWO_MESSAGES.replace("uint7", "uint8"),
 }
 
 
@@ -433,3 +460,4 @@ def test_unclear_frames(frame: str, tmp_path: Path) -> None:
     for seed in range(12):
         for stream in (clean, noisy):
             test_each_portion_gives_what_the_reference_gives(path, "station", stream, seed)
+        test_nothing_is_awaited_behind_a_verdict(path, "station", seed)

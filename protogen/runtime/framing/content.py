@@ -5,7 +5,6 @@ The *content* is the bytes of all parts before any stuffing, without the end lit
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
@@ -19,8 +18,6 @@ from protogen.runtime.framing.frame import (
 )
 from protogen.runtime.framing.layout import Slice, is_optional
 from protogen.runtime.framing.sender import IdentityGroup, SenderSpec
-
-_UNLIMITED = sys.maxsize
 
 
 class Rejected(Exception):  # noqa: N818 - it is a verdict, not an error of the program
@@ -51,7 +48,8 @@ class Content:
         """True if all parts are there."""
         self._group: IdentityGroup[Any] | None = None
         self._is_measuring = False
-        self._limit = _UNLIMITED  # The content has no more bytes than this.
+        self.limit: int | None = None
+        """Bytes that the content has at most, as soon as that is known."""
         self._next = -1  # Where the part that is due ends.
         self._literal = b""  # What its bytes have to be.
         self._clear_bits = False  # Whether their most significant bit has to be clear.
@@ -62,7 +60,7 @@ class Content:
     def accept(self, byte: int) -> bool:
         """Take the next byte. True: a part was completed, and more may be known."""
         index = len(self.bytes)
-        if index >= self._limit:
+        if self.limit is not None and index >= self.limit:
             raise self.surplus()
         self.bytes.append(byte)
         if self._literal and byte != self._literal[index - self._next]:
@@ -78,14 +76,14 @@ class Content:
         """Verdict on a byte behind the content's last one."""
         if self.payload_size is None:
             return Rejected("size", "no message of this identity has so many bytes")
-        return Rejected(self._announced, f"there are more than {self._limit} bytes, or no end")
+        return Rejected(self._announced, f"there are more than {self.limit} bytes, or no end")
 
     def close(self) -> None:
         """Take the end of the content. Raises Rejected where the frame can't end here."""
         if self.payload_size is None:
             self._close_open()
         elif not self.is_full:
-            problem = f"the frame ends behind {len(self.bytes)} of {self._limit} bytes"
+            problem = f"the frame ends behind {len(self.bytes)} of {self.limit} bytes"
             raise Rejected(self._announced, problem)
 
     # --- part by part -------------------------------------------------------------------------
@@ -161,7 +159,7 @@ class Content:
 
     def _set_payload(self, size: int) -> None:
         self.payload_size = size
-        self._limit = self._layout.head_size + size + self._layout.tail_size(size)
+        self.limit = self._layout.head_size + size + self._layout.tail_size(size)
 
     def _enter_payload(self) -> None:
         if self.payload_size is not None:
@@ -180,7 +178,7 @@ class Content:
         self._clear_bits = self._sender.frame.seven_bit and not self._layout.tail
         if self._group is not None:
             tail = self._layout.tail_size(self._group.greatest)
-            self._limit = self._layout.head_size + self._group.greatest + tail
+            self.limit = self._layout.head_size + self._group.greatest + tail
 
     def _measure(self) -> None:
         """Try to read a message that nothing delimits but itself."""

@@ -70,6 +70,11 @@ class Candidate:
         """Bytes of content so far."""
         return len(self._content.bytes)
 
+    @property
+    def content_limit(self) -> int | None:
+        """Bytes of content that there can be at most; None where that is not known yet."""
+        return self._content.limit
+
     def push(self, byte: int) -> Cut | Failure | None:
         """Take the next byte. None: the candidate needs more."""
         self._wire.append(byte)
