@@ -19,6 +19,7 @@ from compiled import SCHEMAS, module_at, name_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
 
 POINT = c.Struct("x" / c.Int(16, signed=True), "y" / c.SevenBit(14, order="big"))
@@ -158,13 +159,21 @@ def test_derived_classes_do_it_in_their_own_way() -> None:
         assert doubled.parse_stream(io.BytesIO(b"\2")) == {"x": 4}
         assert doubled.build({"x": 2}) == b"\2\2"
         assert c.Struct("inner" / doubled).parse(b"\2").inner == {"x": 4}
-        assert c.Struct("x" / Odd("B", "little")).parse(b"\2").x == 3
+        assert c.Struct("x" / Odd(rt.Number(8))).parse(b"\2").x == 3
 
 
 def test_fields_may_have_one_name() -> None:
     format = c.Struct("a" / c.Int(8), "a" / c.Int(8))
     assert format.parse(b"\1\2") == {"a": 2}
     assert format.build({"a": 3}) == b"\3\3"
+
+
+@pytest.mark.parametrize("number", [c.Float(32), c.Float(64, "big"), c.SevenBitFloat(32)])
+def test_copies_of_floats_read_and_build_the_same(number: Any) -> None:
+    wire = number.build(-1.5)
+    for other in (copy.deepcopy(number), pickle.loads(pickle.dumps(number))):
+        assert other.parse(wire) == -1.5
+        assert other.build(-1.5) == wire
 
 
 def test_copies_are_formats_of_their_own() -> None:

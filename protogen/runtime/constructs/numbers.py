@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterable
 from typing import Any, BinaryIO, Literal, Protocol
 
-import construct  # type: ignore[import-untyped,unused-ignore]
-from construct import Construct
+from construct import Construct  # type: ignore[import-untyped,unused-ignore]
 
-from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read, short
+from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.number import ByteOrder, Number
 
@@ -52,38 +52,9 @@ class _Scalar(Piece):
         return self._size
 
 
-class _Native(Around):
-    """construct's own FormatField, with errors that say where."""
-
-    def __init__(self, code: str, order: ByteOrder) -> None:
-        super().__init__(construct.FormatField("<" if order == "little" else ">", code))
-
-    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
-        offset = stream.tell()
-        try:
-            return self.subcon._parse(stream, context, path)
-        except construct.StreamError:
-            left = stream.tell() - offset
-            raise short(path, offset, self.subcon.sizeof(), left) from None
-
-    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
-        try:
-            return self.subcon._build(obj, stream, context, path)
-        except (construct.ConstructError, OverflowError) as error:
-            problem = str(error).splitlines()[-1]
-            raise PayloadError("value", path, stream.tell(), problem) from None
-
-
-_NATIVE_INTEGERS = {8: "B", 16: "H", 32: "L", 64: "Q"}
-_FLOATS = {32: "f", 64: "d"}
-
-
 def Int(bits: int, signed: bool = False, order: ByteOrder = "little") -> Piece:  # noqa: N802
     """An integer of 1 to 64 bits in as many whole bytes as it needs; padding bits are zero."""
-    code = _NATIVE_INTEGERS.get(bits)
-    if code is None:
-        return _Scalar(Number(bits, signed, order))
-    return _Native(code.lower() if signed else code, order)
+    return _Scalar(Number(bits, signed, order))
 
 
 def SevenBit(bits: int, signed: bool = False, order: ByteOrder = "little") -> Piece:  # noqa: N802
@@ -91,17 +62,13 @@ def SevenBit(bits: int, signed: bool = False, order: ByteOrder = "little") -> Pi
     return _Scalar(Number(bits, signed, order, seven_bit=True))
 
 
-def Float(bits: Literal[32, 64], order: ByteOrder = "little") -> Piece:  # noqa: N802
-    """An IEEE 754 number of 4 or 8 bytes."""
-    return _Native(_FLOATS[bits], order)
+class _FloatCodec:
+    """The bits of a float as those of an unsigned integer."""
 
-
-class _SevenBitFloat:
-    """The bits of a float as those of an unsigned integer, 7 bits a byte."""
-
-    def __init__(self, bits: int, order: ByteOrder) -> None:
-        self._integer = Number(bits, order=order, seven_bit=True)
-        self._float = construct.FormatField("<", _FLOATS[bits])
+    def __init__(self, bits: Literal[32, 64], order: ByteOrder, seven_bit: bool = False) -> None:
+        self._integer = Number(bits, order=order, seven_bit=seven_bit)
+        self._layout = "<f" if bits == 32 else "<d"
+        self._bits = bits
 
     @property
     def size(self) -> int:
@@ -109,19 +76,24 @@ class _SevenBitFloat:
 
     def encode(self, value: float, /) -> bytes:
         try:
-            plain = self._float.build(value)
-        except (construct.ConstructError, OverflowError):
-            raise ValueError(f"{value!r} does not fit") from None
+            plain = struct.pack(self._layout, value)
+        except (struct.error, OverflowError):
+            raise ValueError(f"{value!r} is no number that {self._bits} bits hold") from None
         return self._integer.encode(int.from_bytes(plain, "little"))
 
     def decode(self, data: bytes, /) -> Any:
-        plain = self._integer.decode(data).to_bytes(self._float.sizeof(), "little")
-        return self._float.parse(plain)
+        plain = self._integer.decode(data).to_bytes(self._bits // 8, "little")
+        return struct.unpack(self._layout, plain)[0]
+
+
+def Float(bits: Literal[32, 64], order: ByteOrder = "little") -> Piece:  # noqa: N802
+    """An IEEE 754 number of 4 or 8 bytes."""
+    return _Scalar(_FloatCodec(bits, order))
 
 
 def SevenBitFloat(bits: Literal[32, 64], order: ByteOrder = "little") -> Piece:  # noqa: N802
     """An IEEE 754 number, 7 bits a byte: 5 or 10 bytes."""
-    return _Scalar(_SevenBitFloat(bits, order))
+    return _Scalar(_FloatCodec(bits, order, seven_bit=True))
 
 
 class _Boolean:

@@ -75,14 +75,9 @@ def read(stream: BinaryIO, size: int, path: str) -> bytes:
     offset = stream.tell()
     data = stream.read(size)
     if len(data) < size:
-        raise short(path, offset, size, len(data))
+        problem = f"needs {size} bytes, but only {len(data)} are left"
+        raise PayloadError("size", path, offset, problem, size - len(data))
     return data
-
-
-def short(path: str, offset: int, size: int, left: int) -> PayloadError:
-    """The error where too few bytes are left."""
-    problem = f"needs {size} bytes, but only {left} are left"
-    return PayloadError("size", path, offset, problem, size - left)
 
 
 def bytes_left(stream: BinaryIO) -> int:

@@ -48,7 +48,8 @@ class Number(Frozen):
         return (1 << (self.bits - self.signed)) - 1
 
     def encode(self, value: int) -> bytes:
-        """The bytes for `value`. Raises ValueError if the bits can't hold it."""
+        """The bytes for `value`. Raises ValueError if it is no integer that the bits can hold."""
+        value = as_integer(value)
         if not self.least <= value <= self.greatest:
             raise ValueError(f"{value} is not in {self.least}..{self.greatest}")
         raw = value & ((1 << self.bits) - 1)

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, Violation
+from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, SeveralRule, Violation
 
 FieldRules = tuple[tuple[str, Rule], ...]
 """Name and rule of each field, in wire order."""
-
-OUTERMOST: Scope = ChainMap()
-"""The scope around a message's own fields, which is empty."""
 
 
 class StructRule(Rule):
@@ -100,11 +96,8 @@ class StructRule(Rule):
                 raise EncodeError(str(name), f"there is no such field; there are: {has}")
 
 
-class ArrayRule(Rule):
-    """Values of one kind: `count` of them, or as many as the field `count` says.
-
-    None: to the end of the payload, at most `greatest`.
-    """
+class ArrayRule(SeveralRule[Sequence[Any]]):
+    """Values of one kind: `count` of them, or as many as the field `count` says."""
 
     def __init__(
         self,
@@ -113,16 +106,14 @@ class ArrayRule(Rule):
         greatest: int | None = None,
         const: Sequence[Any] | None = None,
     ) -> None:
+        super().__init__(count, greatest, const)
         self.element = element
-        self.count = count
-        self.greatest = greatest
-        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> list[Any]:
         """The elements."""
         if not isinstance(value, Sequence) or isinstance(value, str | bytes):
             raise EncodeError("", f"must be a list, not {value!r}")
-        self._check_count(len(value), scope)
+        self._check_count(len(value), scope, "elements")
         if self.const is not None and list(value) != list(self.const):
             raise EncodeError("", f"must be {list(self.const)}")
         return list(_each(self.element.to_wire, value, scope, strict))
@@ -149,14 +140,6 @@ class ArrayRule(Rule):
         if not isinstance(data, list | tuple):
             raise EncodeError("", f"must be a list, not {data!r}")
         return list(_each(self.element.from_json, data, scope))
-
-    def _check_count(self, count: int, scope: Scope) -> None:
-        exactly = scope[self.count] if isinstance(self.count, str) else self.count
-        if exactly is not None and count != exactly:
-            says = f", as {self.count} says" if isinstance(self.count, str) else ""
-            raise EncodeError("", f"needs exactly {exactly} elements{says}, not {count}")
-        if self.greatest is not None and count > self.greatest:
-            raise EncodeError("", f"has {count} elements, at most {self.greatest} are allowed")
 
 
 def _each(convert: Any, elements: Sequence[Any], *context: Any) -> Iterator[Any]:

@@ -11,12 +11,14 @@ import math
 from collections import ChainMap
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, Literal, NamedTuple
+from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from protogen.runtime.errors import EncodeError, join_path
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.nearest import nearest_reading
 from protogen.runtime.payload.number import as_integer
+
+ConstT = TypeVar("ConstT")
 
 Scope = ChainMap[str, Any]
 """Raw values of the fields in front, of this struct and of those around it."""
@@ -362,25 +364,47 @@ def _is_bit(value: Any) -> bool:
         return False
 
 
-# --- bytes and text -----------------------------------------------------------------------------
+# --- several values -----------------------------------------------------------------------------
 
 
-class OctetsRule(Rule):
-    """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
+class SeveralRule(Rule, Generic[ConstT]):
+    """Base of rules for values of which there may be several: `size`, or as the field `size` says.
+
+    None: to the end of the payload, at most `greatest`.
+    """
 
     def __init__(
-        self, size: int | str | None = None, greatest: int | None = None, const: bytes | None = None
+        self,
+        size: int | str | None = None,
+        greatest: int | None = None,
+        const: ConstT | None = None,
     ) -> None:
         self.size = size
         self.greatest = greatest
         self.const = const
+
+    def _check_count(self, count: int, scope: Scope, what: str) -> None:
+        exactly = int(scope[self.size]) if isinstance(self.size, str) else self.size
+        if exactly is not None and count != exactly:
+            says = f", as {self.size} says" if isinstance(self.size, str) else ""
+            raise EncodeError("", f"needs exactly {exactly} {what}{says}, not {count}")
+        _check_most(count, self.greatest, what)
+
+
+def _check_most(count: int, greatest: int | None, what: str) -> None:
+    if greatest is not None and count > greatest:
+        raise EncodeError("", f"has {count} {what}, at most {greatest} are allowed")
+
+
+class OctetsRule(SeveralRule[bytes]):
+    """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
         if not isinstance(value, bytes | bytearray | memoryview):
             raise EncodeError("", f"must be bytes, not {value!r}")
         data = bytes(value)  # What a view counts may have several bytes.
-        _check_count(len(data), _exactly(self.size, scope), self.greatest, "bytes")
+        self._check_count(len(data), scope, "bytes")
         if self.const is not None and data != self.const:
             raise EncodeError("", f"must be {self.const.hex(' ')}")
         return data
@@ -397,19 +421,12 @@ class OctetsRule(Rule):
             raise EncodeError("", f"must be hexadecimal digits, not {data!r}") from None
 
 
-class TextRule(Rule):
+class TextRule(SeveralRule[str]):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
     `size` is a number: the text has at most so many characters and does not end with NUL, which
     pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
     """
-
-    def __init__(
-        self, size: int | str | None = None, greatest: int | None = None, const: str | None = None
-    ) -> None:
-        self.size = size
-        self.greatest = greatest
-        self.const = const
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""
@@ -422,8 +439,7 @@ class TextRule(Rule):
         if isinstance(self.size, int):
             self._check_padded(value, self.size)
         else:
-            size = _exactly(self.size, scope)
-            _check_count(len(value), size, self.greatest, "characters")
+            self._check_count(len(value), scope, "characters")
         if self.const is not None and value != self.const:
             raise EncodeError("", f"must be {self.const!r}")
         return value
@@ -443,17 +459,6 @@ class TextRule(Rule):
         return data
 
     def _check_padded(self, value: str, size: int) -> None:
-        _check_count(len(value), None, size, "characters")
+        _check_most(len(value), size, "characters")
         if value.endswith("\0"):
             raise EncodeError("", "ends with NUL, which a receiver takes for padding")
-
-
-def _exactly(size: int | str | None, scope: Scope) -> int | None:
-    return int(scope[size]) if isinstance(size, str) else size
-
-
-def _check_count(count: int, exactly: int | None, greatest: int | None, what: str) -> None:
-    if exactly is not None and count != exactly:
-        raise EncodeError("", f"needs exactly {exactly} {what}, not {count}")
-    if greatest is not None and count > greatest:
-        raise EncodeError("", f"has {count} {what}, at most {greatest} are allowed")
