@@ -54,14 +54,14 @@ def _protocol(
         return None
     merged = loaded.merged
     context = Context(
-        syntax=loaded.syntax,
+        syntax=loaded.shape.syntax,
         data=loaded.data,
         find=merged.find,
         find_key=lambda loc: merged.find(loc, key=True),
         problems=problems,
         files=merged.files,
-        doubtful=loaded.doubtful,
-        lost=loaded.lost,
+        doubtful=loaded.shape.doubtful,
+        lost=loaded.shape.lost,
         spoilt=loaded.spoilt,
     )
     return resolve(context)

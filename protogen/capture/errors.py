@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from protogen.errors import UserError
 
-class CaptureError(ValueError):
+
+class CaptureError(UserError, ValueError):
     """A capture can't be read so: the text says why, and what would help."""
 
 

@@ -48,9 +48,7 @@ class _Commands(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command by its name, or None if there is no such command."""
-        if cmd_name in _MODULES and self.commands[cmd_name] is None:
-            self.commands[cmd_name] = _command(cmd_name)
-        return self.commands.get(cmd_name)
+        return _command(cmd_name) if cmd_name in _MODULES else None
 
 
 def _command(name: str) -> Any:

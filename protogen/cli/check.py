@@ -10,7 +10,8 @@ import typer
 from protogen.cli.console import echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet, SchemaPaths
-from protogen.cli.schemas import compile_files, each_once, schema_files
+from protogen.cli.schemas import compile_files, each_once
+from protogen.schema.files import schema_files
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation

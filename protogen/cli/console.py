@@ -17,17 +17,8 @@ if TYPE_CHECKING:
     Cell = str | Text
 
 
-def console() -> Console:
-    """Return a console for standard output."""
-    return _console(stderr=False)
-
-
-def error_console() -> Console:
-    """Return a console for standard error."""
-    return _console(stderr=True)
-
-
-def _console(*, stderr: bool) -> Console:
+def console(*, stderr: bool = False) -> Console:
+    """Return a console for standard output, or for standard error."""
     from rich.console import Console
 
     return Console(
@@ -45,11 +36,15 @@ def print_table(console: Console, heads: Sequence[str], rows: Iterable[Sequence[
     """Print ``rows`` in columns as wide as their longest cell."""
     from rich.text import Text
 
-    cells = [[_text(cell) for cell in row] for row in rows]
-    titles = [Text(head, style="bold") for head in heads]
-    widths = [max(cell.cell_len for cell in column) for column in zip(titles, *cells, strict=True)]
-    for row in (titles, *cells):
-        line = Text("  ").join(_padded(row, widths))
+    table = [[Text(head, style="bold") for head in heads]]
+    table += (
+        [Text(cell) if isinstance(cell, str) else cell.copy() for cell in row] for row in rows
+    )
+    widths = [max(cell.cell_len for cell in column) for column in zip(*table, strict=True)]
+    for texts in table:
+        for text, width in zip(texts, widths, strict=True):
+            text.pad_right(width - text.cell_len)
+        line = Text("  ").join(texts)
         line.rstrip()
         console.print(line)
 
@@ -61,18 +56,3 @@ def echo_json(data: object) -> None:
     import typer
 
     typer.echo(json.dumps(data, indent=2, ensure_ascii=False))
-
-
-def _text(cell: Cell) -> Text:
-    from rich.text import Text
-
-    return Text(cell) if isinstance(cell, str) else cell
-
-
-def _padded(row: Sequence[Text], widths: Sequence[int]) -> list[Text]:
-    padded = []
-    for cell, width in zip(row, widths, strict=True):
-        whole = cell.copy()
-        whole.pad_right(width - cell.cell_len)
-        padded.append(whole)
-    return padded

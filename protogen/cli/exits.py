@@ -11,6 +11,8 @@ from typing import ParamSpec
 
 import typer
 
+from protogen.errors import UserError
+
 CLEAN = 0
 """Everything is as it should be."""
 FINDINGS = 1
@@ -30,12 +32,8 @@ DEBUG_VARIABLE = "PROTOGEN_DEBUG"
 Arguments = ParamSpec("Arguments")
 
 
-class UsageError(Exception):
-    """A mistake in the call; the message is for the user, `hint` says how to fix it."""
-
-    def __init__(self, message: str, hint: str | None = None) -> None:
-        super().__init__(message)
-        self.hint = hint
+class UsageError(UserError):
+    """A mistake in the call."""
 
 
 def guarded(command: Callable[Arguments, int]) -> Callable[Arguments, None]:
@@ -60,7 +58,7 @@ def guarded(command: Callable[Arguments, int]) -> Callable[Arguments, None]:
 def explain(error: Exception) -> int:
     """Say what an error means that ends a command; return the exit code."""
     match error:
-        case UsageError():
+        case UserError():
             return _complain(str(error), error.hint)
         case BrokenPipeError():
             return _lose_output()
@@ -83,13 +81,13 @@ def report_bug(error: Exception) -> int:
 
 
 def _complain(message: str, hint: str | None = None) -> int:
-    from protogen.cli.console import error_console
+    from protogen.cli.console import console
 
-    console = error_console()
-    console.print("error:", style="bold red", end=" ")
-    console.print(message, markup=False)
+    out = console(stderr=True)
+    out.print("error:", style="bold red", end=" ")
+    out.print(message, markup=False)
     if hint is not None:
-        console.print(f"  hint: {hint}", markup=False, style="green")
+        out.print(f"  hint: {hint}", markup=False, style="green")
     return USAGE
 
 

@@ -9,7 +9,8 @@ import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet
-from protogen.cli.schemas import own_schemas, print_problems, schema_files
+from protogen.cli.schemas import own_schemas, print_problems
+from protogen.schema.files import schema_files
 
 EXAMPLE = "Example: protogen fmt schemas --check"
 

@@ -12,7 +12,7 @@ import typer
 
 from protogen.cli.exits import CLEAN, UsageError
 from protogen.cli.generation.plan import SCHEMAS
-from protogen.starter.framings import Framing
+from protogen.starter.framings import Framing, starter_schema
 
 EXAMPLE = "Example: protogen init motor --framing cobs"
 NAME = "my_protocol"
@@ -109,8 +109,6 @@ def _checked(name: str) -> str:
 
 
 def _write_schema(file: Path, name: str, framing: Framing) -> None:
-    from protogen.starter.writing import starter_schema
-
     text = starter_schema(name, framing, str(file))
     try:
         with file.open("x", encoding="utf-8", newline="") as stream:

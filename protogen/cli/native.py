@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -12,6 +11,7 @@ from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, UsageError, guarded
 from protogen.cli.options import SchemaPaths
 from protogen.convert.formats import OutputFormat
+from protogen.schema.files import schema_files
 
 if TYPE_CHECKING:
     from protogen.convert.columns.tables import Tables
@@ -34,7 +34,7 @@ def build(schemas: SchemaPaths) -> int:
     Libraries are kept in a cache that only you can write to; what is there already is not compiled
     again.
     """
-    from protogen.cli.schemas import open_protocol, schema_files
+    from protogen.cli.schemas import open_protocol
     from protogen.convert.columns.tables import tables_of
     from protogen.live.rows import driver_of
     from protogen.native.build import build as build_library
@@ -72,7 +72,9 @@ def _say(what: str, *, is_new: bool) -> None:
 @guarded
 def path() -> int:
     """Print the folder that the compiled libraries are kept in."""
-    typer.echo(str(_folder()))
+    from protogen.native.cache import cache_folder
+
+    typer.echo(str(cache_folder()))
     return CLEAN
 
 
@@ -82,17 +84,6 @@ def clean() -> int:
     """Remove all compiled libraries. They are compiled again when they are used."""
     from protogen.native.cache import clean as clean_cache
 
-    _folder()
     count = clean_cache()
     typer.echo(f"removed {count} {'library' if count == 1 else 'libraries'}")
     return CLEAN
-
-
-def _folder() -> Path:
-    from protogen.native.cache import cache_folder
-    from protogen.native.errors import NativeError
-
-    try:
-        return cache_folder()
-    except NativeError as error:
-        raise UsageError(str(error)) from None

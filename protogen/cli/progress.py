@@ -30,7 +30,7 @@ def progress(
 def _bar(title: str, total: int | None, *, in_bytes: bool) -> Iterator[Advance]:
     from rich import progress as rich_progress
 
-    from protogen.cli.console import error_console
+    from protogen.cli.console import console
 
     amount = rich_progress.DownloadColumn() if in_bytes else rich_progress.MofNCompleteColumn()
     rate = (rich_progress.TransferSpeedColumn(),) if in_bytes else ()
@@ -41,6 +41,6 @@ def _bar(title: str, total: int | None, *, in_bytes: bool) -> Iterator[Advance]:
         *rate,
         rich_progress.TimeRemainingColumn(),
     )
-    with rich_progress.Progress(*columns, console=error_console(), transient=True) as shown:
+    with rich_progress.Progress(*columns, console=console(stderr=True), transient=True) as shown:
         task = shown.add_task(title, total=total)
         yield lambda amount: shown.advance(task, amount)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from protogen.cli.exits import FINDINGS, USAGE, UsageError
+from protogen.schema.files import schema_files
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -16,19 +17,6 @@ if TYPE_CHECKING:
     from protogen.model.protocol import Protocol, Sender
     from protogen.problems import Problem, Problems, SourceMap
     from protogen.project.read import Project
-
-
-def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
-    """Return the files among ``paths``, and the schemas in the folders among them.
-
-    Raises UsageError if a path is not there, or a folder holds no schema.
-    """
-    from protogen.schema import files
-
-    try:
-        return files.schema_files(paths)
-    except files.NoSchemaError as error:
-        raise UsageError(str(error)) from None
 
 
 def open_protocol(path: Path) -> Protocol:
@@ -118,12 +106,12 @@ def print_found(problems: Iterable[Problem], sources: SourceMap) -> None:
     found = tuple(problems)
     if not found:
         return
-    from protogen.cli.console import error_console
+    from protogen.cli.console import console
     from protogen.problems import render_rich
 
-    console = error_console()
+    out = console(stderr=True)
     for problem in found:
-        console.print(render_rich(problem, sources))
+        out.print(render_rich(problem, sources))
 
 
 def print_problems(compilations: Iterable[Compilation]) -> None:
@@ -156,10 +144,16 @@ def find_sender(protocol: Protocol, name: str) -> Sender:
 
 def find_message(protocol: Protocol, name: str) -> Message:
     """Return the message called ``name``. Raises UsageError with what was probably meant."""
+    names = [message.name for message in protocol.messages]
+    check_known("message", [name], names, protocol.name)
+    return protocol.message(name)
+
+
+def check_known(kind: str, given: Iterable[str] | None, names: list[str], protocol: str) -> None:
+    """Raise UsageError with what was probably meant where a protocol has no such name."""
     from protogen.problems import hint_for
 
-    names = [message.name for message in protocol.messages]
-    if name in names:
-        return protocol.message(name)
-    hint = hint_for(name, names) or f"it has {', '.join(names)}"
-    raise UsageError(f"`{protocol.name}` has no message `{name}`", hint)
+    for name in given or ():
+        if name not in names:
+            hint = hint_for(name, names) or f"it has {', '.join(names)}"
+            raise UsageError(f"`{protocol}` has no {kind} `{name}`", hint)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from types import ModuleType
 
+from protogen.errors import UserError
+
 _EXTRAS = {
     "numpy": "capture",
     "pyarrow": "parquet",
@@ -17,16 +19,8 @@ _EXTRAS = {
 """The extra that brings each package."""
 
 
-class ConvertError(Exception):
-    """A capture can't be converted; `hint` says what to do about it."""
-
-    def __init__(self, message: str, hint: str | None = None) -> None:
-        super().__init__(message)
-        self.hint = hint
-
-    def __reduce__(self) -> tuple[type[ConvertError], tuple[str, str | None]]:
-        # It comes back from other processes as well.
-        return type(self), (str(self), self.hint)
+class ConvertError(UserError):
+    """A capture can't be converted."""
 
 
 def needed(module: str, purpose: str) -> ModuleType:

@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 
 from protogen.compiler import Compilation, compile_file
+from protogen.errors import UserError
 from protogen.evolution.lock import LockError, read_lock
 from protogen.problems import SourceMap
 from protogen.project.schemas import schemas_below
@@ -26,7 +27,7 @@ LOCK = "lock:"
 _SUFFIXES = (".yaml", ".yml")
 
 
-class NoVersionError(Exception):
+class NoVersionError(UserError):
     """A version that can't be had; the message says why."""
 
 

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
+from protogen.errors import UserError
 from protogen.footprint.elf import Elf, read_elf
 from protogen.footprint.machines import Machine
 from protogen.model.protocol import Protocol
@@ -21,12 +22,8 @@ _QUIET = ("-fno-asynchronous-unwind-tables", "-fno-stack-protector", "-fcf-prote
 """Flags against code that some hosts add to each function, and controllers do not have."""
 
 
-class NoCompilerError(Exception):
+class NoCompilerError(UserError):
     """The compiler of a machine is not on the PATH."""
-
-    def __init__(self, machine: Machine) -> None:
-        super().__init__(f"{machine.compiler}, the compiler for {machine.title}, is not installed")
-        self.hint = f"on Debian or Ubuntu: apt install {machine.package}"
 
 
 class CompilerError(Exception):
@@ -49,7 +46,10 @@ def build(protocol: Protocol, options: COptions, machine: Machine, structs: Sequ
     """Compile a protocol. Raises NoCompilerError, or CompilerError where it does not compile."""
     compiler = shutil.which(machine.compiler)
     if compiler is None:
-        raise NoCompilerError(machine)
+        raise NoCompilerError(
+            f"{machine.compiler}, the compiler for {machine.title}, is not installed",
+            f"on Debian or Ubuntu: apt install {machine.package}",
+        )
     name = protocol.name
     header, source = texts(protocol, options)
     with TemporaryDirectory(prefix="protogen-size-") as made:

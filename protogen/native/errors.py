@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from protogen.errors import UserError
 
-class NativeError(Exception):
+
+class NativeError(UserError):
     """Native code can't be had here: the text says why."""
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from protogen.errors import UserError
+
 SUFFIX = ".yaml"
 
 
-class NoSchemaError(ValueError):
+class NoSchemaError(UserError, ValueError):
     """A path where no schema is; the text says what is wrong with it."""
 
 

@@ -9,9 +9,7 @@ import msgspec
 
 from protogen.problems import Problems, SourceMap
 from protogen.schema.dialects.extends import Merged, merge_bases
-from protogen.schema.recovery import Loc
-from protogen.schema.shape import read_shape
-from protogen.schema.syntax.protocol import ProtocolSyntax
+from protogen.schema.shape import Shape, read_shape
 from protogen.schema.text.document import decode_document, read_document
 from protogen.schema.text.nodes import MappingNode, to_data
 
@@ -19,15 +17,11 @@ from protogen.schema.text.nodes import MappingNode, to_data
 class Loaded(msgspec.Struct, frozen=True):
     """A schema as it was written, and where each of its nodes stands."""
 
-    syntax: ProtocolSyntax
+    shape: Shape
     data: Any
     """Data that the syntax tree was made of."""
     merged: Merged
-    doubtful: frozenset[Loc] = frozenset()
-    """Items of which something could not be read: what seems wrong with them may come of that."""
-    lost: frozenset[Loc] = frozenset()
-    """Names that are written, but whose meaning could not be read."""
-    spoilt: bool = False
+    spoilt: bool
     """True if more than some examples could not be read."""
 
 
@@ -61,4 +55,4 @@ def load_syntax(
     shape = read_shape(data, merged.find, problems)
     if shape is None or not sound:
         return None
-    return Loaded(shape.syntax, data, merged, shape.doubtful, shape.lost, spoilt or shape.spoilt)
+    return Loaded(shape, data, merged, spoilt or shape.spoilt)

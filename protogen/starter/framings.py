@@ -85,3 +85,12 @@ class Framing(StrEnum):
     def numbers(self) -> Numbers:
         """Look of numbers."""
         return SEVEN_BITS if self is Framing.SEVEN_BIT else WHOLE_BYTES
+
+
+def starter_schema(name: str, framing: Framing, file: str) -> str:
+    """Return a schema that compiles as it is; `file` is how its comments call it."""
+    from protogen.targets.printing import environment
+
+    title = name.replace("_", " ").capitalize()
+    template = environment("protogen.starter").get_template("schema.yaml.j2")
+    return template.render(name=name, title=title, file=file, framing=framing)

@@ -10,6 +10,7 @@ import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import SchemaPaths
+from protogen.schema.files import schema_files
 
 EXAMPLE = "Example: protogen lock schemas && protogen breaking schemas --against-lock protogen.lock"
 
@@ -27,7 +28,7 @@ def lock(
 
     For trees without git: `protogen breaking --against-lock` holds schemas against it.
     """
-    from protogen.cli.schemas import open_protocol, schema_files
+    from protogen.cli.schemas import open_protocol
     from protogen.evolution.lock import lock_text
 
     base = output.resolve().parent

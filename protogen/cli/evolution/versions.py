@@ -37,15 +37,10 @@ def compared(
     Raises UsageError where it means none. With an error in a schema, prints its problems and ends
     the command.
     """
-    from protogen.evolution.sources import NoVersionError
-
-    try:
-        with ExitStack() as stack:
-            sides = list(_sides(versions, against, project, stack))
-            _end_if_broken(sides)
-            yield [pair for before, after in sides for pair in _paired(before, after)]
-    except NoVersionError as error:
-        raise UsageError(str(error)) from None
+    with ExitStack() as stack:
+        sides = list(_sides(versions, against, project, stack))
+        _end_if_broken(sides)
+        yield [pair for before, after in sides for pair in _paired(before, after)]
 
 
 def _sides(

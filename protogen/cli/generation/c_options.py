@@ -75,15 +75,16 @@ class ChosenC(msgspec.Struct, frozen=True):
 
     def emit(self, protocols: Sequence[Protocol]) -> tuple[File, ...]:
         """Return the files for these protocols. Raises UsageError where a name is unknown."""
+        from protogen.cli.schemas import check_known
         from protogen.targets.c.emit import emit
         from protogen.targets.c.options import EVENTS, STYLES, COptions
 
         choice = self.choice
         for protocol in protocols:
             messages = [message.name for message in protocol.messages]
-            _known("message", choice.only, messages, protocol.name)
+            check_known("message", choice.only, messages, protocol.name)
             senders = [sender.name for sender in protocol.senders]
-            _known("sender", choice.senders, senders, protocol.name)
+            check_known("sender", choice.senders, senders, protocol.name)
         options = COptions(
             style=_one_of("--c-style", choice.style, STYLES),
             events=_one_of("--events", choice.events, EVENTS),
@@ -104,12 +105,3 @@ def _one_of(option: str, given: str | None, allowed: tuple[_Word, ...]) -> _Word
             return choice
     message = f"{option} is {' or '.join(allowed)}, not `{given}`"
     raise UsageError(message, hint_for(given, allowed))
-
-
-def _known(what: str, given: Sequence[str] | None, names: Sequence[str], protocol: str) -> None:
-    from protogen.problems import hint_for
-
-    for name in given or ():
-        if name not in names:
-            message = f"`{protocol}` has no {what} `{name}`"
-            raise UsageError(message, hint_for(name, names) or f"it has {', '.join(names)}")

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from protogen.cli.exits import CLEAN, FINDINGS, USAGE, UsageError
-from protogen.cli.generation.depfile import write_depfile
-from protogen.cli.generation.jobs import Job, check, print_diff, say_current, write
+from protogen.cli.exits import CLEAN, FINDINGS, USAGE
+from protogen.cli.generation.jobs import Job, check, print_diff, say_current, write, write_depfile
 from protogen.cli.generation.plan import Given, Plan, plan
 from protogen.cli.schemas import compile_files, print_found, print_problems
+from protogen.errors import UserError
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -82,7 +82,7 @@ def planned_now(given: Given, mode: Mode) -> Plan | None:
     try:
         project = _project(problems, SourceMap(), Reads()) if mode.use_project else None
         planned = plan(given, project, problems)
-    except (UsageError, OSError):
+    except (UserError, OSError):
         return None
     return None if problems.errors else planned
 

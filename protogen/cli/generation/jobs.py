@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ import typer
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE
 
 if TYPE_CHECKING:
+    from protogen.compiler import Compilation
     from protogen.project.blocks import Page
     from protogen.project.record import Record
     from protogen.targets.output import File, Report
@@ -73,6 +74,15 @@ def write(jobs: Sequence[Job], pages: Sequence[Page], *, quiet: bool) -> int:
     return USAGE if refused else CLEAN
 
 
+def write_depfile(path: Path, jobs: Sequence[Job], compilations: Sequence[Compilation]) -> None:
+    """Write a rule of make: the generated files depend on the schemas and those they extend."""
+    made = [str(job.folder / file.path) for job in jobs for file in job.files]
+    read = dict.fromkeys(file for item in compilations for file in item.sources.files)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    rule = f"{_joined(made)}: {_joined(read)}\n"
+    path.write_text(rule, encoding="utf-8", newline="\n")
+
+
 def say_current(record: Record, root: Path, *, checking: bool) -> None:
     """Print what `check` or `write` would, where there is nothing to do."""
     if checking:
@@ -101,3 +111,10 @@ def _report(folder: Path, report: Report) -> Iterator[str]:
 
 def _unchanged(folder: Path, files: int) -> str:
     return f"unchanged in {folder}: {files}"
+
+
+def _joined(paths: Iterable[str]) -> str:
+    """Paths in a rule: `$` stands twice, and a backslash in front of a blank or `#`."""
+    doubled = (path.replace("$", "$$") for path in paths)
+    escaped = (path.replace(" ", "\\ ").replace("#", "\\#") for path in doubled)
+    return " \\\n  ".join(escaped)

@@ -10,7 +10,7 @@ import msgspec
 
 from protogen.cli.exits import UsageError
 from protogen.cli.generation import c_options
-from protogen.cli.schemas import schema_files
+from protogen.schema.files import schema_files
 
 if TYPE_CHECKING:
     from protogen.problems import Problems

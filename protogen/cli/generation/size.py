@@ -43,12 +43,15 @@ def size(
     It is generated into a temporary folder and compiled with -Os. A function is counted with what
     it alone needs. A linker that drops unused sections takes only what a program calls.
     """
+    from protogen.footprint.machines import MACHINES
+    from protogen.footprint.report import report
+
     protocol = open_protocol(schema)
-    report = _measure(protocol, _options(protocol, events, only, sender), mcu)
+    measured = report(protocol, _options(protocol, events, only, sender), MACHINES[mcu])
     if format == "json":
-        echo_json(_object(report))
+        echo_json(_object(measured))
     else:
-        _print_text(report)
+        _print_text(measured)
     return CLEAN
 
 
@@ -72,17 +75,6 @@ def _options(
             "those of --only have to be sent by one of --sender",
         )
     return options
-
-
-def _measure(protocol: Protocol, options: COptions, mcu: Mcu) -> Report:
-    from protogen.footprint.build import NoCompilerError
-    from protogen.footprint.machines import MACHINES
-    from protogen.footprint.report import report
-
-    try:
-        return report(protocol, options, MACHINES[mcu])
-    except NoCompilerError as error:
-        raise UsageError(str(error), error.hint) from None
 
 
 def _print_text(report: Report) -> None:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import msgspec
 import typer
 
-from protogen.cli.exits import CLEAN, UsageError, explain
+from protogen.cli.exits import CLEAN, explain
 from protogen.cli.generation.generating import Mode, Reads, generate_once, planned_now
 from protogen.cli.generation.plan import Given
+from protogen.errors import UserError
 
 if TYPE_CHECKING:
     from protogen.project.watch import States
@@ -74,7 +75,7 @@ class _Watch(msgspec.Struct):
             self.run()
         except BrokenPipeError:
             raise  # Nobody watches any more.
-        except (UsageError, OSError) as error:
+        except (UserError, OSError) as error:
             explain(error)
 
     def _remember(self, before: States, reads: Reads, begin: int) -> None:

@@ -14,7 +14,7 @@ from typing import BinaryIO, Literal, cast
 from protogen.cli.exits import UsageError
 from protogen.cli.progress import progress
 from protogen.cli.wire.tagged import Piece
-from protogen.convert.inputs.hex_digits import HexError, HexReader, parse_hex
+from protogen.convert.inputs.hex_digits import HexReader
 from protogen.convert.inputs.text_lines import decoded
 
 STANDARD_INPUT = Path("-")
@@ -23,8 +23,6 @@ InputFormat = Literal["raw", "hex", "tagged"]
 
 _PIECE = 1 << 16
 """The most bytes that are read at once."""
-_LONGEST_LINE = 1 << 24
-"""Characters; no line of JSON is longer."""
 
 
 @contextmanager
@@ -58,43 +56,14 @@ def _pieces(read: Callable[[int], bytes | None], advance: Callable[[int], None])
         advance(len(piece))
 
 
-# --- one sender -----------------------------------------------------------------------------------
-
-
 def raw_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     """The pieces as they are."""
     return (Piece(sender, piece) for piece in pieces)
 
 
-def hex_bytes(text: str) -> bytes:
-    """Bytes that the text says in hex. Raises UsageError with line and column."""
-    try:
-        return parse_hex(text)
-    except HexError as error:
-        raise UsageError(str(error)) from None
-
-
 def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
-    """Bytes that the pieces say in hex. Raises UsageError with line and column."""
+    """Bytes that the pieces say in hex. Raises HexError with line and column."""
     reader = HexReader()
-    try:
-        for text in decoded(pieces):
-            yield Piece(sender, reader.feed(text))
-        yield Piece(sender, reader.finish())
-    except HexError as error:
-        raise UsageError(str(error)) from None
-
-
-# --- lines of text --------------------------------------------------------------------------------
-
-
-def text_lines(pieces: Iterator[bytes]) -> Iterator[str]:
-    """The lines of a text. Raises UsageError if one is so long that it is none."""
-    rest = ""
     for text in decoded(pieces):
-        *whole, rest = (rest + text).split("\n")
-        yield from whole
-        if len(rest) > _LONGEST_LINE:
-            raise UsageError(f"a line has over {_LONGEST_LINE} characters: this is no text")
-    if rest:
-        yield rest
+        yield Piece(sender, reader.feed(text))
+    yield Piece(sender, reader.finish())

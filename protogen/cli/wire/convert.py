@@ -138,24 +138,17 @@ def _fleet(
 def _run(
     job: Job, captures: Sequence[str], fleet: Fleet | None, complaints: Complaints
 ) -> list[Result]:
-    from protogen.capture.errors import CaptureError
     from protogen.cli.progress import progress
-    from protogen.convert.errors import ConvertError
     from protogen.convert.runs.conversion import convert, plan
 
-    try:
-        named = plan(job, captures)
-        total = _total(source for _, source in named)
-        with _plain_warnings(), progress("converting", total, in_bytes=True) as advance:
-            if fleet is None:
-                return list(convert(job, named, complaints.add, advance))
-            from protogen.convert.runs.fleet import convert_fleet
+    named = plan(job, captures)
+    total = _total(source for _, source in named)
+    with _plain_warnings(), progress("converting", total, in_bytes=True) as advance:
+        if fleet is None:
+            return list(convert(job, named, complaints.add, advance))
+        from protogen.convert.runs.fleet import convert_fleet
 
-            return list(convert_fleet(job, named, fleet, complaints.add, advance))
-    except ConvertError as error:
-        raise UsageError(str(error), error.hint) from None
-    except CaptureError as error:
-        raise UsageError(str(error)) from None
+        return list(convert_fleet(job, named, fleet, complaints.add, advance))
 
 
 @contextmanager

@@ -15,13 +15,13 @@ from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
 from protogen.cli.wire.capture import (
     STANDARD_INPUT,
     InputFormat,
-    hex_bytes,
     hex_pieces,
     opened,
     raw_pieces,
 )
 from protogen.cli.wire.complaints import Complaints
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
+from protogen.convert.inputs.hex_digits import parse_hex
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
@@ -104,7 +104,7 @@ def _capture(
     if text is not None and file != STANDARD_INPUT:
         raise UsageError(f"there are two captures: {file} and --hex")
     if text is not None:
-        yield [Piece(sender, hex_bytes(text))]
+        yield [Piece(sender, parse_hex(text))]
         return
     with opened(file) as pieces:
         match kind:

@@ -146,14 +146,15 @@ def _number(name: str, text: str) -> int:
 
 def _encode_lines(codec: Codec, sender: str | None, write: Write) -> None:
     from protogen.cli.schemas import find_sender
-    from protogen.cli.wire.capture import STANDARD_INPUT, opened, text_lines
+    from protogen.cli.wire.capture import STANDARD_INPUT, opened
+    from protogen.convert.inputs.text_lines import lines_of
 
     if sender is not None:
         find_sender(codec.protocol, sender)
     if sys.stdin.isatty():
         raise UsageError("there is no message to encode", "name one, or pipe lines of JSON in")
     with opened(STANDARD_INPUT) as pieces:
-        for number, line in _json_lines(text_lines(pieces)):
+        for number, line in _json_lines(lines_of(pieces)):
             if sender is None or line.setdefault("sender", sender) == sender:
                 write(_encode_line(codec, number, line))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from protogen.cli.exits import CLEAN
 from protogen.cli.options import HexText, SchemaFile, SenderOfBytes
-from protogen.cli.wire.capture import hex_bytes
+from protogen.convert.inputs.hex_digits import parse_hex
 from protogen.copying import replace
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def explain(
 
     codec = open_codec(schema)
     decoder = codec.decoder(codec.sender_of_bytes(sender))
-    data = hex_bytes(_standard_input() if hex is None else hex)
+    data = parse_hex(_standard_input() if hex is None else hex)
     out = console()
     if not data:
         out.print("no bytes")

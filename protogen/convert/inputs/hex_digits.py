@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from string import hexdigits
 
+from protogen.errors import UserError
+
 _TOKEN = re.compile(
     r"(?P<pairs>(?:[0-9A-Fa-f]{2}[ \t\r\n]+)+)"  # what most files hold, read in one go
     r"|(?P<space>[\s,;:]+)"
@@ -21,7 +23,7 @@ _LONG = 1 << 16
 """A run of digits that is longer is read before its end is seen."""
 
 
-class HexError(ValueError):
+class HexError(UserError, ValueError):
     """Text that stands for no bytes, and where. `line` and `column` count from 1."""
 
     def __init__(self, line: int, column: int, problem: str) -> None:

@@ -34,15 +34,15 @@ def decoded(pieces: Iterable[bytes]) -> Iterator[str]:
     yield waiting.decode("utf-8", "replace") if decoder is None else decoder.decode(b"", True)
 
 
-def lines_of(pieces: Iterable[bytes], place: str) -> Iterator[str]:
+def lines_of(pieces: Iterable[bytes], place: str | None = None) -> Iterator[str]:
     """The lines, without what ends them. Raises ConvertError where one does not end."""
     rest = ""
     for text in decoded(pieces):
         *whole, rest = (rest + text).split("\n")
         yield from whole
         if len(rest) > _LONGEST_LINE:
-            raise ConvertError(
-                f"{place}: a line has over {_LONGEST_LINE} characters: this is no text"
-            )
+            where = "" if place is None else f"{place}: "
+            problem = f"a line has over {_LONGEST_LINE} characters: this is no text"
+            raise ConvertError(f"{where}{problem}")
     if rest:
         yield rest
