@@ -19,7 +19,7 @@ from protogen.targets.c.emit import texts
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.writers import is_stateless, writer_parameter
+from protogen.targets.c.protocol_names import is_stateless, writer_parameter
 
 OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
 RESULTS = {"size": SIZE, "value": VALUE, "encoding": ENCODING}

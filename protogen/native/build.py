@@ -10,7 +10,8 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
-from protogen.native.cache import SUFFIX, cache_folder, check, safe_folder
+from protogen.cache_folder import check, safe_folder
+from protogen.native.cache import SUFFIX, as_native_error, cache_folder
 from protogen.native.compiler import Compiler, compilers, working
 from protogen.native.driver import Driver
 from protogen.native.errors import NativeError, NoCompilerError
@@ -31,11 +32,12 @@ def build(driver: Driver) -> Built:
     """
     schema = driver.schema
     name = f"{schema.protocol}_{schema.sender}"
-    return Built(*compiled(name, driver.text, (schema.spec_hash, schema.sender)))
+    return compiled(name, driver.text, (schema.spec_hash, schema.sender))
 
 
-def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
-    """The library of a C source, and whether it was compiled just now.
+@as_native_error()
+def compiled(name: str, text: str, words: tuple[str, ...]) -> Built:
+    """The library of a C source.
 
     `words`: what else it depends on. Raises NativeError.
     """
@@ -47,8 +49,8 @@ def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
         path = _built_ahead(stem)
         if path is None:
             raise
-        return path, False
-    folder = safe_folder()
+        return Built(path, False)
+    folder = safe_folder(cache_folder())
     paths = [folder / f"{stem}-{_digest(item.identity)[:8]}{SUFFIX}" for item in found]
     path = next((path for path in paths if path.exists()), None)
     is_new = path is None
@@ -57,7 +59,7 @@ def compiled(name: str, text: str, words: tuple[str, ...]) -> tuple[Path, bool]:
         path = paths[found.index(chosen)]
         _compile(text, chosen, path)
     check(path)
-    return path, is_new
+    return Built(path, is_new)
 
 
 def _machine() -> tuple[str, ...]:
@@ -69,9 +71,10 @@ def _machine() -> tuple[str, ...]:
 def _built_ahead(stem: str) -> Path | None:
     """The library that a compiler made while there was one, the newest of several."""
     try:
-        if not cache_folder().is_dir():
+        folder = cache_folder()
+        if not folder.is_dir():
             return None
-        built = safe_folder().glob(f"{stem}-*{SUFFIX}")
+        built = safe_folder(folder).glob(f"{stem}-*{SUFFIX}")
         path = max(built, key=lambda item: item.stat().st_mtime_ns, default=None)
     except OSError:  # Somebody cleans the cache, or does not let us look there.
         return None

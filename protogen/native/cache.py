@@ -14,29 +14,18 @@ SUFFIX = ".dll" if sys.platform == "win32" else ".so"
 
 
 @contextmanager
-def _as_native_error() -> Iterator[None]:
+def as_native_error() -> Iterator[None]:
+    """Raise CacheErrors as NativeErrors."""
     try:
         yield
     except caches.CacheError as error:
         raise NativeError(str(error)) from None
 
 
-@_as_native_error()
+@as_native_error()
 def cache_folder() -> Path:
     """Folder of the libraries. Raises NativeError where the user has no folder for caches."""
     return caches.cache_folder("native")
-
-
-@_as_native_error()
-def safe_folder() -> Path:
-    """The same folder, which is there now. Raises NativeError where others could write into it."""
-    return caches.safe_folder(caches.cache_folder("native"))
-
-
-@_as_native_error()
-def check(path: Path) -> None:
-    """Raise NativeError unless this user alone decides what stands there."""
-    caches.check(path)
 
 
 def libraries() -> list[Path]:

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
+from importlib.resources import files
 from typing import Any
 
 import msgspec
 
 from protogen.capture.arrays import numpy
-from protogen.native.build import compiled
+from protogen.native.build import Built, compiled
 from protogen.native.errors import NativeError
-from protogen.native.print_source import source_of
-from protogen.native.print_steps import Steps
+from protogen.native.print_steps import Steps, block, indented
 
 _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
+_PARAMETERS = "const struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end"
 
 
 class PrintedRows(msgspec.Struct, frozen=True):
@@ -59,25 +59,45 @@ class _Rows(ctypes.Structure):
     )
 
 
-class BuiltPrinter(msgspec.Struct, frozen=True):
-    """A library that prints rows, and whether it was compiled just now."""
-
-    path: Path
-    is_new: bool
-
-
-def build_printer(name: str, tables: Sequence[Steps], quoted: Iterable[int] = ()) -> BuiltPrinter:
+def build_printer(name: str, tables: Sequence[Steps], quoted: Iterable[int] = ()) -> Built:
     """The library that prints rows of these tables; compiled unless it was before.
 
-    `quoted` as `source_of` has it. Raises NativeError and UnprintableError.
+    `quoted`: the ASCII characters for which a value of CSV needs quotes. Raises NativeError.
     """
-    return BuiltPrinter(*compiled(name, source_of(tables, quoted), ()))
+    return compiled(name, _source(tables, quoted), ())
+
+
+def _source(tables: Sequence[Steps], quoted: Iterable[int]) -> str:
+    helpers = files("protogen.native").joinpath("templates", "printer.c").read_text("utf-8")
+    tests = " || ".join(f"character == {code}" for code in quoted)
+    lines = [
+        f"#define NEEDS_QUOTES(character) ({tests or 0})",
+        helpers,
+        *(line for number, steps in enumerate(tables) for line in _function(number, steps)),
+        "static uint8_t *put_row(" + _PARAMETERS + ") {",
+        "    switch (rows->table) {",
+    ]
+    for number in range(len(tables)):
+        lines += [f"    case {number}:", f"        return put_{number}(job, rows, out, end);"]
+    lines += ["    default:", "        return NULL;", "    }", "}"]
+    return "\n".join([*lines, ""])
+
+
+def _function(number: int, steps: Steps) -> Iterator[str]:
+    yield f"static __attribute__((noinline)) uint8_t *put_{number}({_PARAMETERS}) {{"
+    yield "    const uint8_t *const at_0 = rows->rows + (size_t)rows->next * rows->stride;"
+    yield "    int is_odd = 0;"
+    yield "    (void)job;"
+    yield "    (void)is_odd;"
+    yield from indented(block(steps))
+    yield "    return out;"
+    yield "}"
 
 
 class Printer:
     """Prints rows. Raises NativeError where the library can't be loaded."""
 
-    def __init__(self, built: BuiltPrinter) -> None:
+    def __init__(self, built: Built) -> None:
         try:
             # It keeps the GIL, because it asks Python how long floats are spelled.
             self._print = ctypes.PyDLL(str(built.path)).protogen_print

@@ -9,12 +9,13 @@ from protogen.convert.columns.tables import Tables
 from protogen.convert.formats import OutputFormat
 from protogen.convert.writers.csv_steps import cell_steps
 from protogen.convert.writers.jsonl_steps import line_steps
-from protogen.native.printer import BuiltPrinter, build_printer
+from protogen.native.build import Built
+from protogen.native.printer import build_printer
 
 
 def built_printer(
     tables: Tables, format: OutputFormat, schema: CaptureSchema | None = None
-) -> BuiltPrinter:
+) -> Built:
     """The library that prints a sender's rows as lines of JSON or CSV.
 
     Raises NativeError, and UnprintableError where numbers of a scale are too great for C.

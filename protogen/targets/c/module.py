@@ -12,19 +12,12 @@ from protogen.model.payload_plan import IntegerStep, RecordStep, every_step
 from protogen.model.protocol import Protocol
 from protogen.targets import descriptions
 from protogen.targets.c import comments
-from protogen.targets.c.named import (
-    EnumView,
-    enum_view,
-    flags_view,
-    string,
-)
+from protogen.targets.c.named import EnumView, enum_view, flags_view, string
 from protogen.targets.c.options import COptions
-from protogen.targets.c.own_names import claim_own_names
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.messages import MessagePrinter, MessageView
 from protogen.targets.c.payload.records import Records, StructView
-from protogen.targets.c.spelling import Names
-from protogen.targets.c.writers import writer_argument, writer_parameter
+from protogen.targets.c.protocol_names import names_of
 
 
 class Module(msgspec.Struct, frozen=True):
@@ -60,8 +53,7 @@ class Module(msgspec.Struct, frozen=True):
 
 def view(protocol: Protocol, options: COptions) -> Module:
     """The module of a protocol."""
-    names = Names(protocol.name, writer_parameter(protocol), writer_argument(protocol))
-    claim_own_names(protocol, names)
+    names = names_of(protocol)
     chosen = options.chosen(protocol)
     used = _used(chosen)
     helpers, sinks = Helpers(names), Helpers(names)

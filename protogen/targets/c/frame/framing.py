@@ -14,7 +14,7 @@ from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, message_frame
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.writers import is_stateless
+from protogen.targets.c.protocol_names import is_stateless
 
 
 class FramingView(msgspec.Struct, frozen=True):

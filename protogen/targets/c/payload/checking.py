@@ -1,12 +1,13 @@
 """Statements that tell whether bytes are a message's payload.
 
-Values are looked at in wire order. Where nothing can be wrong with several values in a row, one
-comparison asks for the bytes of all.
+Values are looked at in wire order. Bytes are asked for before anything else is said of them, in one
+comparison for as many as follow each other. Top bits of 7-bit bytes are collected, and checked in
+one call.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from protogen.model.names import free_name
@@ -27,8 +28,7 @@ from protogen.model.payload_plan import (
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
-from protogen.targets.c.payload.secured import SecuredWalk
-from protogen.targets.c.payload.walk import out_of_bounds, times
+from protogen.targets.c.payload.walk import Walk, out_of_bounds, times
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
 
 _RESERVED = frozenset(
@@ -43,38 +43,117 @@ def _carried(step: BytesStep | NumberStep) -> int:
     return 8 if Check.BOOLEAN in step.checks else step.type.byte_bits
 
 
-class Checker(SecuredWalk):
-    """Prints a check of `payload`, which has `size` bytes."""
+class Checker(Walk):
+    """Prints a check of `payload`, whose `size` bytes may be too few.
+
+    With `needs`, a pointer `need` is told, unless it is NULL, how many bytes there have to be at
+    least. A message of a fixed size has all of its bytes; the function's head has seen to that.
+    """
 
     def __init__(
         self, helpers: Helpers, lines: Lines, prefix: str, *, fixed: bool, needs: bool
     ) -> None:
-        super().__init__(helpers, lines, prefix, fixed=fixed, needs=needs)
+        super().__init__(helpers, lines)
+        self._error = f"return {prefix.upper()}_ERROR_"
+        self._fixed = fixed
+        self._needs = needs
+        self._at = ""
+        self._offset = 0
+        self._secured = 0  # Bytes behind `at` that are known to be there.
+        self._unchecked: int | None = None  # Where bytes begin whose top bits are to be checked.
+        self._ended = False  # True once something has taken all bytes that there were.
         self._locals = set(_RESERVED)
         self._numbers: dict[tuple[int, str], str] = {}  # Variables, by the level of their record.
         self._branches = 0
 
+    # --- positions ------------------------------------------------------------------------------
+
+    def _sum(self, offset: int) -> str:
+        if not self._at:
+            return str(offset)
+        return f"{self._at} + {offset}" if offset else self._at
+
+    def _byte(self, index: int = 0) -> str:
+        return f"payload[{self._sum(self._offset + index)}]"
+
+    def _address(self, offset: int | None = None) -> str:
+        total = self._sum(self._offset if offset is None else offset)
+        return "payload" if total == "0" else f"payload + {total}"
+
+    def _require(self, size: int, extra: str = "") -> None:
+        """Go on only if so many bytes more are there."""
+        due = self._offset + size
+        if self._fixed or (not extra and due <= self._secured):
+            return
+        here = f"size - {self._at}" if self._at else "size"
+        amount = " + ".join(filter(None, [unsigned(due) if due or not extra else "", extra]))
+        with self.lines.block(f"if ({here} < {amount})"):
+            if self._needs:
+                end = f"{self._at} + {amount}" if self._at else amount
+                self.lines.add(f"return {self.helpers.missing()}(need, {end});")
+            else:
+                self.lines.add(f"{self._error}SIZE;")
+        if not extra:
+            self._secured = due
+
+    def _settle(self) -> None:
+        """Have `at` stand at the place itself; all bytes in front of it are there."""
+        self._flush()
+        self._require(0)
+        self._move(self._offset)
+
+    def _move(self, distance: int | str) -> None:
+        if not self._at:
+            self.lines.add(f"size_t at = {distance};")
+            self._at = "at"
+        elif distance:
+            self.lines.add(f"at += {distance};")
+        passed = distance if isinstance(distance, int) else 0
+        self._secured = max(0, self._secured - passed) if isinstance(distance, int) else 0
+        self._offset = 0
+
+    def finish(self, unfit: str) -> None:
+        """Say what is left to say at the end of the payload, and refuse sizes that are unfit."""
+        self._flush()
+        if self._fixed:
+            return
+        self._require(0)
+        if not self._ended:
+            self._refuse(f"size != {self._sum(self._offset)}", "SIZE")
+        self._refuse(unfit, "SIZE")
+
+    # --- most significant bits ------------------------------------------------------------------
+
+    def _seven_bit(self, size: int) -> None:
+        """Have the top bits of so many bytes checked, at the latest before anything else is."""
+        if self._unchecked is None:
+            self._unchecked = self._offset
+        if not self._fixed:
+            self._flush(size)
+
+    def _begin(self, byte_bits: int) -> None:
+        """Begin a value of such bytes."""
+        if byte_bits == 8:
+            self._flush()
+
+    def _flush(self, size: int = 0) -> None:
+        start = self._unchecked
+        self._unchecked = None
+        end = self._offset + size
+        if start is None or start == end:
+            return
+        if end - start == 1:
+            self._refuse(f"payload[{self._sum(start)}] > 0x7FU", "ENCODING")
+            return
+        check = self.helpers.seven_bit()
+        self._refuse(f"!{check}({self._address(start)}, {end - start})", "ENCODING")
+
+    def _refuse(self, condition: str, reason: str) -> None:
+        if condition:
+            with self.lines.block(f"if ({condition})"):
+                self.lines.add(f"{self._error}{reason};")
+
     # --- numbers that count and select ----------------------------------------------------------
-
-    def record(self, steps: Sequence[AnyStep], base: str) -> None:
-        """Walk over the steps of a record, and keep the numbers that are needed behind."""
-        level = len(self._records)
-        self._records.append(base)
-        for step in steps:
-            self.step(step, base + step.name)
-            if isinstance(step, IntegerStep) and step.is_needed:
-                self._numbers[level, step.name] = self._remembered(step)
-        self._records.pop()
-
-    def _remembered(self, step: IntegerStep) -> str:
-        """A local variable that has the value of a number in front of the place."""
-        name = free_name(step.name, self._locals)
-        self._locals.add(name)
-        self._offset -= step.type.size
-        value = loaded(self.helpers, step.type, self._byte(), self._address())
-        self._offset += step.type.size
-        self.lines.add(f"const {integer_type(step.type)} {name} = {value};")
-        return name
 
     def referred(self, number: Reference) -> str:
         """The variable of an earlier number."""
@@ -110,6 +189,18 @@ class Checker(SecuredWalk):
         elif is_needed:
             self._flush()
         self._offset += step.type.size
+        if isinstance(step, IntegerStep) and step.is_needed:
+            self._remember(step)
+
+    def _remember(self, step: IntegerStep) -> None:
+        """Put the number in front of the place into a variable, as it counts or selects."""
+        name = free_name(step.name, self._locals)
+        self._locals.add(name)
+        size = step.type.size
+        address = self._address(self._offset - size)
+        value = loaded(self.helpers, step.type, self._byte(-size), address)
+        self.lines.add(f"const {integer_type(step.type)} {name} = {value};")
+        self._numbers[len(self._records) - 1, step.name] = name
 
     def _number(self, step: NumberStep) -> None:
         type_ = step.type

@@ -1,4 +1,7 @@
-"""Names that the templates use themselves, which nothing of a schema may come to."""
+"""Names of a protocol's C: those that templates use themselves, and those of writers.
+
+A writer takes payloads byte by byte, where a frame is sent without a buffer.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +27,9 @@ take take_head take_tail unstuff wire_end wrap write
 _MACROS_OF_A_SENDER = "frame_max"
 
 
-def claim_own_names(protocol: Protocol, names: Names) -> None:
-    """Take the names before anything else can have them."""
+def names_of(protocol: Protocol) -> Names:
+    """The names of a protocol; nothing of its schema may come to those that templates use."""
+    names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
     for word in _MACROS.split():
         names.claim_macro(word)
     for word in _FUNCTIONS_AND_TAGS.split():
@@ -35,3 +39,25 @@ def claim_own_names(protocol: Protocol, names: Names) -> None:
             names.claim(sender.name, word)
         for word in _MACROS_OF_A_SENDER.split():
             names.claim_macro(sender.name, word)
+    return names
+
+
+def is_stateless(protocol: Protocol) -> bool:
+    """True if what is sent goes out as it is: nothing is summed or stuffed on the way."""
+    return not any(s.frame.checksums or s.frame.transparency for s in protocol.senders)
+
+
+def writer_parameter(protocol: Protocol) -> str:
+    """Parameters for a writer.
+
+    One without a state is the function and what it is given: compilers see through two parameters
+    where they would not look into a struct, and can put the function in where it is called.
+    """
+    if is_stateless(protocol):
+        return f"{protocol.name}_put put, void *user"
+    return f"struct {protocol.name}_writer *writer"
+
+
+def _writer_argument(protocol: Protocol) -> str:
+    """Arguments with which functions hand on the writer that they were given."""
+    return "put, user" if is_stateless(protocol) else "writer"
