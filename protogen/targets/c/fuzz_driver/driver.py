@@ -16,7 +16,6 @@ from protogen.model.protocol import Protocol
 from protogen.targets.c.emit import Unit, emit, unit_of
 from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.handlers import Dispatch
-from protogen.targets.c.frame.message_frames import MessageFrame
 from protogen.targets.c.fuzz_driver.exchange import exchange_function
 from protogen.targets.c.options import COptions
 from protogen.targets.printing import environment
@@ -99,19 +98,16 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
             indices[item.message.name],
             item.function,
             item.send if item.sends else "",
-            _frame_parts(item),
+            # By their names in the schema; those of arguments may differ.
+            tuple(
+                DrivenPart(part.name, argument.type)
+                for part, argument in zip(
+                    item.frame.plan.frame.caller_parts, item.frame.arguments, strict=True
+                )
+            ),
             item.room,
         )
         for index, item in enumerate(unit.framing.messages)
-    )
-
-
-def _frame_parts(item: MessageFrame) -> tuple[DrivenPart, ...]:
-    """The parts by their names in the schema; those of arguments may differ."""
-    frame = item.frame
-    return tuple(
-        DrivenPart(part.name, argument.type)
-        for part, argument in zip(frame.plan.frame.caller_parts, frame.arguments, strict=True)
     )
 
 
