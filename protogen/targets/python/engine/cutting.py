@@ -235,8 +235,8 @@ class _Cutter(ChecksumFunction):
         around = frame.head_size + frame.tail_size + len(frame.end)
         self.lines.add(f"count = {self.number('data', length, 'at')} - {self.counted(length)}")
         if frame.optional:
-            with self.lines.block(f"if count == {-self._counted_optional(length)}:"):
-                self.lines.add(f"end = {self._place(around - self.optional_size)}")
+            with self.lines.block(f"if count == {-frame.length_plan.optional}:"):
+                self.lines.add(f"end = {self._place(around - self.frame.optional_size)}")
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = {self._place(around)} + count")
             with self.lines.block("else:"):
@@ -267,11 +267,11 @@ class _Cutter(ChecksumFunction):
                 self.lines.add(f"end = {self._place(around)} + payload_size")
             if frame.optional:
                 with self.lines.block("else:"):
-                    self.lines.add(f"end = {self._place(around - self.optional_size)}")
+                    self.lines.add(f"end = {self._place(around - self.frame.optional_size)}")
         else:
             if open_groups:
                 self.stop_if("payload_size < 0")
-            less = f" - {self.optional_size} * (not payload_size)" if frame.optional else ""
+            less = f" - {self.frame.optional_size} * (not payload_size)" if frame.optional else ""
             if less or open_groups:
                 self.lines.add(f"end = {self._place(around)} + payload_size{less}")
             else:
@@ -356,7 +356,7 @@ class _Cutter(ChecksumFunction):
                 self.lines.add(sliced)
         elif frame.optional:
             with self.lines.block(f"if len({self.content}) <= {around}:"):
-                self.stop_if(f"len({self.content}) != {around - self.optional_size}")
+                self.stop_if(f"len({self.content}) != {around - self.frame.optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
@@ -390,20 +390,15 @@ class _Cutter(ChecksumFunction):
         else:
             self.stop_if(f"{size} != {due}")
 
-    def _counted_optional(self, length: LengthPart) -> int:
-        """Bytes that the length counts less where the payload is empty."""
-        return self.frame.length_plan.optional
-
     def _optional_length(self, part: LengthPart) -> None:
         counted, number = self.counted(part), self.number(self.content, part)
-        self.stop_if(
-            f"{number} != len(payload) + {counted} - {self._counted_optional(part)} * (not payload)"
-        )
+        absent = f"{self.frame.length_plan.optional} * (not payload)"
+        self.stop_if(f"{number} != len(payload) + {counted} - {absent}")
         self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _head(self) -> None:
         for part in self.frame.head:
-            if isinstance(part, LiteralPart) and not self.is_start(part):
+            if isinstance(part, LiteralPart) and not self.frame.is_start(part):
                 first, source = self.frame.offset(part), self.content
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import LengthPart, LiteralPart, NumberPart
+from protogen.model.frame import LengthPart, NumberPart
 from protogen.model.framing import StartSet
 from protogen.model.types import Integer
 from protogen.targets.python.engine.frames import EngineFrame
@@ -33,15 +33,6 @@ class FrameFunction:
         alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
         outside = all(not start.least <= byte <= start.greatest for byte in frame.end)
         return frame.framing.seven_bit and start.least >= 0x80 and alone and outside
-
-    @property
-    def optional_size(self) -> int:
-        """Bytes that are absent where the payload is empty."""
-        return self.frame.optional_size
-
-    def is_start(self, part: LiteralPart) -> bool:
-        """True if finding the start has checked the literal."""
-        return self.frame.is_start(part)
 
     def counted(self, part: LengthPart) -> int:
         """Bytes that the length counts besides the payload."""
