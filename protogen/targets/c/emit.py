@@ -119,6 +119,7 @@ def c_environment() -> Environment:
     found.filters["octets"] = expressions.octets
     found.filters["byte_at"] = expressions.byte_at
     found.filters["differs"] = expressions.differs
+    found.filters["equals"] = expressions.equals
     found.filters["plus"] = expressions.plus
     found.filters["mentions"] = mentions
     return found

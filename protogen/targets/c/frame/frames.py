@@ -25,7 +25,7 @@ from protogen.model.frame import (
 from protogen.model.frame_plan import FramePlan, PlacedPart, Side
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.decoder import DecoderView
-from protogen.targets.c.frame.expressions import Index, byte, equals, less_absent, wire_bytes
+from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import unsigned_type
 
@@ -114,18 +114,10 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     # --- sizes ------------------------------------------------------------------------------------
 
-    @cached_property
-    def tail_size(self) -> str:
-        """Bytes behind the payload."""
-        d = self.decoder
-        if not d.optional_size:
-            return f"{d.plan.tail_size}U"
-        return f"(payload == 0U ? {d.plan.tail_size - d.optional_size}U : {d.plan.tail_size}U)"
-
     @property
     def content_size(self) -> str:
         """Bytes of content."""
-        head, tail = self.plan.head_size, self.tail_size
+        head, tail = self.plan.head_size, self.decoder.tail_for("payload")
         return " + ".join(size for size in (f"{head}U", "payload", tail) if size != "0U")
 
     @property
@@ -310,18 +302,6 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         covering = sum(1 << index for index, part in checksums if name in part.covers)
         region = self.plan.region
         return covering | (_STUFFED if region is not None and name in region.parts else 0)
-
-    # --- what a decoder would make of it ----------------------------------------------------------
-
-    @property
-    def end_behind_start(self) -> str:
-        """The condition that an end stands right behind the start."""
-        return equals(self.plan.end_bytes, "frame", self.decoder.start_size)
-
-    @property
-    def end_at_index(self) -> str:
-        """The condition that an end stands at `index`."""
-        return equals(self.plan.end_bytes, "frame", "index")
 
 
 def _covered(item: PlacedPart) -> set[str]:
