@@ -11,7 +11,7 @@ from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
 from protogen.targets.printing import environment
-from protogen.targets.python.engine.view import fast_view
+from protogen.targets.python.engine.view import engine_view
 from protogen.targets.python.kept import Kept
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring
@@ -60,7 +60,7 @@ def source(protocol: Protocol, runtime: str = RUNTIME, *, is_package: bool = Fal
     module = view(protocol)
     given = {
         "module": module,
-        "fast": fast_view(protocol, module.arguments),
+        "fast": engine_view(protocol, module.arguments),
         "runtime": runtime,
         "codec": codec_name(protocol),
         "is_package": is_package,

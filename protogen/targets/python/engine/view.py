@@ -46,7 +46,7 @@ class EngineSender(msgspec.Struct, frozen=True):
     """The delimiter that both ends and starts frames; empty where none does."""
 
 
-class Fast(msgspec.Struct, frozen=True):
+class EngineModule(msgspec.Struct, frozen=True):
     """Everything that the template prints."""
 
     constants: tuple[str, ...]
@@ -69,7 +69,7 @@ class Fast(msgspec.Struct, frozen=True):
     """True if writers do."""
 
 
-def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
+def engine_view(protocol: Protocol, of_caller: tuple[str, ...]) -> EngineModule:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
     constants = Constants()
     frames = [EngineFrame(sender, skips_start=True) for sender in protocol.senders]
@@ -90,7 +90,7 @@ def fast_view(protocol: Protocol, of_caller: tuple[str, ...]) -> Fast:
     lines += [function.head for function in functions]
     joined = "\n".join(lines)
     tables, codes = constants.use("_TABLES."), constants.use("_CODES.")
-    return Fast(
+    return EngineModule(
         constants=constants.text,
         records=(*records, *overloads),
         senders=senders,
