@@ -27,16 +27,16 @@ from protogen.targets.python.spelling import class_name
 
 def field_format(field: Field) -> str:
     """The declaration of a field, its constant included."""
-    return _checked(field, type_format(field.type))
-
-
-def _checked(field: Field, declared: str) -> str:
-    """Values that a receiver has to refuse: other than the constant, outside of a closed enum."""
     if field.const is not None:
-        return call("_c.Fixed", declared, constant(field))
-    if isinstance(field.type, Integer) and field.type.enum and field.type.enum.closed:
-        return call("_c.Closed", declared, class_name(field.type.enum.name))
-    return declared
+        return call("_c.Fixed", type_format(field.type), constant(field))
+    return _checked(field.type)
+
+
+def _checked(type_: Type) -> str:
+    """The declaration of a type that refuses values outside of a closed enum."""
+    if isinstance(type_, Integer) and type_.enum and type_.enum.closed:
+        return call("_c.Closed", type_format(type_), class_name(type_.enum.name))
+    return type_format(type_)
 
 
 def constant(field: Field) -> str:
@@ -106,16 +106,10 @@ def extent(of: Extent) -> str:
 
 
 def _array(type_: Array) -> str:
-    element = _checked_element(type_.element)
+    element = _checked(type_.element)
     if isinstance(type_.extent, Fill):
         return call("_c.Fill", element, str(type_.extent.greatest))
     return call("_c.Counted", extent(type_.extent), element)
-
-
-def _checked_element(type_: Type) -> str:
-    if isinstance(type_, Integer) and type_.enum and type_.enum.closed:
-        return call("_c.Closed", type_format(type_), class_name(type_.enum.name))
-    return type_format(type_)
 
 
 def _switch(type_: Switch) -> str:
