@@ -684,8 +684,8 @@ def test_a_folder_that_can_not_be_made_is_named(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.raises(NativeError, match=r"file/protogen/native: Not a directory"):
         build()
-    with pytest.raises(NativeError, match="No such file"):
-        cache.check(tmp_path / "nothing")
+    with pytest.raises(cache_folder.CacheError, match="No such file"):
+        cache_folder.check(tmp_path / "nothing")
 
 
 def test_each_platform_has_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -696,7 +696,7 @@ def test_each_platform_has_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
     for platform, expected in usual.items():
         monkeypatch.setattr(cache_folder.sys, "platform", platform)
         assert cache.cache_folder() == Path(expected, "protogen", "native")
-    cache.check(Path("/no/such/file"))  # Nothing is asked on Windows.
+    cache_folder.check(Path("/no/such/file"))  # Nothing is asked on Windows.
 
 
 def test_a_user_without_a_home_has_no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
