@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from protogen.api import load
-from protogen.targets.c.frame.received import ReceivedFrame
-from protogen.targets.c.frame.style import DecoderStyle, decoder_style
+from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
 from protogen.targets.c.options import Events
 
 ROOT = Path(__file__).parent.parent

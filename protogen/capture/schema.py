@@ -25,7 +25,7 @@ bytes of the field behind it, the reason of invalid bytes, or the place of an un
 
 
 class InvalidReason(IntEnum):
-    """Why bytes are no frame, as the column `reason` says it."""
+    """Reason why bytes are no frame, as the column `reason` says it."""
 
     SIZE = 1
     VALUE = 2

@@ -7,10 +7,10 @@ from typing import Literal, Self
 Reason = Literal[
     "noise", "checksum", "length", "stuffing", "truncated", "size", "encoding", "value"
 ]
-"""Why bytes are no frame."""
+"""Reason why bytes are no frame."""
 
 ByteFault = Literal["value", "encoding"]
-"""Why bytes of the right number are no value: a wrong value, or a bit set that has to be clear."""
+"""Reason why bytes are no value: a wrong one, or a bit set that has to be clear."""
 
 
 class CodecError(ValueError):

@@ -13,10 +13,10 @@ from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
 from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
+from protogen.targets.c.decoders.members import members_of, memory_of
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.frame.fill import EVENTS, Fill
 from protogen.targets.c.frame.framing import FramingView, framing_view
-from protogen.targets.c.frame.members import members_of, memory_of
 from protogen.targets.c.frame.stuffing import StuffingKind
 from protogen.targets.c.lines import mentions, prototype
 from protogen.targets.c.module import Module, view

@@ -57,7 +57,7 @@ class Module(msgspec.Struct, frozen=True):
     spec_hash: str
     version: str | None
     uses: frozenset[str]
-    """Which optional imports are needed."""
+    """Optional imports that are needed."""
     enums: tuple[EnumClass, ...]
     structs: tuple[RecordClass, ...]
     parts: tuple[PartsClass, ...]

@@ -1,1 +1,1 @@
-"""The frame side: decoders, and what is put around payloads."""
+"""The frame side: what is put around payloads, and the fragments that decoders share with it."""

@@ -23,8 +23,8 @@ from protogen.model.frame import (
     ValuePart,
 )
 from protogen.model.frame_plan import FramePlan, PlacedPart, Side
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
-from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import unsigned_type
@@ -297,7 +297,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         return length is not None and self.plan.part(length.part.name).place.side is side
 
     def _flags(self, name: str) -> int:
-        """Which checksums cover a part, and whether it is stuffed."""
+        """Flags of a part: the checksums that cover it, and whether it is stuffed."""
         checksums = enumerate(self.plan.frame.checksums)
         covering = sum(1 << index for index, part in checksums if name in part.covers)
         region = self.plan.region

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import msgspec
 
 from protogen.model.protocol import Protocol, Sender
+from protogen.targets.c.decoders.decoder import DecoderView, decoder_view
 from protogen.targets.c.frame.algorithms import Algorithm
-from protogen.targets.c.frame.decoder import DecoderView, decoder_view
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, message_frame

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.payload.messages import MessageView
 
 

@@ -6,7 +6,7 @@ import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
-from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal

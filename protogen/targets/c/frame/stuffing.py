@@ -78,7 +78,7 @@ class Stuffing(msgspec.Struct, frozen=True):
 
     @property
     def reason(self) -> str:
-        """Why a region is refused."""
+        """Reason why a region is refused."""
         is_encoding = self.kind in (StuffingKind.BASE16, StuffingKind.COBS)
         return "ENCODING" if is_encoding else "STUFFING"
 

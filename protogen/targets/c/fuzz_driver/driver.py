@@ -13,8 +13,8 @@ from protogen.fuzzing.c_driver import (
     Driver,
 )
 from protogen.model.protocol import Protocol
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.emit import Unit, emit, unit_of
-from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.handlers import Dispatch
 from protogen.targets.c.fuzz_driver.exchange import exchange_function
 from protogen.targets.c.options import COptions

@@ -8,8 +8,8 @@ import msgspec
 
 from protogen.capture.schema import CaptureSchema, TableSchema
 from protogen.model.protocol import Protocol, Sender
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.emit import Unit, c_environment, texts, unit_of
-from protogen.targets.c.frame.decoder import DecoderView
 from protogen.targets.c.frame.fill import Fill
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView

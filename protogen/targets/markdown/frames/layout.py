@@ -101,7 +101,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def place(self) -> str:
-        """Which bytes of the frame these are."""
+        """Place of these bytes in the frame."""
         if self.start is not None:
             return self._from_start(self.start)
         return "" if self.rest is None else self._from_end(self.rest)

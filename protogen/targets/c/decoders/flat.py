@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
+from protogen.targets.c.decoders.groups import GroupView
+from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
-from protogen.targets.c.frame.groups import GroupView
 from protogen.targets.c.frame.numbers import NumberView
-from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import Branch, Node
 
 

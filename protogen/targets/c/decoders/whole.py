@@ -5,10 +5,10 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.frame_plan import StartRule
+from protogen.targets.c.decoders.groups import GroupView
+from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import equals
-from protogen.targets.c.frame.groups import GroupView
 from protogen.targets.c.frame.numbers import NumberView
-from protogen.targets.c.frame.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import Code, StuffingKind
 
 _MOST_SPECIALS = 5

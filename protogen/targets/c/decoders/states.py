@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from protogen.model.frame_plan import StartRule
+from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
-from protogen.targets.c.frame.received import ReceivedFrame
 
 
 def _followed(literal: bytes) -> list[dict[str, int]]:

@@ -8,12 +8,12 @@ from functools import cached_property
 from msgspec.structs import astuple
 
 from protogen.model.protocol import Sender
-from protogen.targets.c.frame.flat import FlatDecoder
-from protogen.targets.c.frame.groups import groups_of
-from protogen.targets.c.frame.push import PushDecoder
-from protogen.targets.c.frame.received import ReceivedFrame
-from protogen.targets.c.frame.style import DecoderStyle, decoder_style
-from protogen.targets.c.frame.whole import WholeFrames, whole_frames
+from protogen.targets.c.decoders.flat import FlatDecoder
+from protogen.targets.c.decoders.groups import groups_of
+from protogen.targets.c.decoders.push import PushDecoder
+from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
+from protogen.targets.c.decoders.whole import WholeFrames, whole_frames
 from protogen.targets.c.options import Events
 from protogen.targets.c.payload.messages import MessageView
 

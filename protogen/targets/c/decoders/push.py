@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from protogen.model.frame_plan import Side, StartRule
+from protogen.targets.c.decoders.groups import GroupView, ReceivedMessage
+from protogen.targets.c.decoders.states import PushStates
 from protogen.targets.c.frame.expressions import Index, byte, equals
-from protogen.targets.c.frame.groups import GroupView, ReceivedMessage
-from protogen.targets.c.frame.states import PushStates
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum, auto
 
 from protogen.model.frame_plan import StartRule, Store
-from protogen.targets.c.frame.received import ReceivedFrame
+from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 

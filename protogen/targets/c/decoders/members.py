@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from protogen.targets.c.frame.decoder import DecoderView
+from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 _POINTERS = 2

@@ -11,9 +11,9 @@ from functools import cached_property
 import msgspec
 
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
+from protogen.targets.c.decoders.groups import GroupView, key_from, key_type
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
 from protogen.targets.c.frame.expressions import byte
-from protogen.targets.c.frame.groups import GroupView, key_from, key_type
 from protogen.targets.c.frame.numbers import (
     LengthView,
     LiteralView,
