@@ -160,13 +160,8 @@ class _SubstitutionUnstuffer:
         return b""
 
 
-class _LenientSubstitutionUnstuffer:
-    __slots__ = ("_codewords", "_held", "_prefixes")
-
-    def __init__(self, book: _CodeBook) -> None:
-        self._codewords = book.codewords
-        self._prefixes = book.prefixes
-        self._held = b""
+class _LenientSubstitutionUnstuffer(_SubstitutionUnstuffer):
+    __slots__ = ()
 
     def push(self, byte: int) -> bytes:
         # What is held is shorter than the longest sequence, which bounds the work for a byte.
