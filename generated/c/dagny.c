@@ -1474,9 +1474,9 @@ static uint8_t dagny_host_enter_payload(struct dagny_host_decoder *decoder) {
 /* A byte in front of the payload. */
 static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t index,
                                     uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = dagny_host_find_size(decoder, content[0]);
@@ -1952,9 +1952,9 @@ static uint8_t dagny_robot_enter_payload(struct dagny_robot_decoder *decoder) {
 /* A byte in front of the payload. */
 static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16_t index,
                                      uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = dagny_robot_find_size(decoder, content[0]);

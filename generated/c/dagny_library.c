@@ -1249,9 +1249,9 @@ static uint8_t dagny_library_host_enter_payload(struct dagny_library_host_decode
 /* A byte in front of the payload. */
 static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *decoder,
                                             uint16_t index, uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = dagny_library_host_find_size(decoder, content[0]);
@@ -1410,8 +1410,8 @@ static void dagny_library_host_seek_on(struct dagny_library_host_decoder *decode
 
 static void dagny_library_host_judge(struct dagny_library_host_decoder *decoder, uint8_t reason,
                                      uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason != DAGNY_LIBRARY_FRAME) {
         dagny_library_host_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }
@@ -1643,9 +1643,9 @@ static uint8_t dagny_library_robot_enter_payload(struct dagny_library_robot_deco
 /* A byte in front of the payload. */
 static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder *decoder,
                                              uint16_t index, uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = DAGNY_LIBRARY_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = dagny_library_robot_find_size(decoder, content[0]);
@@ -1806,8 +1806,8 @@ static void dagny_library_robot_seek_on(struct dagny_library_robot_decoder *deco
 
 static void dagny_library_robot_judge(struct dagny_library_robot_decoder *decoder, uint8_t reason,
                                       uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason != DAGNY_LIBRARY_FRAME) {
         dagny_library_robot_invalid(decoder, reason, (uint16_t)(size - decoder->behind));
     }

@@ -1053,8 +1053,8 @@ static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint16_t size) 
 
 static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload,
                                  uint16_t size, uint8_t *message) {
-    *message = MATTY_NO_MESSAGE;
     (void)payload;
+    *message = MATTY_NO_MESSAGE;
     switch (parts->command) {
     case 0x53U:
         *message = MATTY_MESSAGE_STOP;

@@ -1292,8 +1292,8 @@ static void matty_v4_pc_add_noise(struct matty_v4_pc_decoder *decoder, uint16_t 
 
 static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const uint8_t *payload,
                                     uint16_t size, uint8_t *message) {
-    *message = MATTY_V4_NO_MESSAGE;
     (void)payload;
+    *message = MATTY_V4_NO_MESSAGE;
     switch (parts->command) {
     case 0x53U:
         *message = MATTY_V4_MESSAGE_STOP;

@@ -1931,8 +1931,8 @@ static void rflex_linux_add_noise(struct rflex_linux_decoder *decoder, uint16_t 
 
 static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const uint8_t *payload,
                                     uint16_t size, uint8_t *message) {
-    *message = RFLEX_NO_MESSAGE;
     (void)payload;
+    *message = RFLEX_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS;
@@ -2260,8 +2260,8 @@ static void rflex_linux_reopen(struct rflex_linux_decoder *decoder) {
 }
 
 static void rflex_linux_judge(struct rflex_linux_decoder *decoder, uint8_t reason, uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason == RFLEX_FRAME) {
         rflex_linux_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -2998,8 +2998,8 @@ static void rflex_flex_reopen(struct rflex_flex_decoder *decoder) {
 }
 
 static void rflex_flex_judge(struct rflex_flex_decoder *decoder, uint8_t reason, uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason == RFLEX_FRAME) {
         rflex_flex_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {

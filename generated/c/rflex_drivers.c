@@ -2400,8 +2400,8 @@ static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *de
 static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_parts *parts,
                                             const uint8_t *payload, uint16_t size,
                                             uint8_t *message) {
-    *message = RFLEX_DRIVERS_NO_MESSAGE;
     (void)payload;
+    *message = RFLEX_DRIVERS_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS;
@@ -2749,8 +2749,8 @@ static void rflex_drivers_linux_reopen(struct rflex_drivers_linux_decoder *decod
 
 static void rflex_drivers_linux_judge(struct rflex_drivers_linux_decoder *decoder, uint8_t reason,
                                       uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason == RFLEX_DRIVERS_FRAME) {
         rflex_drivers_linux_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {
@@ -3512,8 +3512,8 @@ static void rflex_drivers_flex_reopen(struct rflex_drivers_flex_decoder *decoder
 
 static void rflex_drivers_flex_judge(struct rflex_drivers_flex_decoder *decoder, uint8_t reason,
                                      uint8_t byte) {
-    const uint16_t size = (uint16_t)(decoder->wire);
     (void)byte;
+    const uint16_t size = (uint16_t)(decoder->wire);
     if (reason == RFLEX_DRIVERS_FRAME) {
         rflex_drivers_flex_seek_on(decoder);
     } else if (decoder->match == 2U && decoder->wire > 2U) {

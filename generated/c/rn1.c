@@ -1586,9 +1586,9 @@ static uint8_t rn1_host_enter_payload(struct rn1_host_decoder *decoder) {
 
 /* A byte in front of the payload. */
 static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t index, uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = rn1_host_find_size(decoder, content[0]);
@@ -1812,8 +1812,8 @@ static void rn1_brain_add_noise(struct rn1_brain_decoder *decoder, uint16_t size
 
 static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uint8_t *payload,
                                   uint16_t size, uint8_t *message) {
-    *message = RN1_NO_MESSAGE;
     (void)payload;
+    *message = RN1_NO_MESSAGE;
     switch (parts->start) {
     case 0x80U:
         *message = RN1_MESSAGE_GYRO;
@@ -1943,9 +1943,9 @@ static uint8_t rn1_brain_enter_payload(struct rn1_brain_decoder *decoder) {
 /* A byte in front of the payload. */
 static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t index,
                                    uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = rn1_brain_find_size(decoder, content[0]);

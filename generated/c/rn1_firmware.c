@@ -1936,9 +1936,9 @@ static uint8_t rn1_firmware_host_enter_payload(struct rn1_firmware_host_decoder 
 /* A byte in front of the payload. */
 static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *decoder, uint8_t index,
                                            uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = rn1_firmware_host_find_size(decoder, content[0]);
@@ -2319,9 +2319,9 @@ static uint8_t rn1_firmware_brain_enter_payload(struct rn1_firmware_brain_decode
 /* A byte in front of the payload. */
 static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *decoder,
                                             uint16_t index, uint8_t byte) {
+    (void)byte;
     const uint8_t *const content = decoder->buffer;
     uint8_t reason = RN1_FIRMWARE_NO_REASON;
-    (void)byte;
     switch (index) {
     case 0:
         reason = rn1_firmware_brain_find_size(decoder, content[0]);

@@ -457,8 +457,8 @@ static void uherobot_daemon_add_noise(struct uherobot_daemon_decoder *decoder, u
 
 static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *parts,
                                         const uint8_t *payload, uint16_t size, uint8_t *message) {
-    *message = UHEROBOT_NO_MESSAGE;
     (void)payload;
+    *message = UHEROBOT_NO_MESSAGE;
     switch (parts->type) {
     case 0x00U:
         *message = UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS;
@@ -781,8 +781,8 @@ static void uherobot_board_add_noise(struct uherobot_board_decoder *decoder, uin
 
 static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
                                        const uint8_t *payload, uint16_t size, uint8_t *message) {
-    *message = UHEROBOT_NO_MESSAGE;
     (void)payload;
+    *message = UHEROBOT_NO_MESSAGE;
     switch (parts->type) {
     case 0x01U:
         *message = UHEROBOT_MESSAGE_STATUS;

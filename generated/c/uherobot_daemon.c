@@ -451,8 +451,8 @@ static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decod
 static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daemon_parts *parts,
                                                const uint8_t *payload, uint16_t size,
                                                uint8_t *message) {
-    *message = UHEROBOT_DAEMON_NO_MESSAGE;
     (void)payload;
+    *message = UHEROBOT_DAEMON_NO_MESSAGE;
     switch (parts->type) {
     case 0x00U:
         *message = UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS;
@@ -802,8 +802,8 @@ static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder
 static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board_parts *parts,
                                               const uint8_t *payload, uint16_t size,
                                               uint8_t *message) {
-    *message = UHEROBOT_DAEMON_NO_MESSAGE;
     (void)payload;
+    *message = UHEROBOT_DAEMON_NO_MESSAGE;
     switch (parts->type) {
     case 0x01U:
         *message = UHEROBOT_DAEMON_MESSAGE_STATUS;

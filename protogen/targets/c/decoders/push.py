@@ -108,11 +108,6 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         before = group.messages[: group.messages.index(item)]
         return " && ".join([self.fits(item), *(f"!({self.fits(other)})" for other in before)])
 
-    @property
-    def checks_payloads(self) -> bool:
-        """True if the bytes of some payload are looked at."""
-        return any(item.checks for group in self.groups for item in group.messages)
-
     # --- bytes on the wire ------------------------------------------------------------------------
 
     @property
@@ -311,12 +306,6 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         if self.plan.start is StartRule.SET or not self.keeps_match:
             return self.is_start("byte")
         return f"decoder->match == {self.start_size}U"
-
-    @property
-    def judges_byte(self) -> bool:
-        """True if the last byte of a candidate may be a start of one byte."""
-        is_literal = bool(self.plan.start_bytes) and not self.keeps_match
-        return is_literal or self.plan.start is StartRule.SET
 
     @property
     def behind_start(self) -> str:

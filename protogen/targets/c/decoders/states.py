@@ -110,9 +110,3 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         over_wire = [item for item in self.plan.checksums if item.part.over_wire]
         covers = [cover for item in over_wire for cover in item.covers]
         return self.keeps_both and any(not isinstance(cover, bytes) for cover in covers)
-
-    @property
-    def sees_content(self) -> bool:
-        """True if something is done with a byte of content besides counting it."""
-        checks = self.plan.seven_bit or self.checks_tail
-        return bool(not self.wire_is_content or self.plan.head_size or checks)
