@@ -25,7 +25,7 @@ class ChecksumFunction(FrameFunction):
 
     def __init__(self, frame: EngineFrame, lines: Lines) -> None:
         super().__init__(frame, lines)
-        is_raw = not frame.stuffed and not frame.shares and not frame.end
+        is_raw = not frame.stuffed and not self.plan.shares_delimiter and not self.plan.end_bytes
         self.content = "raw" if is_raw else "content"
         """All parts before stuffing, but not the end, nor literals in front."""
 
@@ -37,7 +37,7 @@ class ChecksumFunction(FrameFunction):
     @property
     def deferred(self) -> int | None:
         """Place in the content from which an exclusive or is compared for many frames at once."""
-        if len(self.frame.checksums) != 1 or self.frame.optional:
+        if len(self.frame.checksums) != 1 or self.plan.optional_size:
             return None
         (part,) = self.frame.checksums
         return self.xors_to_nothing(part, self.frame.covered(part, self.content))
@@ -46,7 +46,7 @@ class ChecksumFunction(FrameFunction):
         """Compare all checksums that are there."""
         if not self.frame.checksums:
             return
-        if self.frame.optional:
+        if self.plan.optional_size:
             with self.lines.block("if payload:"):
                 self._compare()
         else:
@@ -99,8 +99,8 @@ class ChecksumFunction(FrameFunction):
 
     def _fold(self, first: int) -> None:
         frame = self.frame
-        front = frame.head_size - frame.skipped - first
-        greatest = front + frame.framing.payload.greatest + frame.tail_size
+        front = self.plan.head_size - frame.skipped - first
+        greatest = front + self.plan.payload.greatest + self.plan.tail_size
         data = self.frame.slice_of(self.content, first, 0)
         are_more = f"len({self.content}) > {first + FOLDED}"
         self.stop_if(folded(self.lines, data, are_more, greatest))
@@ -109,12 +109,14 @@ class ChecksumFunction(FrameFunction):
     def payload_slice(self) -> str:
         """The payload within the content, as an expression."""
         frame = self.frame
-        return frame.slice_of(self.content, frame.head_size - frame.skipped, -frame.tail_size)
+        return frame.slice_of(
+            self.content, self.plan.head_size - frame.skipped, -self.plan.tail_size
+        )
 
 
 def is_plain_sum(part: ChecksumPart, frame: EngineFrame) -> bool:
     """True if Adler-32 gives the sum: it is that of few bytes, modulo 256."""
-    greatest = frame.head_size + frame.framing.payload.greatest + frame.tail_size
+    greatest = frame.plan.head_size + frame.plan.payload.greatest + frame.plan.tail_size
     spec = part.algorithm
     return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import LengthPart, LiteralPart
-from protogen.model.frame_plan import EndRule
-from protogen.model.framing import AfterEnd, StartLiteral, StartSet
+from protogen.model.frame import LiteralPart
+from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import ChecksumFunction
@@ -47,7 +46,7 @@ class _Cutter(ChecksumFunction):
             self.lines.add("unchecked: list[bytes] = []")
             self.lines.add(f"together = {_FIRST}")
             self.lines.add(f"are_many = size - at > {_MANY}")
-        if self.frame.ended_by is EndRule.NEXT_START:
+        if self.plan.end_rule is EndRule.NEXT_START:
             # Behind a frame that ends where the next start is, that needs not be checked again.
             with self.lines.block("try:"):
                 self._start()
@@ -56,7 +55,7 @@ class _Cutter(ChecksumFunction):
         with self.lines.block("try:"), self.lines.block("while at < size:"):
             if self.deferred is not None:
                 self.stop = "break"
-            if self.frame.ended_by is not EndRule.NEXT_START:
+            if self.plan.end_rule is not EndRule.NEXT_START:
                 self._start()
             self._frame()
             self._event()
@@ -78,18 +77,18 @@ class _Cutter(ChecksumFunction):
         if first is None and not self.sums_to_nothing(part, covered):
             return
         assert frame.remembered is not None
-        counting = [item for item in frame.shown if item not in frame.identity]
+        counting = [item for item in frame.shown if item not in self.plan.identity]
         counter = frame.offset(counting[0]) if counting else None
-        places = range(frame.head_size - frame.skipped)
+        places = range(self.plan.head_size - frame.skipped)
         specials = frame.specials(sending=False)
         assert specials is not None
         codes = (
             tuple_of((literal(byte), literal(code))) for byte, code in frame.replacements or ()
         )
         given = {
-            "start": literal(frame.start_bytes),
-            "end": literal(frame.end),
-            "greatest": frame.framing.greatest,
+            "start": literal(self.plan.start_bytes),
+            "end": literal(self.plan.end_bytes),
+            "greatest": self.plan.greatest,
             "codes": tuple_of(codes),
             "specials": literal(bytes(specials)),
             "head": "slice({}, {})".format(*frame.remembered),
@@ -119,7 +118,7 @@ class _Cutter(ChecksumFunction):
 
     def _locate(self) -> None:
         """Set `raw`, the frame's bytes, and `end`, the place behind them."""
-        match self.frame.ended_by:
+        match self.plan.end_rule:
             case EndRule.NEXT_START:
                 self._until_start()
             case EndRule.DELIMITER:
@@ -130,53 +129,50 @@ class _Cutter(ChecksumFunction):
                 self._by_kind()
 
     def _start(self) -> None:
-        start = self.frame.start
-        if isinstance(start, AfterEnd) and self.frame.ended_by is not EndRule.DELIMITER:
+        plan = self.plan
+        if plan.start is StartRule.AFTER_END and plan.end_rule is not EndRule.DELIMITER:
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
-            self.stop_if(f"data.startswith({literal(self.frame.end)}, at)")
-        elif isinstance(start, StartSet) and not self._identity_starts:
-            first = f"data[{self._place(0)}]"
-            self.stop_if(f"not 0x{start.least:02X} <= {first} <= 0x{start.greatest:02X}")
-        elif isinstance(start, StartLiteral):
-            begins = f"data.startswith({literal(start.bytes)}, at)"
-            if self.frame.shares:
+            self.stop_if(f"data.startswith({literal(plan.end_bytes)}, at)")
+        elif plan.start is StartRule.SET and not self._identity_starts:
+            first, starts = f"data[{self._place(0)}]", plan.start_set
+            self.stop_if(f"not 0x{starts[0]:02X} <= {first} <= 0x{starts[-1]:02X}")
+        elif plan.start is StartRule.LITERAL:
+            begins = f"data.startswith({literal(plan.start_bytes)}, at)"
+            if plan.shares_delimiter:
                 # The place behind the start, which may be the end of the frame before.
-                self.lines.add(f"begun = at + {len(start.bytes)} * {begins}")
-            elif len(start.bytes) == 1:
-                self.stop_if(f"data[{self._place(0)}] != 0x{start.bytes[0]:02X}")
+                self.lines.add(f"begun = at + {len(plan.start_bytes)} * {begins}")
+            elif len(plan.start_bytes) == 1:
+                self.stop_if(f"data[{self._place(0)}] != 0x{plan.start_bytes[0]:02X}")
             else:
                 self.stop_if(f"not {begins}")
 
     @property
     def _identity_starts(self) -> bool:
         """True if the first byte is the identity's, which is looked up to find the end."""
-        return (
-            self.frame.ended_by is EndRule.IDENTITY and self.frame.parts[0] in self.frame.identity
-        )
+        return self.plan.end_rule is EndRule.IDENTITY and self.frame.parts[0] in self.plan.identity
 
     def _until_start(self) -> None:
-        if isinstance(self.frame.start, StartLiteral):
-            self.lines.add(f"end = data.find({literal(self.frame.start.bytes)}, at + 1)")
+        if self.plan.start is StartRule.LITERAL:
+            self.lines.add(f"end = data.find({literal(self.plan.start_bytes)}, at + 1)")
         else:
             self.lines.add(f"found = {self.starts()}(data, at + 1)")
             self.lines.add("end = -1 if found is None else found.start()")
         with self.lines.block("if end < 0:"):
             # A length tells whether the last frame is all there; else the next start has to.
-            if self.frame.length is None:
+            if self.plan.length is None:
                 self.lines.add(self.stop)
             else:
                 self.lines.add("end = size")
-        if len(self.frame.start_bytes) > 1:
+        if len(self.plan.start_bytes) > 1:
             # Two starts that overlap.
-            self.stop_if(f"end < at + {len(self.frame.start_bytes)}")
+            self.stop_if(f"end < at + {len(self.plan.start_bytes)}")
         self._raw()
 
     def _until_end(self) -> None:
-        frame = self.frame
-        begun = "begun" if frame.shares else self._place(len(frame.start_bytes))
-        self.lines.add(f"end = data.find({literal(frame.end)}, {begun}{self._bound})")
+        begun = "begun" if self.plan.shares_delimiter else self._place(len(self.plan.start_bytes))
+        self.lines.add(f"end = data.find({literal(self.plan.end_bytes)}, {begun}{self._bound})")
         self.stop_if("end < 0")
-        self.lines.add(f"end += {len(frame.end)}")
+        self.lines.add(f"end += {len(self.plan.end_bytes)}")
         self._raw()
         if not self._is_stuffed_throughout:
             self._no_start_inside()
@@ -187,16 +183,16 @@ class _Cutter(ChecksumFunction):
 
         Else each of many starts that have no end would be looked for one in all that has come.
         """
-        return f", {self._place(self.frame.framing.greatest)}"
+        return f", {self._place(self.plan.greatest)}"
 
     @property
     def _is_stuffed_throughout(self) -> bool:
         """True if all between start and end is stuffed, so that unstuffing it finds any start."""
         frame = self.frame
-        return frame.stuffed and frame.before == len(frame.start_bytes) > 0 and not frame.behind
+        return frame.stuffed and frame.before == len(self.plan.start_bytes) > 0 and not frame.behind
 
     def _raw(self) -> None:
-        if self.frame.ended_by in (EndRule.LENGTH, EndRule.IDENTITY):
+        if self.plan.end_rule in (EndRule.LENGTH, EndRule.IDENTITY):
             self.stop_if("end > size")
         self.lines.add("raw = data[at:end]")
         if not self._length_bounds:
@@ -205,38 +201,44 @@ class _Cutter(ChecksumFunction):
     @property
     def _length_bounds(self) -> bool:
         """True if the length bounds all frames in which nothing is stuffed."""
-        frame = self.frame
-        bare = frame.head_size + frame.framing.payload.greatest + frame.tail_size + len(frame.end)
+        frame, plan = self.frame, self.plan
+        bare = self._overhead + plan.payload.greatest
         is_seen = not frame.stuffed or frame.specials(sending=False) is not None
-        plain = frame.length is not None and not frame.shares and not frame.optional
-        return plain and is_seen and bare <= frame.framing.greatest
+        plain = plan.length is not None and not (plan.shares_delimiter or plan.optional_size)
+        return plain and is_seen and bare <= plan.greatest
+
+    @property
+    def _overhead(self) -> int:
+        """Bytes of a frame besides its payload, where that is not empty and nothing is stuffed."""
+        return self.plan.head_size + self.plan.tail_size + len(self.plan.end_bytes)
 
     def _not_too_long(self) -> None:
-        if self.frame.ended_by is EndRule.DELIMITER and not self.frame.shares:
+        if self.plan.end_rule is EndRule.DELIMITER and not self.plan.shares_delimiter:
             return  # Its end would not have been found.
         size = "len(raw)"
-        if self.frame.shares:
-            size += f" + {len(self.frame.start_bytes)}"
-        open_groups = any(group.fixed is None for group in self.frame.groups)
-        if self.frame.ended_by is not EndRule.IDENTITY or open_groups:
-            self.stop_if(f"{size} > {self.frame.framing.greatest}")
+        if self.plan.shares_delimiter:
+            size += f" + {len(self.plan.start_bytes)}"
+        if self.plan.end_rule is not EndRule.IDENTITY or self.plan.has_open_groups:
+            self.stop_if(f"{size} > {self.plan.greatest}")
 
     def _no_start_inside(self) -> None:
         """A start that can't occur inside of a frame ends it where it stands."""
-        start = self.frame.start
-        if isinstance(start, StartLiteral) and start.protected and not self.frame.shares:
-            self.stop_if(f"raw.find({literal(start.bytes)}, 1) > 0")
-        elif isinstance(start, StartSet) and start.protected and not self.is_seen_by_bits:
+        plan = self.plan
+        if not plan.start_is_unique:
+            return
+        if plan.start is StartRule.LITERAL and not plan.shares_delimiter:
+            self.stop_if(f"raw.find({literal(plan.start_bytes)}, 1) > 0")
+        elif plan.start is StartRule.SET and not self.is_seen_by_bits:
             self.stop_if(f"{self.starts()}(raw, 1)")
 
     def _by_length(self) -> None:
-        frame, length = self.frame, self.frame.length
+        around, length = self._overhead, self.plan.length
         assert length is not None
-        around = frame.head_size + frame.tail_size + len(frame.end)
-        self.lines.add(f"count = {self.number('data', length, 'at')} - {self.counted(length)}")
-        if frame.optional:
-            with self.lines.block(f"if count == {-frame.length_plan.optional}:"):
-                self.lines.add(f"end = {self._place(around - self.frame.optional_size)}")
+        counted = length.base + length.optional
+        self.lines.add(f"count = {self.number('data', length.part, 'at')} - {counted}")
+        if self.plan.optional_size:
+            with self.lines.block(f"if count == {-length.optional}:"):
+                self.lines.add(f"end = {self._place(around - self.plan.optional_size)}")
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = {self._place(around)} + count")
             with self.lines.block("else:"):
@@ -247,31 +249,36 @@ class _Cutter(ChecksumFunction):
         self._sized()
 
     def _by_kind(self) -> None:
-        frame = self.frame
-        around = frame.head_size + frame.tail_size + len(frame.end)
+        frame, around = self.frame, self._overhead
         key = self.identity("data", "at")
-        varies = self.frame.has_open_groups or self.frame.optional
+        varies = self.plan.has_open_groups or self.plan.optional_size
         found = "payload_size, read" if varies else "frame_size, read"
         if frame.shows_identity:
             found += ", numbers"
         self.lines.add(f"{found} = _{self.name.upper()}_KINDS[{key}]")
-        open_groups = frame.has_open_groups
-        if open_groups and frame.end:
+        open_groups = self.plan.has_open_groups
+        if open_groups and self.plan.end_bytes:
             with self.lines.block("if payload_size < 0:"):
-                behind = self._place(frame.head_size)
-                self.lines.add(f"end = data.find({literal(frame.end)}, {behind}{self._bound})")
+                behind = self._place(self.plan.head_size)
+                self.lines.add(
+                    f"end = data.find({literal(self.plan.end_bytes)}, {behind}{self._bound})"
+                )
                 self.stop_if("end < 0")
-                self.lines.add(f"end += {len(frame.end)}")
-            head = "elif payload_size:" if frame.optional else "else:"
+                self.lines.add(f"end += {len(self.plan.end_bytes)}")
+            head = "elif payload_size:" if self.plan.optional_size else "else:"
             with self.lines.block(head):
                 self.lines.add(f"end = {self._place(around)} + payload_size")
-            if frame.optional:
+            if self.plan.optional_size:
                 with self.lines.block("else:"):
-                    self.lines.add(f"end = {self._place(around - self.frame.optional_size)}")
+                    self.lines.add(f"end = {self._place(around - self.plan.optional_size)}")
         else:
             if open_groups:
                 self.stop_if("payload_size < 0")
-            less = f" - {self.frame.optional_size} * (not payload_size)" if frame.optional else ""
+            less = (
+                f" - {self.plan.optional_size} * (not payload_size)"
+                if self.plan.optional_size
+                else ""
+            )
             if less or open_groups:
                 self.lines.add(f"end = {self._place(around)} + payload_size{less}")
             else:
@@ -281,8 +288,8 @@ class _Cutter(ChecksumFunction):
     def _sized(self) -> None:
         """Take a frame of a known size."""
         self._raw()
-        if self.frame.end:
-            self.stop_if(f"not raw.endswith({literal(self.frame.end)})")
+        if self.plan.end_bytes:
+            self.stop_if(f"not raw.endswith({literal(self.plan.end_bytes)})")
         self._no_start_inside()
 
     # --- what is in it ----------------------------------------------------------------------------
@@ -292,12 +299,14 @@ class _Cutter(ChecksumFunction):
         frame = self.frame
         if self.content == "raw":
             return
-        first = "begun - at" if frame.shares else str(frame.before or "")
-        last = str(-(len(frame.end) + frame.behind) or "")
-        if frame.stuffed and (frame.before > len(frame.start_bytes) or frame.behind):
+        first = "begun - at" if self.plan.shares_delimiter else str(frame.before or "")
+        last = str(-(len(self.plan.end_bytes) + frame.behind) or "")
+        if frame.stuffed and (frame.before > len(self.plan.start_bytes) or frame.behind):
             # Else what is in front of the stuffed bytes and what is behind them would overlap.
-            around = len(frame.end) + frame.behind
-            least = f"{first} + {around}" if frame.shares else f"{frame.before + around}"
+            around = len(self.plan.end_bytes) + frame.behind
+            least = (
+                f"{first} + {around}" if self.plan.shares_delimiter else f"{frame.before + around}"
+            )
             self.stop_if(f"len(raw) < {least}")
         self.lines.add(f"content = raw[{first}:{last}]")
         if not frame.stuffed:
@@ -307,7 +316,7 @@ class _Cutter(ChecksumFunction):
         if frame.before and not frame.skipped:
             pieces.insert(0, f"raw[:{frame.before}]")
         if frame.behind:
-            pieces.append(f"raw[{last}:{-len(frame.end) or ''}]")
+            pieces.append(f"raw[{last}:{-len(self.plan.end_bytes) or ''}]")
         if len(pieces) > 1:
             self.lines.add(f"content = {' + '.join(pieces)}")
 
@@ -347,53 +356,53 @@ class _Cutter(ChecksumFunction):
 
     def _payload(self) -> None:
         """Set `payload`, and check that there is room for it."""
-        frame = self.frame
-        around = frame.head_size - frame.skipped + frame.tail_size
+        frame, length = self.frame, self.plan.length
+        around = self.plan.head_size - frame.skipped + self.plan.tail_size
         sliced = f"payload = {self.payload_slice}"
-        if frame.length is not None and not frame.optional:
-            self._length(frame.length, around)
+        if length is not None and not self.plan.optional_size:
+            self._length(length, around)
             if not frame.gives_content:
                 self.lines.add(sliced)
-        elif frame.optional:
+        elif self.plan.optional_size:
             with self.lines.block(f"if len({self.content}) <= {around}:"):
-                self.stop_if(f"len({self.content}) != {around - self.frame.optional_size}")
+                self.stop_if(f"len({self.content}) != {around - self.plan.optional_size}")
                 self.lines.add('payload = b""')
             with self.lines.block("else:"):
                 self.lines.add(sliced)
-            if frame.length is not None:
-                self.stop_if(f"len(payload) > {frame.framing.payload.greatest}")
-                self._optional_length(frame.length)
+            if length is not None:
+                self.stop_if(f"len(payload) > {self.plan.payload.greatest}")
+                self._optional_length(length)
         else:
-            if frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START):
+            if self.plan.end_rule in (EndRule.DELIMITER, EndRule.NEXT_START):
                 self.stop_if(f"len({self.content}) < {max(around, 1)}")
             if not frame.gives_content:
                 self.lines.add(sliced)
-        if frame.framing.seven_bit:
+        if self.plan.seven_bit:
             self.stop_if("not payload.isascii()")
 
-    def _length(self, part: LengthPart, around: int) -> None:
+    def _length(self, length: LengthPlan, around: int) -> None:
         """A length in bounds that is right tells that all other parts are there."""
-        counted, number = self.counted(part), self.number(self.content, part)
+        part, counted = length.part, length.base + length.optional
         behind = self.frame.offset(part) + part.type.size
         if part.type.size > 1 and (
-            around < behind or self.frame.ended_by in (EndRule.DELIMITER, EndRule.NEXT_START)
+            around < behind or self.plan.end_rule in (EndRule.DELIMITER, EndRule.NEXT_START)
         ):
             self.stop_if(f"len({self.content}) < {behind}")
-        self.lines.add(f"length = {number}")
+        self.lines.add(f"length = {self.number(self.content, part)}")
         rest = around - counted
         due = f"length + {rest}" if rest > 0 else f"length - {-rest}" if rest else "length"
         size = f"len({self.content})"
         least = max(part.least, counted)
-        greatest = min(part.greatest, counted + self.frame.framing.payload.greatest)
+        greatest = min(part.greatest, counted + self.plan.payload.greatest)
         if least > 0 or greatest < part.type.greatest:
             self.stop_if(f"not {least + rest} <= {size} == {due} <= {greatest + rest}")
         else:
             self.stop_if(f"{size} != {due}")
 
-    def _optional_length(self, part: LengthPart) -> None:
-        counted, number = self.counted(part), self.number(self.content, part)
-        absent = f"{self.frame.length_plan.optional} * (not payload)"
-        self.stop_if(f"{number} != len(payload) + {counted} - {absent}")
+    def _optional_length(self, length: LengthPlan) -> None:
+        part, number = length.part, self.number(self.content, length.part)
+        absent = f"{length.optional} * (not payload)"
+        self.stop_if(f"{number} != len(payload) + {length.base + length.optional} - {absent}")
         self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     def _head(self) -> None:
@@ -437,7 +446,7 @@ class _Cutter(ChecksumFunction):
     def _numbers(self) -> None:
         """Set `numbers`, and `read` unless the place of the end has told it."""
         frame = self.frame
-        if frame.ended_by is EndRule.IDENTITY:
+        if self.plan.end_rule is EndRule.IDENTITY:
             if not frame.shows_identity:
                 numbers = (self.number(self.content, part) for part in frame.shown)
                 self.lines.add(f"numbers = {tuple_of(numbers)}")
@@ -448,12 +457,12 @@ class _Cutter(ChecksumFunction):
             for name, part in zip(names, frame.shown, strict=True):
                 self.lines.add(f"{name} = {self.number(self.content, part)}")
             self.lines.add(f"numbers = {tuple_of(names)}")
-            self._look_up([names[frame.shown.index(part)] for part in frame.identity])
+            self._look_up([names[frame.shown.index(part)] for part in self.plan.identity])
 
     def _known_head(self, first: int, last: int) -> None:
         """Look the bytes with all numbers up, which a stream repeats over and over."""
         head = f"_{self.name.upper()}_HEADS[{self.content}[{first}:{last}]]"
-        if self.frame.length is not None:
+        if self.plan.length is not None:
             self.lines.add(f"numbers, read = {head}")
             with self.lines.block("if read is None:"):
                 self._unknown()
@@ -464,7 +473,7 @@ class _Cutter(ChecksumFunction):
     def _look_up(self, identity: list[str]) -> None:
         kinds = f"_{self.name.upper()}_KINDS"
         key = identity[0] if len(identity) == 1 else tuple_of(identity)
-        if self.frame.length is not None:
+        if self.plan.length is not None:
             self.lines.add(f"read = {kinds}.get({key})")
             with self.lines.block("if read is None:"):
                 self._unknown()

@@ -8,7 +8,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
 )
-from protogen.model.frame_plan import EndRule, LengthPlan, Place, Side
+from protogen.model.frame_plan import EndRule, Place, Side
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
@@ -27,20 +27,11 @@ class EngineFrame:
         region = plan.region
         self.sender = sender
         self.plan = plan
-        self.framing = sender.framing
-        self.start = self.framing.start
-        self.start_bytes = plan.start_bytes
-        self.end = plan.end_bytes
         self.head = tuple(item.part for item in plan.head)
         self.tail = tuple(item.part for item in plan.tail)
         self.parts = (*self.head, plan.frame.payload, *self.tail)
-        self.head_size = plan.head_size
-        self.tail_size = plan.tail_size
-        self.length = None if plan.length is None else plan.length.part
         self.checksums = sender.frame.checksums
-        self.identity = plan.identity
         self.shown = tuple(i.part for i in plan.shown if isinstance(i.part, NumberPart))
-        self.groups = plan.groups
         self.stuffed = region is not None
         self.before = 0 if region is None else region.before
         self.behind = 0 if region is None else region.behind
@@ -54,25 +45,14 @@ class EngineFrame:
         """Bytes in front of the stuffed region, if they are all literals; else 0."""
         region = self.plan.region
         if region is None:
-            return len(self.start_bytes) if self.shares else 0
+            return len(self.plan.start_bytes) if self.plan.shares_delimiter else 0
         return region.before if region.literals_in_front else 0
-
-    @property
-    def length_plan(self) -> LengthPlan:
-        """Rule of the length part; only for frames that have one."""
-        assert self.plan.length is not None
-        return self.plan.length
 
     def sends(self, message: Message) -> bool:
         """True if the sender sends the message."""
         return self.sender.name in message.senders
 
     # --- what can be cut --------------------------------------------------------------------------
-
-    @property
-    def ended_by(self) -> EndRule:
-        """Rule that ends a frame."""
-        return self.plan.end_rule
 
     @property
     def can_frame(self) -> bool:
@@ -85,29 +65,11 @@ class EngineFrame:
         )
 
     @property
-    def optional(self) -> bool:
-        """True if the checksums are absent where the payload is empty."""
-        return any(part.when_payload for part in self.checksums)
-
-    @property
-    def optional_size(self) -> int:
-        """Bytes that are absent where the payload is empty."""
-        return self.plan.optional_size
-
-    @property
-    def shares(self) -> bool:
-        """True if the end of a frame may be the start of the next as well."""
-        return self.plan.shares_delimiter
-
-    @property
-    def has_open_groups(self) -> bool:
-        """True if the payloads of some identity vary in size."""
-        return self.plan.has_open_groups
-
-    @property
     def lists_frame_sizes(self) -> bool:
         """True if the table of identities has sizes of whole frames, and not of payloads."""
-        return self.ended_by is EndRule.IDENTITY and not self.has_open_groups and not self.optional
+        plan = self.plan
+        varies = plan.has_open_groups or plan.optional_size
+        return plan.end_rule is EndRule.IDENTITY and not varies
 
     @property
     def remembered(self) -> tuple[int, int] | None:
@@ -115,7 +77,7 @@ class EngineFrame:
 
         None where a stream repeats these bytes too seldom for remembering what they mean.
         """
-        others = [part for part in self.shown if part not in self.identity]
+        others = [part for part in self.shown if part not in self.plan.identity]
         if not self.shown or sum(part.size for part in others) > 1:
             return None
         first = min(map(self.offset, self.shown))
@@ -134,26 +96,26 @@ class EngineFrame:
         specials = self.specials(sending=False)
         if not self.plan.takes_whole or self.replacements is None or specials is None:
             return False
-        start, end = self.start_bytes, self.end
-        if self.ended_by is EndRule.NEXT_START:
+        start, end = self.plan.start_bytes, self.plan.end_bytes
+        if self.plan.end_rule is EndRule.NEXT_START:
             shows = len(start) == 1
         else:
             shows = (
-                self.ended_by is EndRule.DELIMITER
+                self.plan.end_rule is EndRule.DELIMITER
                 and start[:1] != b""
                 and {start[0], end[0]} <= {*specials}
             )
         return (
             shows
             and self.before == self.skipped == len(start)
-            and not (self.behind or self.shares)
+            and not (self.behind or self.plan.shares_delimiter)
             and all(len(code) > 1 for _, code in self.replacements)
-            and self.length is not None
+            and self.plan.length is not None
             and self.gives_content
             and self.remembered is not None
             and len(self.checksums) == 1
             and self.tail == self.checksums
-            and self.framing.greatest < MIN_DATA
+            and self.plan.greatest < MIN_DATA
         )
 
     @property
@@ -162,16 +124,16 @@ class EngineFrame:
 
         None where that varies, and where the payload is wanted by itself.
         """
-        if self.optional or self.framing.seven_bit:
+        if self.plan.optional_size or self.plan.seven_bit:
             return None
-        if self.length is None and self.ended_by is not EndRule.IDENTITY:
+        if self.plan.length is None and self.plan.end_rule is not EndRule.IDENTITY:
             return None
-        return self.head_size - self.skipped, self.tail_size
+        return self.plan.head_size - self.skipped, self.plan.tail_size
 
     @property
     def shows_identity(self) -> bool:
         """True if events show the identity and no other part."""
-        return self.shown == self.identity
+        return self.shown == self.plan.identity
 
     # --- stuffing ---------------------------------------------------------------------------------
 
@@ -198,8 +160,12 @@ class EngineFrame:
         if not codes:
             return None
         found = {byte for byte, _ in codes} | {code[0] for _, code in codes}
-        if not sending and self.ended_by is EndRule.NEXT_START and len(self.start_bytes) == 1:
-            found -= set(self.start_bytes)
+        if (
+            not sending
+            and self.plan.end_rule is EndRule.NEXT_START
+            and len(self.plan.start_bytes) == 1
+        ):
+            found -= set(self.plan.start_bytes)
         return tuple(sorted(found)) if len(found) <= _MOST_SPECIALS else None
 
     # --- where parts lie --------------------------------------------------------------------------
@@ -208,7 +174,7 @@ class EngineFrame:
         """Place of a part of the head in the content; of one of the tail, from its end."""
         if part in self.head:
             return self.plan.part(part.name).offset - self.skipped
-        return self.plan.part(part.name).offset - self.tail_size
+        return self.plan.part(part.name).offset - self.plan.tail_size
 
     def slice_of(self, content: str, first: int, last: int) -> str:
         """Bytes of the content; a `last` of 0 is its end, negative numbers count from there."""
@@ -242,14 +208,14 @@ class EngineFrame:
                 continue
             first, end = self._place(run.first), self._place(run.end)
             if run.first.side is Side.HEAD and first < 0:
-                runs.append(self._front[run.first.offset : self._front_end(run.end)])
+                runs.append(self.front[run.first.offset : self._front_end(run.end)])
                 first = 0
             if run.end.side is Side.TAIL or end > 0:
                 runs.append((first, end))
         return tuple(runs)
 
     @property
-    def _front(self) -> bytes:
+    def front(self) -> bytes:
         """Literals in front of the content."""
         literals = [part.bytes for part in self.head if isinstance(part, LiteralPart)]
         return b"".join(literals)[: self.skipped]
@@ -259,15 +225,15 @@ class EngineFrame:
 
     def _place(self, place: Place) -> int:
         """Place in the content; those of the tail are counted from its end."""
-        return place.offset - (self.skipped if place.side is Side.HEAD else self.tail_size)
+        return place.offset - (self.skipped if place.side is Side.HEAD else self.plan.tail_size)
 
     def is_start(self, part: LiteralPart) -> bool:
         """True if finding the start has checked the literal."""
         behind = self.offset(part) + self.skipped + len(part.bytes)
-        return behind <= len(self.start_bytes)
+        return behind <= len(self.plan.start_bytes)
 
-    def is_skipped(self, part: LiteralPart) -> bool:
-        """True if a literal stands in front of the content."""
+    def is_skipped(self, part: Part) -> bool:
+        """True if a part is a literal in front of the content."""
         return part in self.head and self.offset(part) < 0
 
 

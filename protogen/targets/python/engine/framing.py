@@ -8,7 +8,6 @@ from protogen.model.frame import (
     ChecksumPart,
     CounterPart,
     IdentityPart,
-    LengthPart,
     LiteralPart,
     NumberPart,
     Part,
@@ -20,17 +19,17 @@ from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import FOLDED, checksum, folded
 from protogen.targets.python.engine.frames import EngineFrame
+from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.writing import (
     Packed,
+    Packer,
     content_writer,
     is_of_one_size,
     payload_writer,
 )
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import text
-
-_CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
 def framer(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> tuple[str, ...]:
@@ -40,7 +39,7 @@ def framer(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants)
 
 def arguments(frame: EngineFrame, of_caller: tuple[str, ...]) -> list[str]:
     """The numbers that the function takes: identity parts, then what callers of `encode` give."""
-    identity = [f"{part.name}_" for part in frame.identity]
+    identity = [f"{part.name}_" for part in frame.plan.identity]
     return [*identity, *_of_caller(frame, of_caller)]
 
 
@@ -88,12 +87,8 @@ def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
 
 def _goes_together(frame: EngineFrame) -> bool:
     """True if all parts in front of the payload are numbers for `struct`, and none is optional."""
-    plain = all(
-        (isinstance(part, NumberPart) and _is_plain(part.type))
-        or (isinstance(part, LiteralPart) and (frame.is_skipped(part) or len(part.bytes) == 1))
-        for part in frame.head
-    )
-    return plain and not frame.optional
+    plain = all(frame.is_skipped(part) or _is_packed(part) for part in frame.head)
+    return plain and not frame.plan.optional_size
 
 
 class _Framer:
@@ -108,6 +103,7 @@ class _Framer:
     ) -> None:
         """With a message, for its frames alone: what is the same in all of them is no argument."""
         self.frame = frame
+        self.plan = frame.plan
         self.lines = lines
         self.message = message
         self._has_payload = False
@@ -120,7 +116,7 @@ class _Framer:
             self.lines.refuse_if(f"type({name}) is not int")
         self._payload()
         self._has_payload = True
-        if self.frame.optional:
+        if self.plan.optional_size:
             with self.lines.block("if payload:"):
                 self._make(bare=False)
             self._make(bare=True)
@@ -131,7 +127,11 @@ class _Framer:
     def whole(self, message: Message) -> tuple[str, ...]:
         """The body for a message of a fixed size, packed together with what is in front of it."""
         integers = self._values()
-        head = [self._packed(part) for part in self.frame.head if not self._is_skipped(part)]
+        head = [
+            self._packed(part, bare=False)
+            for part in self.frame.head
+            if not self.frame.is_skipped(part)
+        ]
         self.lines.add(f"content = {content_writer(message, head, integers, self.lines)}")
         for part in self.frame.checksums:
             self._insert(part)
@@ -140,14 +140,14 @@ class _Framer:
 
     def _covers_payload(self, part: ChecksumPart, covered: str) -> bool:
         """True if a checksum covers the payload alone, with which the content ends at the first."""
-        own = self.frame.slice_of("content", self.frame.head_size - self.frame.skipped, 0)
+        own = self.frame.slice_of("content", self.plan.head_size - self.frame.skipped, 0)
         return covered == own and part == self.frame.checksums[0]
 
-    def _packed(self, part: Part) -> Packed:
+    def _packed(self, part: Part, bare: bool) -> Packed:
         if isinstance(part, LiteralPart):
             return Packed("", "B", f"0x{part.bytes[0]:02X}")
         assert isinstance(part, NumberPart)
-        return Packed(_order(part.type), _CODES[part.type.size], self._value(part, bare=False))
+        return Packed(byte_order(part.type), UNSIGNED[part.type.size], self._value(part, bare))
 
     def _values(self) -> list[str]:
         """Check what callers give; the variables that have yet to be seen to be integers.
@@ -172,12 +172,11 @@ class _Framer:
         return integers
 
     def _payload(self) -> None:
-        frame = self.frame
-        least, greatest = 0, frame.framing.payload.greatest
-        if frame.length is not None:
-            counted = self._counted(frame.length, bare=False)
-            least = max(0, frame.length.least - counted)
-            greatest = min(greatest, frame.length.greatest - counted)
+        length = self.plan.length
+        if length is not None:
+            counted = length.base + length.optional
+            least = max(0, length.part.least - counted)
+            greatest = min(self.plan.payload.greatest, length.part.greatest - counted)
             if least or not self._always_fits(greatest):
                 self.lines.refuse_if(f"not {least} <= len(payload) <= {greatest}")
 
@@ -185,53 +184,27 @@ class _Framer:
         """True if the sizes of all messages are in bounds."""
         return all(message.sizes.greatest <= greatest for message in self.frame.sender.messages)
 
-    def _counted(self, part: LengthPart, bare: bool) -> int:
-        plan = self.frame.length_plan
-        return plan.base + (0 if bare else plan.optional)
-
     # --- parts in wire order ----------------------------------------------------------------------
 
     def _make(self, bare: bool) -> None:
         """Return the wire bytes; `bare`: of a frame without a payload and its checksums."""
-        frame = self.frame
-        present = [part for part in frame.parts if not (bare and _is_optional(part))]
-        parts = [part for part in present if not self._is_skipped(part)]
+        present = [part for part in self.frame.parts if not (bare and part.is_optional)]
+        parts = [part for part in present if not self.frame.is_skipped(part)]
         checked = [part for part in parts if isinstance(part, ChecksumPart)]
         self.lines.add(f"content = {self._joined([p for p in parts if p not in checked], bare)}")
         for part in checked:
             self._insert(part)
         self._return(bare)
 
-    def _is_skipped(self, part: Part) -> bool:
-        """True if a part is a literal in front of the content."""
-        return isinstance(part, LiteralPart) and self.frame.is_skipped(part)
-
     def _joined(self, parts: list[Part], bare: bool) -> str:
         """These parts one after another, numbers packed together."""
-        pieces: list[str] = []
-        run: list[tuple[str, str, str]] = []
-
-        def flush() -> None:
-            if run:
-                order = next((order for order, _, _ in run if order), "<")
-                layout = f'"{order}{"".join(code for _, code, _ in run)}"'
-                pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
-                pieces.append(f"{pack}({', '.join(value for _, _, value in run)})")
-                run.clear()
-
+        packer = Packer(self.lines)
         for part in parts:
-            if isinstance(part, NumberPart) and _is_plain(part.type):
-                order = _order(part.type)
-                if order and any(other and other != order for other, _, _ in run):
-                    flush()
-                run.append((order, _CODES[part.type.size], self._value(part, bare)))
-            elif isinstance(part, LiteralPart) and len(part.bytes) == 1:
-                run.append(("", "B", f"0x{part.bytes[0]:02X}"))
+            if _is_packed(part):
+                packer.pack(self._packed(part, bare))
             else:
-                flush()
-                pieces.append(self._piece(part, bare))
-        flush()
-        return " + ".join(pieces) or 'b""'
+                packer.piece(self._piece(part, bare))
+        return " + ".join(packer.all_pieces()) or 'b""'
 
     def _piece(self, part: Part, bare: bool) -> str:
         match part:
@@ -244,13 +217,14 @@ class _Framer:
         raise TypeError(f"{type(part).__name__} is no part that has bytes here")
 
     def _value(self, part: NumberPart, bare: bool) -> str:
-        if isinstance(part, LengthPart):
-            counted = self._counted(part, bare)
+        length = self.plan.length
+        if length is not None and part is length.part:
+            counted = length.base + (0 if bare else length.optional)
             if self.message is not None and self.message.sizes.fixed is not None:
                 return str(self.message.sizes.fixed + counted)
             return f"len(payload) + {counted}" if counted else "len(payload)"
         if self.message is not None and isinstance(part, IdentityPart):
-            return str(self.message.identity[self.frame.identity.index(part)])
+            return str(self.message.identity[self.plan.identity.index(part)])
         assert isinstance(part, IdentityPart | CounterPart | ValuePart)
         return f"{part.name}_"
 
@@ -285,16 +259,11 @@ class _Framer:
     def _return(self, bare: bool) -> None:
         frame = self.frame
         wire = self._stuffed(0 if bare else frame.behind) if frame.stuffed else "content"
-        skipped = b"".join(
-            part.bytes
-            for part in frame.parts
-            if isinstance(part, LiteralPart) and frame.is_skipped(part)
-        )
-        if skipped:
-            wire = f"{literal(skipped)} + {wire}"
-        if frame.end:
-            wire += f" + {literal(frame.end)}"
-        if not frame.framing.cut_ambiguous:
+        if frame.front:
+            wire = f"{literal(frame.front)} + {wire}"
+        if self.plan.end_bytes:
+            wire += f" + {literal(self.plan.end_bytes)}"
+        if not self.plan.cut_ambiguous:
             self.lines.add(f"return {wire}")
             return
         # A decoder might end the frame elsewhere.
@@ -324,15 +293,12 @@ class _Framer:
         return "content"
 
 
-def _is_optional(part: Part) -> bool:
-    return isinstance(part, ChecksumPart) and part.when_payload
+def _is_packed(part: Part) -> bool:
+    """True if `struct` writes the part together with its neighbours."""
+    if isinstance(part, LiteralPart):
+        return len(part.bytes) == 1
+    return isinstance(part, NumberPart) and _is_plain(part.type)
 
 
 def _is_plain(type_: Integer) -> bool:
     return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64)
-
-
-def _order(type_: Integer) -> str:
-    if type_.size == 1:
-        return ""
-    return "<" if type_.byte_order == "little" else ">"

@@ -23,18 +23,20 @@ def kinds(frame: EngineFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    lines = [f"    {identity_key(item.identity)}: {_kind(frame, item)}," for item in frame.groups]
+    lines = [
+        f"    {identity_key(item.identity)}: {_kind(frame, item)}," for item in frame.plan.groups
+    ]
     return "\n".join(["{", *lines, "}"])
 
 
 def _kind(frame: EngineFrame, group: IdentityGroup) -> str:
     reader = reader_of(frame, group)
-    if frame.length is not None:
+    if frame.plan.length is not None:
         return reader
     size = ~group.greatest if group.fixed is None else group.fixed
     if frame.lists_frame_sizes:
-        size += frame.head_size + frame.tail_size + len(frame.end)
-    if frame.ended_by is EndRule.IDENTITY and frame.shows_identity:
+        size += frame.plan.head_size + frame.plan.tail_size + len(frame.plan.end_bytes)
+    if frame.plan.end_rule is EndRule.IDENTITY and frame.shows_identity:
         return f"({size}, {reader}, {tuple_of(map(str, group.identity))})"
     return f"({size}, {reader})"
 
@@ -65,9 +67,9 @@ class _Header(FrameFunction):
             part: self.number_at("head", part, Place("", frame.offset(part) - first))
             for part in frame.shown
         }
-        identity = [found[part] for part in frame.identity]
+        identity = [found[part] for part in self.plan.identity]
         key = identity[0] if len(identity) == 1 else tuple_of(identity)
         kinds = f"_{self.name.upper()}_KINDS"
-        entry = f"{kinds}.get({key})" if frame.length is not None else f"*{kinds}[{key}]"
+        entry = f"{kinds}.get({key})" if frame.plan.length is not None else f"*{kinds}[{key}]"
         self.lines.add(f"return {tuple_of(found.values())}, {entry}")
         return self.lines.text

@@ -14,9 +14,9 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Struct
+from protogen.model.types import NumberType, Struct
 
-_UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
+UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
 def code_of(step: AnyStep) -> str | None:
@@ -39,7 +39,7 @@ def _integer(step: IntegerStep) -> str:
     type_ = step.type
     if type_.byte_bits == 7 and type_.size > 2:
         return f"{type_.size}s"
-    code = _UNSIGNED.get(type_.size)
+    code = UNSIGNED.get(type_.size)
     if code is None:
         return f"{type_.size}s"
     return code.lower() if type_.signed and is_native(step) else code
@@ -54,10 +54,17 @@ def is_native(step: IntegerStep) -> bool:
 def order_of(step: AnyStep) -> str:
     """`<` or `>`; empty where the order of bytes does not matter to `struct`."""
     code, number = code_of(step), without_constant(step)
-    if code is None or code.endswith("s") or code in "Bb":
+    if code is None or code.endswith("s"):
         return ""
     assert isinstance(number, NumberStep)
-    return "<" if number.type.byte_order == "little" else ">"
+    return byte_order(number.type)
+
+
+def byte_order(type_: NumberType) -> str:
+    """`<` or `>` for the order of a number's bytes; empty where there is only one."""
+    if type_.size == 1:
+        return ""
+    return "<" if type_.byte_order == "little" else ">"
 
 
 def common_order(steps: Sequence[AnyStep]) -> str | None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import LengthPart, NumberPart
-from protogen.model.framing import StartSet
+from protogen.model.frame import NumberPart
 from protogen.model.types import Integer
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Lines
@@ -15,28 +14,23 @@ class FrameFunction:
 
     def __init__(self, frame: EngineFrame, lines: Lines) -> None:
         self.frame = frame
+        self.plan = frame.plan
         self.lines = lines
         self.name = frame.sender.name
 
     def starts(self) -> str:
         """The search for a byte of the start set."""
-        start = self.frame.start
-        assert isinstance(start, StartSet)
-        pattern = f'rb"[\\x{start.least:02x}-\\x{start.greatest:02x}]"'
+        starts = self.plan.start_set
+        pattern = f'rb"[\\x{starts[0]:02x}-\\x{starts[-1]:02x}]"'
         return self.lines.constants.named("STARTS", f"_re.compile({pattern}).search")
 
     @property
     def is_seen_by_bits(self) -> bool:
         """True if the check for 7-bit bytes finds any start inside of a frame."""
-        frame, start = self.frame, self.frame.start
-        assert isinstance(start, StartSet)
-        alone = frame.head_size == 1 and not frame.tail and not frame.stuffed
-        outside = all(not start.least <= byte <= start.greatest for byte in frame.end)
-        return frame.framing.seven_bit and start.least >= 0x80 and alone and outside
-
-    def counted(self, part: LengthPart) -> int:
-        """Bytes that the length counts besides the payload."""
-        return self.frame.length_plan.base + self.frame.length_plan.optional
+        plan = self.plan
+        alone = plan.head_size == 1 and not plan.tail and plan.region is None
+        outside = not any(byte in plan.start_set for byte in plan.end_bytes)
+        return plan.seven_bit and plan.start_set[0] >= 0x80 and alone and outside
 
     def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
         """The value of a part of the head, in the content or, with a base, in the data.
@@ -63,7 +57,7 @@ class FrameFunction:
 
     def identity(self, source: str, base: str | None = None) -> str:
         """The values of all identity parts, between commas."""
-        return ", ".join(self.number(source, part, base) for part in self.frame.identity) or "()"
+        return ", ".join(self.number(source, part, base) for part in self.plan.identity) or "()"
 
     @staticmethod
     def has_padding(type_: Integer) -> bool:

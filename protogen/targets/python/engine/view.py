@@ -216,7 +216,7 @@ def _overloads(frame: EngineFrame) -> list[Function]:
     """Readers of identities that several messages share."""
     if not frame.plan.takes_whole:
         return []
-    return [_overload(frame, group) for group in frame.groups if len(group.messages) > 1]
+    return [_overload(frame, group) for group in frame.plan.groups if len(group.messages) > 1]
 
 
 def _overload(frame: EngineFrame, group: IdentityGroup) -> Function:
@@ -240,7 +240,7 @@ def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants
         cut = _function(f"_cut_{name}", parameters, "int", body)
     if (
         frame.plan.takes_whole
-        and frame.ended_by is not EndRule.IDENTITY
+        and frame.plan.end_rule is not EndRule.IDENTITY
         and frame.remembered is not None
     ):
         body = identities.header(frame, constants)
@@ -252,5 +252,11 @@ def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants
         made = _function(f"_frame_{name}", parameters, "bytes", body)
     kinds = identities.kinds(frame) if cut else ""
     return EngineSender(
-        name, name.upper(), cut, head, kinds, made, literal(frame.end) if frame.shares else ""
+        name,
+        name.upper(),
+        cut,
+        head,
+        kinds,
+        made,
+        literal(frame.plan.end_bytes) if frame.plan.shares_delimiter else "",
     )

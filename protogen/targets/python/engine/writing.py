@@ -125,15 +125,47 @@ def batched(names: list[str]) -> list[list[str]]:
     return [names[i : i + _TYPES_IN_LINE] for i in range(0, len(names), _TYPES_IN_LINE)]
 
 
-class _Bytes(msgspec.Struct):
+class Packer(msgspec.Struct):
     """Bytes that are being put together: what stands, and values that one `struct` is to write."""
 
-    pieces: list[str] = msgspec.field(default_factory=list)
+    lines: Lines
     order: str = ""
     codes: str = ""
     values: list[str] = msgspec.field(default_factory=list)
     integers: list[str] = msgspec.field(default_factory=list)
     """Variables that have to be integers, and that `struct` does not get to see."""
+    _pieces: list[str] = msgspec.field(default_factory=list)
+
+    def pack(self, item: Packed) -> None:
+        """Let `struct` write a value together with its neighbours."""
+        if item.order and self.order and item.order != self.order:
+            self.flush()
+        self.order = self.order or item.order
+        self.codes += item.code
+        self.values.append(item.value)
+
+    def piece(self, expression: str) -> None:
+        """Put the bytes of an expression behind all others."""
+        self.flush()
+        self._pieces.append(expression)
+
+    def flush(self) -> None:
+        """Write the values that are due."""
+        for some in batched(self.integers):
+            types = " is ".join(f"type({name})" for name in some)
+            several = len(some) > 1
+            self.lines.refuse_if(f"not ({types} is int)" if several else f"{types} is not int")
+        if self.codes:
+            layout = f'"{self.order or "<"}{self.codes}"'
+            pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
+            self._pieces.append(f"{pack}({', '.join(self.values)})")
+        self.order = self.codes = ""
+        self.values, self.integers = [], []
+
+    def all_pieces(self) -> list[str]:
+        """Expressions of all bytes, in order."""
+        self.flush()
+        return self._pieces
 
 
 class _Writer:
@@ -143,13 +175,13 @@ class _Writer:
         self.lines = lines
         self.raw: dict[str, str] = {}
         """Raw values of the fields in front, by name."""
-        self._bytes = _Bytes()
+        self._bytes = Packer(lines)
 
     def begin(self, head: Sequence[Packed], integers: Sequence[str]) -> None:
         """Numbers that stand in front, and variables that have to be integers."""
         self._bytes.integers += integers
         for item in head:
-            self._pack(item)
+            self._bytes.pack(item)
 
     def record(self, source: str, steps: Sequence[AnyStep]) -> str:
         """Check the fields of `source`; the expression of their bytes."""
@@ -171,23 +203,18 @@ class _Writer:
 
     def _joined(self) -> str:
         """All bytes as one expression."""
-        self._flush()
-        pieces = self._bytes.pieces
+        pieces = self._bytes.all_pieces()
         if len(pieces) == 1:
             return pieces[0]
         return f'b"".join({tuple_of(pieces)})' if pieces else 'b""'
 
     def _apart(self, value: str, step: AnyStep, item: Field | None) -> str:
         """The bytes of a value that are put together by themselves."""
-        outside, self._bytes = self._bytes, _Bytes()
+        outside, self._bytes = self._bytes, Packer(self.lines)
         self._value(value, step, item)
         joined = self._joined()
         self._bytes = outside
         return joined
-
-    def _piece(self, expression: str) -> None:
-        self._flush()
-        self._bytes.pieces.append(expression)
 
     def _put(self, step: AnyStep, expression: str) -> None:
         """Let `struct` write a value together with its neighbours."""
@@ -195,28 +222,7 @@ class _Writer:
         assert code is not None
         if isinstance(step, IntegerStep) and _is_narrow(step) and step.type.bits == _SEVEN:
             code = "b"  # Which has no number above 127.
-        self._pack(Packed(order_of(step), code, expression))
-
-    def _pack(self, item: Packed) -> None:
-        if item.order and self._bytes.order and item.order != self._bytes.order:
-            self._flush()
-        self._bytes.order = self._bytes.order or item.order
-        self._bytes.codes += item.code
-        self._bytes.values.append(item.value)
-
-    def _flush(self) -> None:
-        """Write the values that are due."""
-        due = self._bytes
-        if due.integers:
-            for some in batched(due.integers):
-                types = " is ".join(f"type({name})" for name in some)
-                several = len(some) > 1
-                self.lines.refuse_if(f"not ({types} is int)" if several else f"{types} is not int")
-        if due.codes:
-            layout = f'"{due.order or "<"}{due.codes}"'
-            pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
-            due.pieces.append(f"{pack}({', '.join(due.values)})")
-        self._bytes = _Bytes(due.pieces)
+        self._bytes.pack(Packed(order_of(step), code, expression))
 
     # --- values -----------------------------------------------------------------------------------
 
@@ -322,7 +328,7 @@ class _Writer:
             self._put(step, data)
         else:
             self._counted(data, step.count)
-            self._piece(data)
+            self._bytes.piece(data)
 
     def _octets(self, value: str, step: BytesStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
@@ -332,7 +338,7 @@ class _Writer:
         if step.count.is_fixed:
             self._put(step, value)
         else:
-            self._piece(value)
+            self._bytes.piece(value)
 
     def _rest(self, value: str, rest: RestStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
@@ -352,7 +358,7 @@ class _Writer:
                 self.lines.refuse_if(f"not {count.least} <= len({value}) <= {count.greatest}")
 
     def _choose(self, value: str, step: ChooseStep) -> None:
-        self._flush()
+        self._bytes.flush()
         data = self.lines.local("case")
         selector = self.raw[step.selector_name]
         word = "if"
@@ -374,7 +380,7 @@ class _Writer:
             else:
                 self._rest(value, step.rest)
                 self.lines.add(f"{data} = {value}")
-        self._piece(data)
+        self._bytes.piece(data)
 
     # --- arrays -----------------------------------------------------------------------------------
 
@@ -386,20 +392,20 @@ class _Writer:
             self._plain_records(value, element)
         elif isinstance(element, RecordStep):
             outer = "".join(f", {self.raw[name]}" for name in outer_names(element.type))
-            self._flush()
+            self._bytes.flush()
             data = self.lines.local()
             written = f"_write_{element.type.name}(each{outer})"
             self.lines.add(f'{data} = b"".join([{written} for each in {value}])')
-            self._piece(data)
+            self._bytes.piece(data)
         elif isinstance(element, IntegerStep) and is_pair(element) and not element.type.is_named:
             self._all_in_range(value, item)
             type_ = element.type
             arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}"'
             encode = f"_fast.PairLists({arguments}).encode"
-            self._piece(f"{self.lines.constants.named('PAIR_LIST', encode)}({value})")
+            self._bytes.piece(f"{self.lines.constants.named('PAIR_LIST', encode)}({value})")
         elif array_code(step) is not None and isinstance(element, IntegerStep):
             self._all_in_range(value, item)
-            self._piece(self._packed(value, step))
+            self._bytes.piece(self._packed(value, step))
         else:
             self._one_by_one(value, element, item)
 
@@ -408,7 +414,7 @@ class _Writer:
         codes = "".join(str(code_of(step)) for step in element.steps)
         order = common_order(element.steps)
         if self._bytes.order and order and self._bytes.order != order:
-            self._flush()
+            self._bytes.flush()
         due = self._bytes
         front = (due.order or order or "<") + due.codes
         packers = self.lines.constants.named("PACKERS", f'_fast.Packers("{front}", "{codes}")')
@@ -420,7 +426,7 @@ class _Writer:
             numbers = tuple_of(f"each.{step.name}" for step in element.steps)
             self.lines.add(f"{values} += {numbers}")
         due.codes = ""
-        self._piece(f"{packers}[len({value})](*{values})")
+        self._bytes.piece(f"{packers}[len({value})](*{values})")
 
     def _all_in_range(self, value: str, item: Field | None) -> None:
         if item is None or not item.ranged or item.least is None or item.greatest is None:
@@ -439,9 +445,9 @@ class _Writer:
         return f'_struct.pack(f"{order}{{len({value})}}{code}", *{value})'
 
     def _one_by_one(self, value: str, element: AnyStep, item: Field | None) -> None:
-        self._flush()
+        self._bytes.flush()
         data, each = self.lines.local(), self.lines.local("each")
         self.lines.add(f"{data}: list[bytes] = []")
         with self.lines.block(f"for {each} in {value}:"):
             self.lines.add(f"{data}.append({self._apart(each, element, item)})")
-        self._piece(f'b"".join({data})')
+        self._bytes.piece(f'b"".join({data})')
