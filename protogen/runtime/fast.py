@@ -29,6 +29,7 @@ from protogen.runtime.payload.pairs import (
 from protogen.runtime.values import Frozen
 
 AnyT = TypeVar("AnyT")
+KeyT = TypeVar("KeyT")
 
 
 __all__ = [
@@ -237,35 +238,29 @@ class Tables:
         return self._list(lambda: pair_codes(bits))
 
 
-class Heads(dict[bytes, tuple[Any, ...]]):
-    """Numbers and readers of frames that begin alike, by bytes at their start.
+class _Remembered(dict[KeyT, Any]):
+    """What a function gives for each key.
 
-    Not all are kept, as not all members are: what a wire gives must not fill the memory.
+    Not all is kept: what a wire gives must not fill the memory.
     """
 
-    def __init__(self, read: Callable[[bytes], tuple[Any, ...]]) -> None:
+    def __init__(self, find: Callable[[KeyT], Any]) -> None:
         super().__init__()
-        self._read = read
+        self._find = find
 
-    def __missing__(self, head: bytes) -> tuple[Any, ...]:
-        known = self._read(head)
+    def __missing__(self, key: KeyT) -> Any:
+        found = self._find(key)
         if len(self) < KEPT:
-            self[head] = known
-        return known
+            self[key] = found
+        return found
 
 
-class Members(dict[int, Any]):
+class Heads(_Remembered[bytes]):
+    """Numbers and readers of frames that begin alike, by bytes at their start."""
+
+
+class Members(_Remembered[int]):
     """The member of an enum or a set of flags for each raw value."""
-
-    def __init__(self, named: type[OpenEnum | Flags]) -> None:
-        super().__init__()
-        self._named: Any = named
-
-    def __missing__(self, raw: int) -> Any:
-        member = self._named(raw)
-        if len(self) < KEPT:
-            self[raw] = member
-        return member
 
 
 def closed(named: type[OpenEnum]) -> dict[int, Any]:

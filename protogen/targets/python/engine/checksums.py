@@ -71,7 +71,7 @@ class ChecksumFunction(FrameFunction):
                 continue
             last = first + part.type.size
             found = self.frame.slice_of(self.content, first, last)
-            self.stop_if(f"{found} != {self.codec(part.type)}.encode({due})")
+            self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
 
     def sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
         """True if the checksum brings the sum of the whole content to 0."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from protogen.model.frame import LiteralPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.runtime.bulk_cut import MIN_DATA
-from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
@@ -325,10 +324,7 @@ class _Cutter(ChecksumFunction):
 
         What only a lenient receiver takes is left to the reference.
         """
-        transparency = self.frame.sender.frame.transparency
-        assert transparency is not None
-        strict = tables.encoding(transparency.encoding)
-        decode = f"{self.lines.constants.named('STUFFING', strict)}.decode"
+        decode = f"{self.stuffing()}.decode"
         specials = self.frame.specials(sending=False)
         if specials is None:
             self.lines.add(f"content = {decode}(content)")

@@ -9,7 +9,6 @@ from protogen.model.frame import (
     Part,
 )
 from protogen.model.frame_plan import EndRule, Place, Side
-from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order
@@ -21,8 +20,7 @@ _MOST_SPECIALS = 4
 class EngineFrame:
     """Everything about a sender's frames that the functions of the fast engine are printed from."""
 
-    def __init__(self, sender: Sender, *, skips_start: bool = False) -> None:
-        """With `skips_start` the content begins behind literals in front of what is stuffed."""
+    def __init__(self, sender: Sender) -> None:
         plan = sender.plan
         region = plan.region
         self.sender = sender
@@ -35,7 +33,7 @@ class EngineFrame:
         self.stuffed = region is not None
         self.before = 0 if region is None else region.before
         self.behind = 0 if region is None else region.behind
-        self.skipped = self._literals_in_front if skips_start else 0
+        self.skipped = self._literals_in_front
         """Bytes at the start of a frame that are not in the content."""
         self.gives_content = False
         """True if readers are given the whole content of a frame, and not its payload alone."""
@@ -47,10 +45,6 @@ class EngineFrame:
         if region is None:
             return len(self.plan.start_bytes) if self.plan.shares_delimiter else 0
         return region.before if region.literals_in_front else 0
-
-    def sends(self, message: Message) -> bool:
-        """True if the sender sends the message."""
-        return self.sender.name in message.senders
 
     # --- what can be cut --------------------------------------------------------------------------
 

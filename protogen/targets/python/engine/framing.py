@@ -16,11 +16,11 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
-from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import FOLDED, checksum, folded
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.writing import (
     Packed,
     Packer,
@@ -45,7 +45,7 @@ def arguments(frame: EngineFrame, of_caller: tuple[str, ...]) -> list[str]:
 
 def _of_caller(frame: EngineFrame, names: tuple[str, ...]) -> list[str]:
     """Names of arguments: a part of other senders only may be called like an identity of this."""
-    own = {part.name for part in frame.sender.frame.caller_parts}
+    own = {part.name for part in frame.plan.frame.caller_parts}
     return [f"{name}_" if name in own else f"other{index}" for index, name in enumerate(names)]
 
 
@@ -91,7 +91,7 @@ def _goes_together(frame: EngineFrame) -> bool:
     return plain and not frame.plan.optional_size
 
 
-class _Framer:
+class _Framer(FrameFunction):
     """Writes the body of one function."""
 
     def __init__(
@@ -102,9 +102,7 @@ class _Framer:
         message: Message | None = None,
     ) -> None:
         """With a message, for its frames alone: what is the same in all of them is no argument."""
-        self.frame = frame
-        self.plan = frame.plan
-        self.lines = lines
+        super().__init__(frame, lines)
         self.message = message
         self._has_payload = False
         """True if a variable holds the payload alone."""
@@ -155,11 +153,11 @@ class _Framer:
         Where `struct` writes them, it sees to that.
         """
         integers = []
-        own = {part.name for part in self.frame.sender.frame.caller_parts}
+        own = {part.name for part in self.plan.frame.caller_parts}
         for name, argument in self.values.items():
             if name not in own:
                 self.lines.refuse_if(f"{argument} is not None")
-        for part in self.frame.sender.frame.caller_parts:
+        for part in self.plan.frame.caller_parts:
             assert isinstance(part, CounterPart | ValuePart)
             if part.default is not None:
                 self.lines.add(f"if {part.name}_ is None:")
@@ -268,16 +266,14 @@ class _Framer:
             return
         # A decoder might end the frame elsewhere.
         self.lines.add(f"wire = {wire}")
-        self.lines.add(f"return _fast.checked(wire, _cut_{frame.sender.name})")
+        self.lines.add(f"return _fast.checked(wire, _cut_{self.name})")
 
     def _stuffed(self, size_behind: int) -> str:
         """The content, stuffed but for its last bytes unless it stands for itself."""
         frame = self.frame
         front = frame.before - frame.skipped
         inner = frame.slice_of("content", front, -size_behind)
-        assert frame.sender.frame.transparency is not None
-        stuffing = tables.encoding(frame.sender.frame.transparency.encoding)
-        encode = f"{self.lines.constants.named('STUFFING', stuffing)}.encode"
+        encode = f"{self.stuffing()}.encode"
         before = f"content[:{front}] + " if front else ""
         behind = f" + content[{-size_behind}:]" if size_behind else ""
         specials = frame.specials(sending=True)

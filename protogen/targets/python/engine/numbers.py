@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.model.frame import NumberPart
 from protogen.model.types import Integer
+from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
@@ -48,12 +49,13 @@ class FrameFunction:
         behind = Place(first.variable, first.offset + part.type.size)
         piece = f"{source}[{first.text} : {behind.text}]"
         if self.has_padding(part.type):
-            return f"{self.codec(part.type)}.decode({piece})"
+            return f"{self.lines.constants.number(part.type)}.decode({piece})"
         return f'int.from_bytes({piece}, "{part.type.byte_order}")'
 
-    def codec(self, type_: Integer) -> str:
-        """The number that reads the part's bytes and checks their padding."""
-        return self.lines.constants.number(type_)
+    def stuffing(self) -> str:
+        """The encoding of the stuffed region, as an encoder applies it."""
+        assert self.plan.region is not None
+        return self.lines.constants.named("STUFFING", tables.encoding(self.plan.region.encoding))
 
     def identity(self, source: str, base: str | None = None) -> str:
         """The values of all identity parts, between commas."""

@@ -72,7 +72,7 @@ class EngineModule(msgspec.Struct, frozen=True):
 def engine_view(protocol: Protocol, of_caller: tuple[str, ...]) -> EngineModule:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
     constants = Constants()
-    frames = [EngineFrame(sender, skips_start=True) for sender in protocol.senders]
+    frames = [EngineFrame(sender) for sender in protocol.senders]
     around = _around(frames)
     for frame in frames:
         frame.gives_content = around is not None
@@ -203,7 +203,7 @@ def _encoder(
     message: Message, frames: list[EngineFrame], of_caller: tuple[str, ...], constants: Constants
 ) -> Function | None:
     """The function that makes a message's frames; None where only the reference does."""
-    own = [frame for frame in frames if frame.sends(message)]
+    own = [frame for frame in frames if frame.sender.name in message.senders]
     if not all(frame.can_frame for frame in own):
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
