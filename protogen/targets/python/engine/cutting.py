@@ -5,6 +5,7 @@ from __future__ import annotations
 from protogen.model.frame import LiteralPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.runtime.bulk_cut import MIN_DATA
+from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
@@ -447,35 +448,26 @@ class _Cutter(ChecksumFunction):
                 numbers = (self.number(self.content, part) for part in frame.shown)
                 self.lines.add(f"numbers = {tuple_of(numbers)}")
         elif frame.remembered is not None:
-            self._known_head(*frame.remembered)
+            first, last = frame.remembered
+            head = f"{self.content}[{first}:{last}]"  # A stream repeats it over and over.
+            self._look_up("numbers, ", f"_{self.name.upper()}_HEADS[{head}]")
         else:
             names = [f"n{index}" for index, _ in enumerate(frame.shown)]
             for name, part in zip(names, frame.shown, strict=True):
                 self.lines.add(f"{name} = {self.number(self.content, part)}")
             self.lines.add(f"numbers = {tuple_of(names)}")
-            self._look_up([names[frame.shown.index(part)] for part in self.plan.identity])
+            identity = [names[frame.shown.index(part)] for part in self.plan.identity]
+            self._look_up("", identities.entry(frame, identity))
 
-    def _known_head(self, first: int, last: int) -> None:
-        """Look the bytes with all numbers up, which a stream repeats over and over."""
-        head = f"_{self.name.upper()}_HEADS[{self.content}[{first}:{last}]]"
-        if self.plan.length is not None:
-            self.lines.add(f"numbers, read = {head}")
-            with self.lines.block("if read is None:"):
-                self._unknown()
-        else:
-            self.lines.add(f"numbers, payload_size, read = {head}")
+    def _look_up(self, numbers: str, entry: str) -> None:
+        """Set `read`, and what stands in front of it, from the entry of a table."""
+        if self.plan.length is None:
+            self.lines.add(f"{numbers}payload_size, read = {entry}")
             self.stop_if("0 <= payload_size != len(payload)")
-
-    def _look_up(self, identity: list[str]) -> None:
-        kinds = f"_{self.name.upper()}_KINDS"
-        key = identity[0] if len(identity) == 1 else tuple_of(identity)
-        if self.plan.length is not None:
-            self.lines.add(f"read = {kinds}.get({key})")
-            with self.lines.block("if read is None:"):
-                self._unknown()
             return
-        self.lines.add(f"payload_size, read = {kinds}[{key}]")
-        self.stop_if("0 <= payload_size != len(payload)")
+        self.lines.add(f"{numbers}read = {entry}")
+        with self.lines.block("if read is None:"):
+            self._unknown()
 
     def _unknown(self) -> None:
         spec = f"{self.name.upper()}_SENDER"

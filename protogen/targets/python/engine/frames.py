@@ -33,14 +33,15 @@ class EngineFrame:
         self.stuffed = region is not None
         self.before = 0 if region is None else region.before
         self.behind = 0 if region is None else region.behind
-        self.skipped = self._literals_in_front
-        """Bytes at the start of a frame that are not in the content."""
         self.gives_content = False
         """True if readers are given the whole content of a frame, and not its payload alone."""
 
     @property
-    def _literals_in_front(self) -> int:
-        """Bytes in front of the stuffed region, if they are all literals; else 0."""
+    def skipped(self) -> int:
+        """Bytes at the start of a frame that are not in the content.
+
+        These are all in front of the stuffed region, if they are literals.
+        """
         region = self.plan.region
         if region is None:
             return len(self.plan.start_bytes) if self.plan.shares_delimiter else 0

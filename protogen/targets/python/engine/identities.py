@@ -41,6 +41,13 @@ def _kind(frame: EngineFrame, group: IdentityGroup) -> str:
     return f"({size}, {reader})"
 
 
+def entry(frame: EngineFrame, identity: list[str]) -> str:
+    """The table's entry for these numbers: with a length, None for an identity that has none."""
+    key = identity[0] if len(identity) == 1 else tuple_of(identity)
+    kinds = f"_{frame.sender.name.upper()}_KINDS"
+    return f"{kinds}[{key}]" if frame.plan.length is None else f"{kinds}.get({key})"
+
+
 def reader_of(frame: EngineFrame, group: IdentityGroup) -> str:
     """The name of the function that reads an identity's payloads."""
     if len(group.messages) == 1:
@@ -68,8 +75,6 @@ class _Header(FrameFunction):
             for part in frame.shown
         }
         identity = [found[part] for part in self.plan.identity]
-        key = identity[0] if len(identity) == 1 else tuple_of(identity)
-        kinds = f"_{self.name.upper()}_KINDS"
-        entry = f"{kinds}.get({key})" if frame.plan.length is not None else f"*{kinds}[{key}]"
-        self.lines.add(f"return {tuple_of(found.values())}, {entry}")
+        spread = "*" if self.plan.length is None else ""
+        self.lines.add(f"return {tuple_of(found.values())}, {spread}{entry(frame, identity)}")
         return self.lines.text

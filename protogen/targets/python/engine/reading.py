@@ -175,27 +175,29 @@ class _Reader(Converter):
         run, self._run = self._run, _Run()
         if not run.codes:
             return
-        layout = f'"{run.order or "<"}{run.codes}"'
-        if self.whole is not None:
-            front, behind = map(_padding, self.whole)
-            layout = f'"{run.order or "<"}{front}{run.codes}{behind}"'
-            unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack")
-            names = ", ".join(run.variables)
-            self._unpack(f"({names},)" if len(run.variables) == 1 else names, f"{unpack}(data)")
-        elif run.codes == "B":
+        if self.whole is None and run.codes == "B":
             self.lines.add(f"{run.variables[0]} = data[{self.place.text}]")
         else:
-            names = ", ".join(run.variables)
-            if len(run.variables) == 1:
-                names = f"({names},)"
-            unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).unpack_from")
-            self._unpack(names, f"{unpack}(data, {self.place.text})")
+            self._unpack(run)
         self.place.offset += run.size
+        self._convert(run)
+
+    def _convert(self, run: _Run) -> None:
         for target, variable, step in run.after:
             self.lines.add(f"{target} = {self.converted(variable, step)}")
             self._constant(target, step)
 
-    def _unpack(self, names: str, call: str) -> None:
+    def _unpack(self, run: _Run) -> None:
+        """Read several values; with a whole message, `struct` checks its size."""
+        front, behind = map(_padding, self.whole or (0, 0))
+        layout = f'"{run.order or "<"}{front}{run.codes}{behind}"'
+        method, given = "unpack", "data"
+        if self.whole is None:
+            method, given = "unpack_from", f"data, {self.place.text}"
+        unpack = self.lines.constants.named("UNPACK", f"_struct.Struct({layout}).{method}")
+        names, call = ", ".join(run.variables), f"{unpack}({given})"
+        if len(run.variables) == 1:
+            names = f"({names},)"
         if len(names) + len(call) < 80:
             self.lines.add(f"{names} = {call}")
             return
@@ -438,9 +440,7 @@ class _Reader(Converter):
             for name, variable in zip(names, run.variables, strict=True):
                 if "." in variable:
                     self.lines.add(f"{variable} = {name}")
-            for target, variable, step in run.after:
-                self.lines.add(f"{target} = {self.converted(variable, step)}")
-                self._constant(target, step)
+            self._convert(run)
             self.lines.add(f"{values}.append({item})")
         return values
 
