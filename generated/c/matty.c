@@ -574,6 +574,7 @@ static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uin
     uint8_t *const content = matty_pc_payload(frame, payload) - 4;
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
+    const uint16_t sum_at = (uint16_t)(stuffed - 1U);
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
@@ -585,8 +586,7 @@ static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uin
     *to = content[0];
     to++;
     for (; from < stuffed; from++) {
-        uint8_t byte = from + 1U == stuffed ? (uint8_t)matty_sum_8_negated_final(sum)
-                                            : content[from];
+        uint8_t byte = from == sum_at ? (uint8_t)matty_sum_8_negated_final(sum) : content[from];
         sum = matty_sum_8_negated_step(sum, byte);
         if (byte == 0x55U || byte == 0x56U) {
             *to = 0x56U;

@@ -1253,6 +1253,7 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
     const uint16_t length = (uint16_t)(payload);
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
+    const uint16_t sum_at = (uint16_t)(stuffed - 1U);
     uint16_t from = 2;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
@@ -1268,8 +1269,7 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     *to = content[1];
     to++;
     for (; from < stuffed; from++) {
-        uint8_t byte = from + 1U == stuffed ? (uint8_t)rflex_drivers_xor_8_final(sum)
-                                            : content[from];
+        uint8_t byte = from == sum_at ? (uint8_t)rflex_drivers_xor_8_final(sum) : content[from];
         sum = rflex_drivers_xor_8_step(sum, byte);
         switch (byte) {
         case 0x1BU:

@@ -210,12 +210,6 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         return begins and last.side is Side.TAIL and last.offset == 0
 
     @property
-    def sum_is_due(self) -> str:
-        """The condition that all went by that the checksum covers."""
-        assert self.summed is not None
-        return f"from + {self.summed.size}U == stuffed"
-
-    @property
     def summed_byte(self) -> str:
         """The checksum of one byte."""
         assert self.summed is not None
