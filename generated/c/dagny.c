@@ -1347,28 +1347,16 @@ static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const u
     switch (parts->id) {
     case 0x4DU:
         *message = DAGNY_MESSAGE_MOTOR;
-        if (size != 1U) {
-            return DAGNY_SIZE;
-        }
-        return DAGNY_NO_REASON;
+        return size != 1U ? DAGNY_SIZE : DAGNY_NO_REASON;
     case 0x53U:
         *message = DAGNY_MESSAGE_STEERING;
-        if (size != 1U) {
-            return DAGNY_SIZE;
-        }
-        return DAGNY_NO_REASON;
+        return size != 1U ? DAGNY_SIZE : DAGNY_NO_REASON;
     case 0x52U:
         *message = DAGNY_MESSAGE_REFLEX;
-        if (size != 1U) {
-            return DAGNY_SIZE;
-        }
-        return DAGNY_NO_REASON;
+        return size != 1U ? DAGNY_SIZE : DAGNY_NO_REASON;
     case 0x50U:
         *message = DAGNY_MESSAGE_POWER;
-        if (size != 1U) {
-            return DAGNY_SIZE;
-        }
-        return DAGNY_NO_REASON;
+        return size != 1U ? DAGNY_SIZE : DAGNY_NO_REASON;
     case 0x4CU:
         *message = DAGNY_MESSAGE_LASER;
         if (size > 512U) {

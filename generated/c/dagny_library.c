@@ -1122,34 +1122,19 @@ static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts
     case 0x4DU:
         if (size == 2U && !(size == 1U)) {
             *message = DAGNY_LIBRARY_MESSAGE_DRIVE;
-            if (size != 2U) {
-                return DAGNY_LIBRARY_SIZE;
-            }
-            return DAGNY_LIBRARY_NO_REASON;
+            return size != 2U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
         }
         *message = DAGNY_LIBRARY_MESSAGE_MOTOR;
-        if (size != 1U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 1U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x53U:
         *message = DAGNY_LIBRARY_MESSAGE_STEERING;
-        if (size != 1U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 1U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x50U:
         *message = DAGNY_LIBRARY_MESSAGE_POWER;
-        if (size != 1U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 1U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x47U:
         *message = DAGNY_LIBRARY_MESSAGE_GPS_POSITION;
-        if (size != 8U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 8U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x4CU:
         *message = DAGNY_LIBRARY_MESSAGE_LASER;
         if (size > 512U) {
@@ -1513,10 +1498,7 @@ static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_par
     switch (parts->id) {
     case 0x53U:
         *message = DAGNY_LIBRARY_MESSAGE_SONAR;
-        if (size != 5U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 5U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x47U:
         *message = DAGNY_LIBRARY_MESSAGE_GPS;
         if (size > 126U) {
@@ -1525,22 +1507,13 @@ static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_par
         return (uint8_t)dagny_library_gps_check(payload, size, NULL);
     case 0x4FU:
         *message = DAGNY_LIBRARY_MESSAGE_ODOMETRY;
-        if (size != 13U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 13U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x62U:
         *message = DAGNY_LIBRARY_MESSAGE_BATTERY;
-        if (size != 6U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 6U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x43U:
         *message = DAGNY_LIBRARY_MESSAGE_COMPASS;
-        if (size != 4U) {
-            return DAGNY_LIBRARY_SIZE;
-        }
-        return DAGNY_LIBRARY_NO_REASON;
+        return size != 4U ? DAGNY_LIBRARY_SIZE : DAGNY_LIBRARY_NO_REASON;
     case 0x4CU:
         *message = DAGNY_LIBRARY_MESSAGE_LASER;
         if (size > 512U) {

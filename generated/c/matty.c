@@ -1058,46 +1058,25 @@ static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8
     switch (parts->command) {
     case 0x53U:
         *message = MATTY_MESSAGE_STOP;
-        if (size != 0U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 0U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x52U:
         *message = MATTY_MESSAGE_RESET;
-        if (size != 0U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 0U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x4DU:
         *message = MATTY_MESSAGE_MODE;
-        if (size != 1U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 1U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x47U:
         *message = MATTY_MESSAGE_GO;
-        if (size != 4U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 4U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x4CU:
         *message = MATTY_MESSAGE_LIMITS;
-        if (size != 4U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 4U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x54U:
         *message = MATTY_MESSAGE_TIMING;
-        if (size != 4U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 4U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x50U:
         *message = MATTY_MESSAGE_GPS_MODE;
-        if (size != 1U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 1U ? MATTY_SIZE : MATTY_NO_REASON;
     default:
         return MATTY_NO_REASON;
     }
@@ -1597,22 +1576,13 @@ static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uin
     switch (parts->command) {
     case 0x41U:
         *message = MATTY_MESSAGE_ACK;
-        if (size != 0U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 0U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x4EU:
         *message = MATTY_MESSAGE_NACK;
-        if (size != 0U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 0U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x49U:
         *message = MATTY_MESSAGE_STATUS;
-        if (size != 18U) {
-            return MATTY_SIZE;
-        }
-        return MATTY_NO_REASON;
+        return size != 18U ? MATTY_SIZE : MATTY_NO_REASON;
     case 0x50U:
         *message = MATTY_MESSAGE_GPS;
         if (size > 121U) {

@@ -1297,58 +1297,31 @@ static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const
     switch (parts->command) {
     case 0x53U:
         *message = MATTY_V4_MESSAGE_STOP;
-        if (size != 1U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 1U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x52U:
         *message = MATTY_V4_MESSAGE_RESET;
-        if (size != 0U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 0U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x4DU:
         *message = MATTY_V4_MESSAGE_MODE;
-        if (size != 1U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 1U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x47U:
         *message = MATTY_V4_MESSAGE_GO;
-        if (size != 4U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 4U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x4CU:
         *message = MATTY_V4_MESSAGE_LIMITS;
-        if (size != 4U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 4U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x54U:
         *message = MATTY_V4_MESSAGE_TIMING;
-        if (size != 4U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 4U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x50U:
         *message = MATTY_V4_MESSAGE_GPS_MODE;
-        if (size != 1U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 1U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x56U:
         *message = MATTY_V4_MESSAGE_VERSION_QUERY;
-        if (size != 0U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 0U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x44U:
         *message = MATTY_V4_MESSAGE_LED;
-        if (size != 4U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 4U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     default:
         return MATTY_V4_NO_REASON;
     }
@@ -1852,22 +1825,13 @@ static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, con
     switch (parts->command) {
     case 0x41U:
         *message = MATTY_V4_MESSAGE_ACK;
-        if (size != 0U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 0U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x4EU:
         *message = MATTY_V4_MESSAGE_NACK;
-        if (size != 0U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 0U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x49U:
         *message = MATTY_V4_MESSAGE_STATUS;
-        if (size != 24U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 24U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     case 0x50U:
         *message = MATTY_V4_MESSAGE_GPS;
         if (size > 121U) {
@@ -1876,10 +1840,7 @@ static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, con
         return (uint8_t)matty_v4_gps_check(payload, size, NULL);
     case 0x56U:
         *message = MATTY_V4_MESSAGE_VERSION;
-        if (size != 2U) {
-            return MATTY_V4_SIZE;
-        }
-        return MATTY_V4_NO_REASON;
+        return size != 2U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     default:
         return MATTY_V4_NO_REASON;
     }

@@ -1936,64 +1936,34 @@ static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS;
-        if (size != 0U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 0U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0200U:
         *message = RFLEX_MESSAGE_MOTOR_00;
-        if (size != 1U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 1U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0207U:
         *message = RFLEX_MESSAGE_MOTOR_COMMAND;
-        if (size != 14U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 14U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x020AU:
         *message = RFLEX_MESSAGE_MOTOR_0A;
-        if (size != 0U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 0U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x020CU:
         *message = RFLEX_MESSAGE_MOTOR_0C;
-        if (size != 0U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 0U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0222U:
         *message = RFLEX_MESSAGE_START_STOP_MOTOR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 8U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0300U:
         *message = RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA;
-        if (size != 0U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 0U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0400U:
         *message = RFLEX_MESSAGE_START_STOP_SONAR_PACKETS;
-        if (size != 13U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 13U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0500U:
         *message = RFLEX_MESSAGE_INITIALIZE_DIGITAL_IO;
-        if (size != 4U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 4U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0502U:
         *message = RFLEX_MESSAGE_CHECK_IO_CHANGED;
-        if (size != 4U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 4U ? RFLEX_SIZE : RFLEX_NO_REASON;
     default:
         return RFLEX_NO_REASON;
     }
@@ -2662,46 +2632,25 @@ static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const u
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_MESSAGE_SYSTEM_STATUS;
-        if (size != 9U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 9U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0207U:
         *message = RFLEX_MESSAGE_CONFIRM_MOTOR_COMMAND;
-        if (size != 9U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 9U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x020CU:
         *message = RFLEX_MESSAGE_MOTOR_0C_ANSWER;
-        if (size != 8U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 8U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0221U:
         *message = RFLEX_MESSAGE_READ_MOTOR;
-        if (size != 25U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 25U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0222U:
         *message = RFLEX_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 8U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0300U:
         *message = RFLEX_MESSAGE_JOYSTICK_DATA;
-        if (size != 13U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 13U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0400U:
         *message = RFLEX_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 8U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0402U:
         *message = RFLEX_MESSAGE_SONAR_DATA;
         if (size < 8U || size > 254U || (size - 8U) % 3U != 0U) {
@@ -2710,28 +2659,16 @@ static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const u
         return (uint8_t)rflex_sonar_data_check(payload, size, NULL);
     case 0x0500U:
         *message = RFLEX_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO;
-        if (size != 8U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 8U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0501U:
         *message = RFLEX_MESSAGE_CHANGED_BUMPERS;
-        if (size != 7U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 7U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0502U:
         *message = RFLEX_MESSAGE_CHECK_IO_CHANGED_ANSWER;
-        if (size != 12U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 12U ? RFLEX_SIZE : RFLEX_NO_REASON;
     case 0x0503U:
         *message = RFLEX_MESSAGE_CHANGED_BYTE;
-        if (size != 7U) {
-            return RFLEX_SIZE;
-        }
-        return RFLEX_NO_REASON;
+        return size != 7U ? RFLEX_SIZE : RFLEX_NO_REASON;
     default:
         return RFLEX_NO_REASON;
     }

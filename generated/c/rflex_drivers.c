@@ -2405,76 +2405,40 @@ static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_par
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS;
-        if (size != 0U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 0U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0200U:
         *message = RFLEX_DRIVERS_MESSAGE_AXIS_GET_SYSTEM;
-        if (size != 1U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 1U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0207U:
         *message = RFLEX_DRIVERS_MESSAGE_MOTOR_COMMAND;
-        if (size != 14U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 14U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x020AU:
         *message = RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS;
-        if (size != 0U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 0U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x020BU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_SET;
-        if (size != 0U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 0U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x020CU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE;
-        if (size != 0U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 0U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0222U:
         *message = RFLEX_DRIVERS_MESSAGE_START_STOP_MOTOR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 8U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0300U:
         *message = RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA;
-        if (size != 0U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 0U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0400U:
         *message = RFLEX_DRIVERS_MESSAGE_START_STOP_SONAR_PACKETS;
-        if (size != 13U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 13U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0500U:
         *message = RFLEX_DRIVERS_MESSAGE_INITIALIZE_DIGITAL_IO;
-        if (size != 4U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 4U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0502U:
         *message = RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED;
-        if (size != 4U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 4U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0600U:
         *message = RFLEX_DRIVERS_MESSAGE_IR_RUN;
-        if (size != 21U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 21U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     default:
         return RFLEX_DRIVERS_NO_REASON;
     }
@@ -3158,10 +3122,7 @@ static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_id << 8) | parts->subclass)) {
     case 0x0101U:
         *message = RFLEX_DRIVERS_MESSAGE_SYSTEM_STATUS;
-        if (size != 9U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 9U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0100U:
         *message = RFLEX_DRIVERS_MESSAGE_LCD_DUMP;
         if (size < 6U || size > 255U) {
@@ -3170,40 +3131,22 @@ static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts
         return (uint8_t)rflex_drivers_lcd_dump_check(payload, size, NULL);
     case 0x0207U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_MOTOR_COMMAND;
-        if (size != 9U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 9U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x020CU:
         *message = RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE_ANSWER;
-        if (size != 8U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 8U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0221U:
         *message = RFLEX_DRIVERS_MESSAGE_READ_MOTOR;
-        if (size != 25U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 25U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0222U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 8U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0300U:
         *message = RFLEX_DRIVERS_MESSAGE_JOYSTICK_DATA;
-        if (size != 13U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 13U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0400U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS;
-        if (size != 8U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 8U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0402U:
         *message = RFLEX_DRIVERS_MESSAGE_SONAR_DATA;
         if (size < 8U || size > 254U || (size - 8U) % 3U != 0U) {
@@ -3212,28 +3155,16 @@ static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts
         return (uint8_t)rflex_drivers_sonar_data_check(payload, size, NULL);
     case 0x0500U:
         *message = RFLEX_DRIVERS_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO;
-        if (size != 8U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 8U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0501U:
         *message = RFLEX_DRIVERS_MESSAGE_CHANGED_BUMPERS;
-        if (size != 7U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 7U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0502U:
         *message = RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED_ANSWER;
-        if (size != 12U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 12U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0503U:
         *message = RFLEX_DRIVERS_MESSAGE_CHANGED_BYTE;
-        if (size != 7U) {
-            return RFLEX_DRIVERS_SIZE;
-        }
-        return RFLEX_DRIVERS_NO_REASON;
+        return size != 7U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     case 0x0601U:
         *message = RFLEX_DRIVERS_MESSAGE_IR_REPORT;
         if (size < 1U || size > 255U) {

@@ -1487,22 +1487,13 @@ static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8
     switch (parts->start) {
     case 0x80U:
         *message = RN1_MESSAGE_MOVE_MANUAL;
-        if (size != 2U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 2U ? RN1_SIZE : RN1_NO_REASON;
     case 0x81U:
         *message = RN1_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        if (size != 4U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 4U ? RN1_SIZE : RN1_NO_REASON;
     case 0x82U:
         *message = RN1_MESSAGE_MOVE_RELATIVE_ARC;
-        if (size != 4U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 4U ? RN1_SIZE : RN1_NO_REASON;
     case 0xFEU:
         *message = RN1_MESSAGE_MAINTENANCE;
         if (size < 4U || size > 7U) {
@@ -1817,46 +1808,25 @@ static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uin
     switch (parts->start) {
     case 0x80U:
         *message = RN1_MESSAGE_GYRO;
-        if (size != 7U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 7U ? RN1_SIZE : RN1_NO_REASON;
     case 0x81U:
         *message = RN1_MESSAGE_XCEL;
-        if (size != 7U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 7U ? RN1_SIZE : RN1_NO_REASON;
     case 0x82U:
         *message = RN1_MESSAGE_COMPASS;
-        if (size != 7U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 7U ? RN1_SIZE : RN1_NO_REASON;
     case 0x83U:
         *message = RN1_MESSAGE_OPTFLOW;
-        if (size != 6U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 6U ? RN1_SIZE : RN1_NO_REASON;
     case 0x84U:
         *message = RN1_MESSAGE_LIDAR;
-        if (size != 721U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 721U ? RN1_SIZE : RN1_NO_REASON;
     case 0x85U:
         *message = RN1_MESSAGE_SONAR;
-        if (size != 15U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 15U ? RN1_SIZE : RN1_NO_REASON;
     case 0xA0U:
         *message = RN1_MESSAGE_FACING;
-        if (size != 5U) {
-            return RN1_SIZE;
-        }
-        return RN1_NO_REASON;
+        return size != 5U ? RN1_SIZE : RN1_NO_REASON;
     default:
         return RN1_NO_REASON;
     }

@@ -1827,28 +1827,16 @@ static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *
     switch (parts->start) {
     case 0x80U:
         *message = RN1_FIRMWARE_MESSAGE_MOVE_MANUAL;
-        if (size != 2U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 2U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0x81U:
         *message = RN1_FIRMWARE_MESSAGE_MOVE_RELATIVE_TWOSTEP;
-        if (size != 4U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 4U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xD1U:
         *message = RN1_FIRMWARE_MESSAGE_DECREASE_PHASE_ANGLE;
-        if (size != 1U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 1U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xD2U:
         *message = RN1_FIRMWARE_MESSAGE_INCREASE_PHASE_ANGLE;
-        if (size != 1U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 1U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xFEU:
         *message = RN1_FIRMWARE_MESSAGE_MAINTENANCE;
         if (size < 4U || size > 5U) {
@@ -2172,52 +2160,28 @@ static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts
     switch (parts->start) {
     case 0x80U:
         *message = RN1_FIRMWARE_MESSAGE_GYRO;
-        if (size != 7U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 7U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0x81U:
         *message = RN1_FIRMWARE_MESSAGE_XCEL;
-        if (size != 7U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 7U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0x82U:
         *message = RN1_FIRMWARE_MESSAGE_COMPASS;
-        if (size != 7U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 7U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0x84U:
         *message = RN1_FIRMWARE_MESSAGE_LIDAR;
-        if (size != 721U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 721U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0x85U:
         *message = RN1_FIRMWARE_MESSAGE_SONAR;
-        if (size != 7U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 7U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xA0U:
         *message = RN1_FIRMWARE_MESSAGE_FACING;
-        if (size != 5U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 5U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xA1U:
         *message = RN1_FIRMWARE_MESSAGE_OPTFLOW_INTEGRAL;
-        if (size != 5U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 5U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xD1U:
         *message = RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE;
-        if (size != 2U) {
-            return RN1_FIRMWARE_SIZE;
-        }
-        return RN1_FIRMWARE_NO_REASON;
+        return size != 2U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     case 0xD2U:
         *message = RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS;
         if (size != 20U) {

@@ -462,22 +462,13 @@ static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *part
     switch (parts->type) {
     case 0x00U:
         *message = UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS;
-        if (size != 21U) {
-            return UHEROBOT_SIZE;
-        }
-        return UHEROBOT_NO_REASON;
+        return size != 21U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     case 0x01U:
         *message = UHEROBOT_MESSAGE_MOTORS_TWO_SERVOS;
-        if (size != 8U) {
-            return UHEROBOT_SIZE;
-        }
-        return UHEROBOT_NO_REASON;
+        return size != 8U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     case 0x03U:
         *message = UHEROBOT_MESSAGE_MOTOR_TEST;
-        if (size != 4U) {
-            return UHEROBOT_SIZE;
-        }
-        return UHEROBOT_NO_REASON;
+        return size != 4U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     default:
         return UHEROBOT_NO_REASON;
     }
@@ -786,10 +777,7 @@ static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
     switch (parts->type) {
     case 0x01U:
         *message = UHEROBOT_MESSAGE_STATUS;
-        if (size != 6U) {
-            return UHEROBOT_SIZE;
-        }
-        return UHEROBOT_NO_REASON;
+        return size != 6U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     default:
         return UHEROBOT_NO_REASON;
     }

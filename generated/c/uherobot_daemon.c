@@ -456,10 +456,7 @@ static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daem
     switch (parts->type) {
     case 0x00U:
         *message = UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS;
-        if (size != 21U) {
-            return UHEROBOT_DAEMON_SIZE;
-        }
-        return UHEROBOT_DAEMON_NO_REASON;
+        return size != 21U ? UHEROBOT_DAEMON_SIZE : UHEROBOT_DAEMON_NO_REASON;
     default:
         return UHEROBOT_DAEMON_NO_REASON;
     }
@@ -807,10 +804,7 @@ static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board
     switch (parts->type) {
     case 0x01U:
         *message = UHEROBOT_DAEMON_MESSAGE_STATUS;
-        if (size != 12U) {
-            return UHEROBOT_DAEMON_SIZE;
-        }
-        return UHEROBOT_DAEMON_NO_REASON;
+        return size != 12U ? UHEROBOT_DAEMON_SIZE : UHEROBOT_DAEMON_NO_REASON;
     default:
         return UHEROBOT_DAEMON_NO_REASON;
     }
