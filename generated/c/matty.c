@@ -572,9 +572,10 @@ static size_t matty_pc_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
     uint8_t *const content = matty_pc_payload(frame, payload) - 4;
+    uint8_t *const tail = &content[4U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
-    const uint16_t sum_at = (uint16_t)(stuffed - 1U);
+    const uint16_t sum_at = (uint16_t)(tail - content);
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;

@@ -1251,9 +1251,10 @@ static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
 static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_id,
                                        uint8_t subclass, uint8_t number) {
     uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
+    uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
-    const uint16_t sum_at = (uint16_t)(stuffed - 1U);
+    const uint16_t sum_at = (uint16_t)(tail - content);
     uint16_t from = 2;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
