@@ -1,4 +1,4 @@
-"""What generated C costs, beside an expert's C by hand, MAVLink C and nanopb, with equal messages.
+"""Costs of generated C, beside an expert's C by hand, MAVLink C and nanopb, with equal messages.
 
     python benchmarks/bench_c.py             # writes benchmarks/c.md
     python benchmarks/bench_c.py --rounds 5  # fewer rounds of the timings on this machine
@@ -130,9 +130,9 @@ KINDS = {
     "mavlink": "MAVLink C",
 }
 SMALL_KINDS = {**KINDS, "nanopb": "nanopb, no framing"}
-"""What is measured on small machines."""
+"""Contenders on small machines."""
 FED_KINDS = {**KINDS, "vector": "protogen, `NAME_SSE2`", "sse2": "expert with SSE2"}
-"""What is fed whole buffers on this machine."""
+"""Contenders that are fed whole buffers on this machine."""
 HAS_SSE2 = platform.machine().lower() in ("x86_64", "amd64")
 
 
@@ -329,7 +329,7 @@ HOST = Toolchain("host", "", ("-std=gnu99", "-w", "-O2"), "cc")
 
 @dataclass(frozen=True)
 class Memory:
-    """What a linked program takes, less an empty one."""
+    """Memory that a linked program takes, less an empty one."""
 
     flash: int
     ram: int
@@ -571,7 +571,7 @@ def _recovered_frames(program: Path, subject: Subject, which: int) -> list[bytes
 
 @dataclass
 class Results:
-    """What was measured, by kind and protocol."""
+    """Measurements, by kind and protocol."""
 
     avr: dict[tuple[str, str], Memory] = field(default_factory=dict)
     arm: dict[tuple[str, str], Memory] = field(default_factory=dict)
@@ -799,7 +799,7 @@ def header(*cells: str) -> list[str]:
 
 
 NOTHING = "-"
-"""What stands where nothing was measured."""
+"""Mark for what was not measured."""
 
 
 def ratio(own: float, other: float) -> str:

@@ -1,4 +1,4 @@
-"""What `protogen convert` takes: bytes of the line for each second of one core, by format.
+"""Speed of `protogen convert`: bytes of the line for each second of one core, by format.
 
     python benchmarks/bench_convert.py [--megabytes N] [--rounds N] [--folder DIR]
 
@@ -111,7 +111,7 @@ def add_folder(parser: argparse.ArgumentParser) -> None:
 
 
 def kind_of(folder: str | None) -> str:
-    """What such a folder is, in words."""
+    """Description of such a folder, in words."""
     return "memory" if folder == MEMORY else "a disk's folder"
 
 

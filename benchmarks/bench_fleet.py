@@ -1,4 +1,4 @@
-"""How fast one and two workers of a Dask cluster convert a capture to Parquet.
+"""Speed of one and two workers of a Dask cluster that convert a capture to Parquet.
 
     python benchmarks/bench_fleet.py [--megabytes N] [--part-size MB] [--rounds N] [--folder DIR]
 

@@ -1,4 +1,4 @@
-"""How long `protogen generate` takes, beside two other generators with equivalent definitions.
+"""Time of `protogen generate`, beside two other generators with equivalent definitions.
 
     python benchmarks/bench_generate.py            # writes benchmarks/generate.md
     python benchmarks/bench_generate.py --runs 3   # fewer runs

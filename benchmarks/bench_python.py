@@ -1,4 +1,4 @@
-"""What generated Python takes, beside code by hand and the peers of the field, with equal messages.
+"""Costs of generated Python, beside code by hand and the field's peers, with equal messages.
 
     python benchmarks/bench_python.py             # writes python.md, python.png and into README.md
     python benchmarks/bench_python.py --rounds 3  # fewer rounds
@@ -57,7 +57,7 @@ Times = dict[str, list[float]]
 
 @dataclass
 class Results:
-    """What was measured of each case."""
+    """Measurements of each case."""
 
     stream: dict[str, Times] = field(default_factory=dict)
     decode: dict[str, Times] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""What decoders find in noisy streams: protogen's for every framing, libsbp's and pymavlink's.
+"""Frames that decoders find in noisy streams: protogen's in every framing, libsbp's, pymavlink's.
 
     python benchmarks/bench_resync.py [--seeds N]
 
@@ -58,12 +58,12 @@ class Subject:
     decode: Decode
     material: Callable[[Random], corpus.Material]
     spec: FrameSpec
-    """How its frames are found; of other libraries that of the framing most like theirs."""
+    """Way its frames are found; of other libraries that of the framing most like theirs."""
 
 
 @dataclass
 class Figures:
-    """What became of the frames of all streams."""
+    """Fates of the frames of all streams."""
 
     undamaged: int = 0
     due: int = 0

@@ -1,4 +1,4 @@
-"""How long a program waits for `import` of a generated module, and for its first frame.
+"""Time that a program waits for `import` of a generated module, and for its first frame.
 
     python benchmarks/bench_start.py             # writes benchmarks/start.md
     python benchmarks/bench_start.py --runs 5    # fewer runs
@@ -41,7 +41,7 @@ OTHERS = ("typing", "dataclasses", "construct")
 
 
 class Taken(NamedTuple):
-    """What a process took, in seconds."""
+    """Times of a process, in seconds."""
 
     cpu: float
     wall: float
@@ -143,7 +143,7 @@ def page(runs: int, cached: Mapping[str, list[Taken]], compiled: Mapping[str, li
 
 
 COPIED = ("generated/python", "protogen/runtime", "protogen/__init__.py", "protogen/version.py")
-"""What an import of a generated module reads of the project."""
+"""Files of the project that an import of a generated module reads."""
 
 
 def copy_to(folder: Path) -> dict[str, str]:

@@ -91,7 +91,7 @@ def same(one: Any, other: Any) -> bool:
 
 
 def compare_c(path: Path, sender: str, data: bytes, due: Sequence[Any], way: str) -> int:
-    """How many events C gives like these; none where there is no compiler.
+    """Number of events C gives like these; none where there is no compiler.
 
     What C answers is compared byte by byte where both ways take the same portions; then one answer
     is enough to be compared with the reference.
@@ -140,7 +140,7 @@ def answers(library: Any, sender: str, data: bytes, kind: str, size: int) -> byt
 
 
 def compare_events(path: Path, sender: str, found: Sequence[Any], due: Sequence[Any]) -> int:
-    """How many of C's events are as they should be, which are all that C has to have."""
+    """Number of C's events that are as they should be, which are all that C has to have."""
     alike = 0
     for event, one in zip(due, found, strict=False):
         if not same_in_c(event, one):

@@ -1,4 +1,4 @@
-"""How much memory `protogen convert` needs at most for a capture of 10 GB.
+"""Memory that `protogen convert` needs at most for a capture of 10 GB.
 
     python benchmarks/check_memory.py [--gigabytes N] [--others N] [--folder DIR]
 
@@ -34,7 +34,7 @@ PIECE = 32 << 20
 
 @dataclass(frozen=True)
 class Found:
-    """What a conversion took."""
+    """Costs of a conversion."""
 
     bytes: int
     written: int

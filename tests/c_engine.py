@@ -53,7 +53,7 @@ def build(driver: Driver, folder: Path, command: Sequence[str | Path], *machine:
 
 
 def build_once(driver: Driver, folder: Path, command: Sequence[str | Path], *machine: str) -> Path:
-    """What `build` returns, unless the same was compiled before, by whichever worker."""
+    """Result of `build`, unless the same was compiled before, by whichever worker."""
     driver.write(folder)
     texts = (path.read_bytes() for path in sorted(folder.iterdir()))
     others = ((MACHINES / name).read_bytes() for name in machine)
@@ -68,7 +68,7 @@ def build_once(driver: Driver, folder: Path, command: Sequence[str | Path], *mac
 
 @cache
 def shortcuts(compiler: str) -> tuple[str, ...]:
-    """What has it make the same program in less time, where it knows that."""
+    """Options that make the same program in less time, of compilers that are known."""
     with TemporaryDirectory(prefix="protogen-c-") as folder:
         command = [compiler, *SANITIZERS, *_SHORTCUTS, "-x", "c", "-o", f"{folder}/program", "-"]
         done = subprocess.run(command, input=b"int main(void) {}", capture_output=True, check=False)
@@ -169,7 +169,7 @@ def _event(event: Any) -> CEvent:
 
 
 def comparable(protocol: Protocol, steps: Sequence[Sequence[CEvent]]) -> int | None:
-    """How many of Python's events C has to have, too; None: all of them.
+    """Number of Python's events that C has to have, too; None: all of them.
 
     A number that counts more than its range allows, or less, is a violation that Python keeps. No
     struct of C has room for it, so C refuses the frame, and may find others inside.
@@ -185,7 +185,7 @@ def comparable(protocol: Protocol, steps: Sequence[Sequence[CEvent]]) -> int | N
 
 
 def messages_of(steps: Sequence[Sequence[CEvent]]) -> list[list[CEvent]]:
-    """What `--events messages` leaves of events."""
+    """The events that `--events messages` leaves."""
     return [
         [replace(event, offset=None, size=None) for event in events if event.kind == "message"]
         for events in steps

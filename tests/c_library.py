@@ -96,7 +96,7 @@ def shim_of(protocol: Protocol, module: Module) -> str:
 
 @dataclass(frozen=True)
 class Encoded:
-    """What came of encoding; `intact`: nothing was written where nothing may be."""
+    """Outcome of encoding; `intact`: nothing was written where nothing may be."""
 
     result: int
     payload: bytes
@@ -105,7 +105,7 @@ class Encoded:
 
 @dataclass(frozen=True)
 class Decoded:
-    """What came of decoding; `intact`: the struct was left as it was."""
+    """Outcome of decoding; `intact`: the struct was left as it was."""
 
     result: int
     values: Values | None

@@ -1,4 +1,4 @@
-"""What the tests of the command line share: a schema with everything, and ways to run commands."""
+"""Support for tests of the command line: a schema with everything, and ways to run commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all tests share: the profiles of Hypothesis, the root of the project, tools."""
+"""Things that all tests share: the profiles of Hypothesis, the root of the project, tools."""
 
 from __future__ import annotations
 

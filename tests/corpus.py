@@ -27,7 +27,7 @@ WHOLE = "whole"
 
 @dataclass(frozen=True)
 class Material:
-    """What streams are made of: frames, and bytes that a receiver could take for parts of them."""
+    """Pieces of streams: frames, and bytes that a receiver could take for parts of them."""
 
     frames: tuple[bytes, ...]
     marks: bytes
@@ -138,7 +138,7 @@ DAMAGES: dict[str, Damage] = {
     "cut": _cut,
     "headless": _headless,
 }
-"""What becomes of frames on a bad line."""
+"""Faults of frames on a bad line."""
 
 
 # --- noise --------------------------------------------------------------------------------------
@@ -170,7 +170,7 @@ NOISES: dict[str, Callable[[Material, Random], bytes]] = {
     "run": _run,
     "false start": _false_start,
 }
-"""What stands between frames on a bad line."""
+"""Bytes that stand between frames on a bad line."""
 
 
 def _mark(material: Material, dice: Random) -> bytes:

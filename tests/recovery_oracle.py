@@ -24,7 +24,7 @@ from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, St
 
 
 class Fate(StrEnum):
-    """What became of an undamaged frame."""
+    """Fate of an undamaged frame."""
 
     FOUND = "found"
     NOT_DUE = "not due"
@@ -36,7 +36,7 @@ class Fate(StrEnum):
 
 
 def fates(spec: FrameSpec, stream: Stream, events: Sequence[Any]) -> list[Fate]:
-    """What became of each undamaged frame of a stream."""
+    """Fate of each undamaged frame of a stream."""
     accepted = {(event.offset, event.raw) for event in events if event.kind != "invalid"}
     return [_fate(spec, stream, accepted, *frame) for frame in stream.frames]
 

@@ -1,4 +1,4 @@
-"""What other programs use protogen for."""
+"""Uses that other programs make of protogen."""
 
 from __future__ import annotations
 

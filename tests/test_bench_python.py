@@ -1,4 +1,4 @@
-"""What `benchmarks/bench_python.py` compares gives the same results, before any of it is timed."""
+"""Contenders of `benchmarks/bench_python.py` give the same results before any of them is timed."""
 
 import sys
 from pathlib import Path

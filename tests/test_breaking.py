@@ -121,7 +121,7 @@ def test_a_schema_that_is_gone() -> None:
 
 
 class Read(NamedTuple):
-    """What generated Python makes of a frame."""
+    """Reading of a frame by generated Python."""
 
     name: str
     raw: Mapping[str, object]

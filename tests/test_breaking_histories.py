@@ -1,4 +1,4 @@
-"""What became of the five documents' protocols, as `protogen breaking` tells it."""
+"""Histories of the five documents' protocols, as `protogen breaking` tells them."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def test_every_element_is_what_the_decoder_reads(way: str, path: Path, tmp_path:
 
 
 def program(path: Path) -> str:
-    """What reads the elements of each payload in both ways, and ends with another code than 0."""
+    """Program that reads the elements of each payload in both ways; its code is 0 if they agree."""
     made = protocol_of(path)
     parts = [f'#include "{made.name}.h"\n#include <string.h>\n']
     calls: list[str] = []

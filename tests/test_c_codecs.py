@@ -74,7 +74,7 @@ class Subject:
             yield values
 
     def payload(self, values: Values) -> bytes | None:
-        """What Python makes of the values; None where it refuses them."""
+        """Payload that Python makes of the values; None where it refuses them."""
         try:
             payload: bytes = self.record.from_dict(values).to_payload()
         except EncodeError:
@@ -86,7 +86,7 @@ class Subject:
         return list(dict.fromkeys(payload for payload in found if payload is not None))
 
     def values(self, payload: bytes) -> tuple[int, Values | None]:
-        """What Python reads, and the reference has to agree but where a count is out of bounds."""
+        """Message that Python reads; the reference has to agree unless a count is out of bounds."""
         counts = False
         expected = OK
         try:

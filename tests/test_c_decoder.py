@@ -175,7 +175,7 @@ def selections() -> list[tuple[Path, tuple[str, ...] | None, tuple[str, ...] | N
 def test_a_selection_decodes_as_the_same_selection_does_in_python(
     path: Path, only: tuple[str, ...] | None, senders: tuple[str, ...] | None, events: Any
 ) -> None:
-    """What is left out is unknown, and a length beyond what is left is wrong."""
+    """Members that are left out are unknown; a length beyond what is left is wrong."""
     process = Process(protocol_of(path), COptions(only=only, senders=senders, events=events))
     protocol = select(protocol_of(path), only, senders)
     module = module_of(protocol)

@@ -1,4 +1,4 @@
-"""What compilers and checkers of style say of generated C: nothing but what is stated with reasons.
+"""Complaints of compilers and style checkers about generated C: only those stated with reasons.
 
 What the target deviates from is stated beside it: protogen/targets/c/.clang-tidy and README.md.
 """

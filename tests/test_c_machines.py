@@ -45,7 +45,7 @@ FLASH, RAM, STACK = 32768, 2048, 512
 
 @dataclass(frozen=True)
 class Machine:
-    """How a driver is compiled for a machine, and run there with a folder to work in."""
+    """Compiling a driver for a machine, and running it there with a folder to work in."""
 
     compiler: str
     flags: tuple[str, ...]
@@ -86,7 +86,7 @@ def on_atmega328p(program: Path, requests: Path) -> bytes:
 
 @cache
 def simulator() -> Path:
-    """What runs a program for the ATmega328P, with the machine's registers as its streams."""
+    """Runner of a program for the ATmega328P, with the machine's registers as its streams."""
     require_tool("simavr")
     folder = Path(_folders().mktemp("simulator"))
     source = MACHINES / "simulator.c"
@@ -108,7 +108,7 @@ def _keep_factory(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def output_of(command: Sequence[str], **more: Any) -> bytes:
-    """What a program prints. It has to end well, and soon."""
+    """Output of a program, which has to end well, and soon."""
     done = subprocess.run(command, capture_output=True, check=False, timeout=300, **more)
     assert done.returncode == 0, (done.returncode, done.stderr.decode(errors="replace"))
     return done.stdout
@@ -269,7 +269,7 @@ def test_every_machine_gives_the_same(name: str, path: Path, tmp_path: Path) -> 
 
 
 def difference(found: Any, expected: Any) -> str:
-    """What a machine says, and what Python says."""
+    """Output of a machine, and of Python."""
     if isinstance(found, list):
         for one, other in zip(found, expected, strict=True):
             if not same_events(one, other):

@@ -21,7 +21,7 @@ from protogen.targets.c.options import EVENTS, COptions, Events
 WIDE, NARROW = MACHINES
 ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 SLOW = ("dagny_library", "rflex_drivers")
-"""What takes minutes: long arrays that fill payloads; their documents have some of them too."""
+"""Cases that take minutes: long arrays that fill payloads; some documents have them too."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS)

@@ -113,7 +113,7 @@ def frames_of(
 
 
 def made(make: Callable[[], bytes]) -> bytes | None:
-    """What is made; None where the values are refused."""
+    """Frame that is made; None where the values are refused."""
     try:
         return make()
     except EncodeError:

@@ -34,7 +34,7 @@ CHECK_DATA = b"123456789"
 
 
 def runtime_checksum(spec: ChecksumSpec) -> Checksum:
-    """What the Python target prints for a spec."""
+    """Function that the Python target prints for a spec."""
     match spec.kind:
         case "xor":
             return Xor8(spec.init)

@@ -147,7 +147,7 @@ def test_every_kind_of_value_has_a_column(sink: Path, sender: str, tmp_path: Pat
 
 
 def _choice(message: Any) -> list[Any]:
-    """What a switch has in its columns: the number, the text and the byte of a word, the rest."""
+    """Columns of a switch: the number, the text and the byte of a word, the rest."""
     value = message.value
     match int(message.what):
         case 0:

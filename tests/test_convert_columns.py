@@ -84,7 +84,7 @@ def batches_of(
 
 
 def fed(decoder: BatchDecoder, data: bytes, timed: bool) -> list[Batch]:
-    """What a decoder makes of portions of a capture."""
+    """Events that a decoder makes of portions of a capture."""
     found: list[Batch] = []
     dice = Random(7)
     for place, piece in enumerate(portions(data, dice)):

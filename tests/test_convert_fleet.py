@@ -269,7 +269,7 @@ def arguments(captures: Path, output: Path, *names: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def whole(captures: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What one machine makes of them."""
+    """Tables that one machine makes of them."""
     folder = tmp_path_factory.mktemp("whole")
     done = run(*arguments(captures, folder))
     assert done.exit_code == 1, done.output  # one line of the log is lost
@@ -378,7 +378,7 @@ if not hasattr(parts, "is_dying"):  # Dask may run it twice.
     settle, write = parts.Pending.commit, parts.write_whole
     parts.Pending.commit, parts.write_whole = commit, write_marker
 """
-"""What a worker runs first: the first ones that come so far end, as if they had been killed."""
+"""Code that a worker runs first: the first ones that come so far end, as if killed."""
 
 
 def test_a_worker_that_is_killed_loses_and_doubles_nothing(

@@ -1,4 +1,4 @@
-"""What a capture is written in is found out, and its bytes and times are those that went in."""
+"""Formats of captures: each is found out, and its bytes and times are those that went in."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ SECOND = bytes.fromhex("1B 02 45 01 00 44 1B 03")
 def read(
     path: Path | str, kind: InputKind | None = None
 ) -> tuple[str, bytes, list[int], list[int]]:
-    """What it is, its bytes, where runs of bytes end, and their times."""
+    """Format, bytes, ends of runs of bytes, and their times."""
     with opened(Source(str(path)), kind, "pc", ("pc", "board"), pytest.fail) as capture:
         data, ends, times = b"", [], []
         for chunk in capture.chunks:
@@ -523,7 +523,7 @@ class TestCommand:
 
 
 class TestUrls:
-    """What needs no file of a capture."""
+    """Options that need no file of a capture."""
 
     @pytest.fixture
     def hosted(self, monkeypatch: pytest.MonkeyPatch) -> Any:

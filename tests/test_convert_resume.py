@@ -419,7 +419,7 @@ class TestPending:
 
 @pytest.mark.parametrize("to", ["parquet"])
 def test_memory_does_not_grow_with_the_capture(workspace: Path, tmp_path: Path, to: str) -> None:
-    """What a process needs at most. The rows of the larger capture would show, if they stayed."""
+    """Memory that a process needs. Rows of the larger capture would show, if they stayed."""
     code = (
         "import sys; from protogen.cli import app\n"
         "app(sys.argv[1:], standalone_mode=False)\n"

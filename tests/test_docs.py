@@ -1,4 +1,4 @@
-"""What the pages show is what happens: every code block in them is run (see `doc_runner`)."""
+"""Pages show what happens: every code block in them is run (see `doc_runner`)."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def inline(tokens: list[Token]) -> list[Token]:
 
 
 def plain(tokens: list[Token]) -> str:
-    """What was written, from inline tokens; fails on anything but text and names as code."""
+    """Text that was written, from inline tokens; fails on anything but text and names as code."""
     assert {token.type for token in tokens} <= {"text", "code_inline"}, tokens
     return "".join(
         token.content if token.type == "text" else f"`{token.content}`" for token in tokens

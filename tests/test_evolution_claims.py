@@ -1,4 +1,4 @@
-"""What findings say of who is affected and how, held against what codecs do with the frames."""
+"""Claims of findings, who is affected and how, held against what codecs do with the frames."""
 
 from __future__ import annotations
 

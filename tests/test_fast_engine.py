@@ -208,7 +208,7 @@ WITH_PAYLOAD = ", when: payload"
 def test_frames_whose_checksums_come_with_a_payload(
     outer: str, inner: str, covers: str, tmp_path: Path
 ) -> None:
-    """Where some parts are absent, those in front of them are where these would be."""
+    """Parts in front of absent ones are where these would be."""
     path = tmp_path / "sparse.yaml"
     text = CHECKED_WITH_PAYLOAD.replace("INNER", inner).replace("OUTER", outer)
     path.write_text(text.replace("COVERS", covers), encoding="utf-8")
@@ -245,7 +245,7 @@ messages:
 
 @pytest.mark.parametrize("size", [1, 2, 3, 15, 16, 31, 32, 40])
 def test_checksums_that_cover_a_checksum(size: int, tmp_path: Path) -> None:
-    """What stands in front of the second of them is more than the payload."""
+    """More than the payload stands in front of the second of them."""
     path = tmp_path / "twice.yaml"
     path.write_text(CHECKED_TWICE.replace("SIZE", str(size)), encoding="utf-8")
     module = module_at(path)
@@ -612,7 +612,7 @@ class Similar(int):
 
 
 class Indexed:
-    """What Python takes for an integer."""
+    """Values that Python takes for an integer."""
 
     def __index__(self) -> int:
         return 5
@@ -892,7 +892,7 @@ def test_a_single_frame_has_the_same_outcome(path: Path, sender: str) -> None:
 
 
 def test_a_payload_that_is_not_stuffed_stays_as_it_is(tmp_path: Path) -> None:
-    """What is stuffed may end in front of the payload."""
+    """The stuffed region may end in front of the payload."""
     path = tmp_path / "head.yaml"
     path.write_text("""
 protocol: head

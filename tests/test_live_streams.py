@@ -180,7 +180,7 @@ def test_what_is_left_to_a_candidate_gives_the_same(
 
 
 def steps(decoder: Any, portions: list[bytes], flushes: set[int]) -> list[Any]:
-    """What each step gives, and leaves behind."""
+    """Result of each step, and what it leaves behind."""
     found = []
     for number, portion in enumerate(portions):
         found.append((shown(decoder.feed(portion)), decoder.pending))

@@ -1,4 +1,4 @@
-"""Where bytes are: the tables and diagrams of frames and messages."""
+"""Places of bytes: the tables and diagrams of frames and messages."""
 
 from __future__ import annotations
 

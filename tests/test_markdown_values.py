@@ -1,4 +1,4 @@
-"""What values mean: ranges, units, types, and the tables of names."""
+"""Meanings of values: ranges, units, types, and the tables of names."""
 
 from __future__ import annotations
 

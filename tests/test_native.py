@@ -169,7 +169,7 @@ def test_rows_may_be_written_where_they_stay(path: Path, sender: str, data: st.D
 
 
 def test_hardly_any_rows_are_copied(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is read at first tells how many there will be; the others are written in place."""
+    """The first reading tells how many rows there will be; the others are written in place."""
     copied: list[int] = []
 
     def move(place: int, source: int, size: int) -> None:

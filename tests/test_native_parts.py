@@ -163,7 +163,7 @@ def test_a_reader_that_stops_early_waits_for_nobody() -> None:
 
 
 def ended(program: str) -> str:
-    """What a program says that begins to read a capture, and comes to its end."""
+    """Output of a program that begins to read a capture, and comes to its end."""
     frame = min(material_of(RN1, "brain").frames, key=len)
     before = f"""
 from threading import Thread, main_thread
@@ -404,7 +404,7 @@ class Watched(NativeEngine):
 
 
 def missed(data: bytes, part: int | None) -> list[int]:
-    """How far off the foreseen numbers of parts were, whose tables are those of one decoder."""
+    """Errors of the foreseen numbers of parts, whose tables are those of one decoder."""
     seen: list[int] = []
     engines = [Watched(seen) for _ in range(4)]
     found = gathered(Parts(memoryview(data), engines, part).tables(2), len(data), 2)

@@ -48,7 +48,7 @@ def bounds(sizes: Iterable[int]) -> tuple[int, int]:
 
 
 def sizes_in(protocol: str, message: str) -> tuple[int, int]:
-    """What the compiler says of a message of the repository."""
+    """Sizes that the compiler gives a message of the repository."""
     for sender in repository_protocol(protocol).senders:
         for item in sender.framing.messages:
             if item.message == message:

@@ -1,4 +1,4 @@
-"""How a receiver finds frames: worked out by hand from the documents and compared."""
+"""Ways in which a receiver finds frames: worked out by hand from the documents and compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the passes make of a schema: types, places, bounds, names, parts."""
+"""Models that the passes make of a schema: types, places, bounds, names, parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the framing analysis promises, against frames that the generated code makes and reads."""
+"""Promises of the framing analysis, against frames that the generated code makes and reads."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_protected_delimiters_stand_nowhere_else(name: str) -> None:
 
 
 def unnoticed(module: ModuleType, sender: str, wire: bytes, after: bytes) -> set[int]:
-    """Where one wrong byte of a frame makes a decoder see nothing but messages.
+    """Places where one wrong byte of a frame makes a decoder see nothing but messages.
 
     A good frame follows, as it does on a line.
     """

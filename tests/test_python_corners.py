@@ -145,7 +145,7 @@ messages:
 
 
 def test_a_message_may_be_called_like_an_exception(tmp_path: Path) -> None:
-    """What generated code catches is then still the exception."""
+    """Generated code still catches the exception then."""
     schema = tmp_path / "corner.yaml"
     schema.write_text(STUFFED)
     module = protogen.module_of(protogen.load(schema))

@@ -181,7 +181,7 @@ class TestStandalone:
 
 
 def said(folder: Path, module: str, *arguments: str) -> str:
-    """What a tool prints about the packages in a folder."""
+    """Output of a tool about the packages in a folder."""
     run = subprocess.run(
         [sys.executable, "-m", module, *arguments],
         cwd=folder / "python",

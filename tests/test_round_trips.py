@@ -1,4 +1,4 @@
-"""What goes out comes back: every message of every schema, dialect and framing.
+"""Round trips of every message of every schema, dialect and framing.
 
 values -> payload -> values, values -> frame -> event, and bytes -> values -> bytes. What the bytes
 have to be is worked out a second time by `schema_fuzzing.reference`, which shares no code with the

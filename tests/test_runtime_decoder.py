@@ -189,7 +189,7 @@ def test_every_frame_that_was_not_damaged_is_recovered(name: str, seed: int) -> 
 
 
 def is_recovered(sender: Any, offset: int, frame: bytes, recovered: dict[int, bytes]) -> bool:
-    """Where start and end are the same, a frame that lost its end ends with the next one's start;
+    """Frames that lost an end that is also the start end with the next one's start;
     that one then lacks it, but nothing else.
     """
     if recovered.get(offset) == frame:

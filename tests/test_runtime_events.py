@@ -1,4 +1,4 @@
-"""What a decoder says about streams that are written by hand, byte by byte."""
+"""Events of streams that are written by hand, byte by byte."""
 
 from binascii import crc_hqx
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a type checker says about code that uses a generated module."""
+"""Findings of a type checker about code that uses a generated module."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What the values of fields mean: ranges, names, physical values, JSON, and strict encoding."""
+"""Meanings of fields' values: ranges, names, physical values, JSON, and strict encoding."""
 
 import json
 import math
@@ -150,7 +150,7 @@ def test_a_payload_is_computed_by_hand() -> None:
 
 
 class Indexed:
-    """What Python takes for an integer."""
+    """Values that Python takes for an integer."""
 
     def __index__(self) -> int:
         return 1

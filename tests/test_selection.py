@@ -1,4 +1,4 @@
-"""What `make test` leaves out is marked by names that exist."""
+"""Names of what `make test` leaves out: they exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a program that imports a generated module waits for, and what it does not."""
+"""Modules that a program waits for when it imports a generated one, and those it does not."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ NEAR_FULL = st.sampled_from((0, 1, 2, 252, 253, 254, 255, 256, 507, 508, 509))
 
 
 def data_for(kind: Transparency) -> st.SearchStrategy[bytes]:
-    """What may be sent: everything, but without 80 where the table counts on that."""
+    """Data that may be sent: everything, but without 80 where the table counts on that."""
     if isinstance(kind, Substitution) and kind.table == {0x01: b"\x80\x01"}:
         return any_bytes().map(lambda data: bytes(byte & 0x7F for byte in data))
     return any_bytes()
@@ -104,7 +104,7 @@ def pushed(kind: Transparency, region: bytes) -> bytes:
 
 
 def outcome(decode: Any, region: bytes) -> bytes | tuple[str, str]:
-    """What a decoder makes of a region: the data, or what it says is wrong."""
+    """Reading of a region by a decoder: the data, or what it says is wrong."""
     try:
         data: bytes = decode(region)
     except TransparencyError as error:

@@ -1,4 +1,4 @@
-"""What is measured: five messages, and streams of them."""
+"""Cases that are measured: five messages, and streams of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a contender can do, with one of the messages."""
+"""Contenders: what each can do with one of the messages."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Contender:
     encode: Callable[[], list[bytes]] | None = None
     """Makes some frames, each on its own."""
     frames: tuple[bytes, ...] = ()
-    """What `encode` is to make, unless its frames count on."""
+    """Frames that `encode` is to make, unless its frames count on."""
     feeder: Callable[[], Callable[[bytes], Any]] | None = None
     """Gives what takes the next bytes of a live stream."""
     loops: int = 1
-    """How often the case's stream is in `data`."""
+    """Number of times the case's stream is in `data`."""
 
 
 def check(contender: Contender, case: Case) -> None:

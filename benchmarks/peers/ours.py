@@ -10,7 +10,7 @@ from protogen.runtime.decoder import Engine
 
 
 def fast(case: Case) -> Contender:
-    """What a user gets who says nothing."""
+    """Defaults of a user who says nothing."""
     return _generated(case, "fast", "protogen")
 
 

@@ -234,7 +234,7 @@ class Decoder:
 
     @staticmethod
     def _end(data: bytes, at: int) -> int:
-        """Where the frame ends that starts at the last sync, by its length; -1: not here yet."""
+        """End of the frame that starts at the last sync, by its length; -1: not here yet."""
         size = len(data)
         if data[at] != 0x55:
             return size

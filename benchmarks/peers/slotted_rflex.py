@@ -175,7 +175,7 @@ def encode_sonar(item: Sonar, number: int) -> bytes:
 
 
 def content_of(wire: bytes) -> bytes:
-    """What is between start and end. Raises ValueError."""
+    """Bytes between start and end. Raises ValueError."""
     content = unstuffed(wire) if 0x1B in wire or 0x7C in wire else wire
     if len(content) < 5 or content[3] != len(content) - 5 or xor(content[4:]):
         raise ValueError("length or checksum")

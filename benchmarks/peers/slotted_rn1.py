@@ -56,7 +56,7 @@ class Invalid(Unknown):
 
 
 def _plain(code: int) -> int:
-    """What two bytes of 7 bits mean, read as one number of 16 bits."""
+    """Number of 16 bits that two bytes of 7 bits mean."""
     return code & 0x7F | code >> 1 & 0x3F80
 
 

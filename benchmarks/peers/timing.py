@@ -43,7 +43,7 @@ def _by_turns(runs: Mapping[KeyT, Callable[[], object]], rounds: int) -> dict[Ke
 
 
 def _calibrated(run: Callable[[], object]) -> int:
-    """How often it has to run to take long enough."""
+    """Number of runs that take long enough."""
     gc.collect()
     times = 1
     while (taken := _timed(run, times)) < LEAST:

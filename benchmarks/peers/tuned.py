@@ -64,7 +64,7 @@ _READING = Struct(">BH")
 
 
 def _contents(data: bytes) -> list[bytes]:
-    """What is in the frames of a stream. Raises ValueError where it is not plainly in order."""
+    """Payloads in the frames of a stream. Raises ValueError where it is not plainly in order."""
     if not (data.startswith(_HEAD) and data.endswith(_END)):
         raise ValueError("no whole frames")
     pieces = data[2:-2].split(_BETWEEN)

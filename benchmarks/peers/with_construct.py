@@ -83,7 +83,7 @@ def compiled(case: Case) -> Contender:
 
 
 def parser(case: Case, layout: Any) -> Callable[[bytes], Any]:
-    """What parses a payload. Counting is faster than construct's GreedyRange."""
+    """Parser of a payload. Counting is faster than construct's GreedyRange."""
     parse = layout.parse
     if case.message == "sonar_data":
         return lambda payload: parse(payload, count=(len(payload) - 8) // 3)
@@ -91,7 +91,7 @@ def parser(case: Case, layout: Any) -> Callable[[bytes], Any]:
 
 
 def builder(case: Case, layout: Any) -> Callable[[Any], bytes]:
-    """What builds a payload."""
+    """Builder of a payload."""
     build = layout.build
     if case.message == "sonar_data":
         return lambda item: build(item, count=len(item["readings"]))  # type: ignore[no-any-return]

@@ -239,7 +239,7 @@ class Tables:
 
 
 class _Remembered(dict[KeyT, Any]):
-    """What a function gives for each key.
+    """Results of a function, kept by key.
 
     Not all is kept: what a wire gives must not fill the memory.
     """

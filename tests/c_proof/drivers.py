@@ -129,7 +129,7 @@ class Driver:
     proves: tuple[str, ...]
     """The functions that it calls."""
     options: tuple[str, ...] = ()
-    """What EVA has to be told."""
+    """Statements that EVA has to be told."""
 
 
 def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
@@ -188,7 +188,7 @@ def first_driver(protocol: Protocol, header: str) -> Driver:
 
 
 def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
-    """What keeps apart whether `push` returns a message: only then the event is filled."""
+    """Split by the message that `push` returns: only with one the event is filled."""
     if not prefixes:
         return ()
     steps = [name for p in prefixes for name in (f"step_{p}", f"{p}_decoder_push", f"{p}_complete")]

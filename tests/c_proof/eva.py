@@ -24,11 +24,11 @@ _ALARM = re.compile(r"\[eva:alarm\] (\S+): Warning: *\n?((?:.+\n)(?:  .+\n)*)")
 
 @dataclass(frozen=True)
 class Report:
-    """What EVA found."""
+    """Findings of EVA."""
 
     alarms: int
     found: tuple[str, ...]
-    """Where each alarm is, and what may go wrong there."""
+    """Place of each alarm, and the fault that is possible there."""
     log: str
 
 

@@ -190,7 +190,7 @@ _DECODING = ("_check", "_load", "_decode")
 
 
 def coverage(protocol: Protocol, fuzzer: Fuzzer) -> tuple[str, str]:
-    """What part of the lines and branches of the decoders the corpus reaches, in percent."""
+    """Share of the decoders' lines and branches that the corpus reaches, in percent."""
     folder = fuzzer.program.parent
     program, raw, merged = folder / "covered", folder / "raw", folder / "merged"
     flags = ["-std=c99", "-O0", "-g", "-fsanitize=fuzzer", "-fprofile-instr-generate"]

@@ -1,4 +1,4 @@
-"""What has to hold of the generated codec of any schema; each function checks one promise."""
+"""Promises of the generated codec of any schema; each function checks one."""
 
 from __future__ import annotations
 

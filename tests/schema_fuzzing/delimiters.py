@@ -57,7 +57,7 @@ class Delimited:
         }
 
     def _step(self, state: int, byte: int, *, begin: bool) -> set[tuple[int, _Own | None]]:
-        """Where a byte leads; at the beginning of a walk, only a place's first byte is its own."""
+        """Next place for a byte; when a walk begins, only a place's first byte is its own."""
         found: set[tuple[int, _Own | None]] = set()
         for reached in self._without_bytes(state):
             found |= self._edges[reached].get(byte, set())

@@ -143,7 +143,7 @@ def _hiding(setting: Setting, name: str) -> Setting:
 
 
 def _kinds(setting: Setting) -> list[str]:
-    """What may be drawn here."""
+    """Kinds of fields that may be drawn here."""
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct"]
@@ -311,7 +311,7 @@ def _switch(draw: st.DrawFn, setting: Setting, selector: Selector) -> Built:
 
 @st.composite
 def _case(draw: st.DrawFn, setting: Setting) -> Built:
-    """What the switch is for one value: fields, none at all, or one plain field."""
+    """Case of the switch for one value: fields, none at all, or one plain field."""
     shape = draw(st.sampled_from(["fields", "none", "plain", "declared"]))
     fitting = [item for item in setting.types if _fits(item, setting)]
     if shape == "declared" and fitting:

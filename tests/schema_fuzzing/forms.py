@@ -36,7 +36,7 @@ def one_in(many: int) -> st.SearchStrategy[bool]:
 
 @st.composite
 def about(draw: st.DrawFn) -> dict[str, Any]:
-    """What people read, mostly nothing."""
+    """Texts that people read, mostly none."""
     if not draw(one_in(6)):
         return {}
     found: dict[str, Any] = {"doc": draw(a_text)}

@@ -80,7 +80,7 @@ class FramePlan:
         return replace(self, parts=tuple(_with_least(part, least, slack) for part in self.parts))
 
     def stretches(self, payload: frozenset[int]) -> Iterator[Stretch]:
-        """What the frame can be on the wire, where the payload holds such bytes."""
+        """Bytes of the frame on the wire, where the payload holds such bytes."""
         own = {*self.opening, *self.closing}
         for index, part in enumerate(self.parts):
             inside = self.region is not None and self.region.first <= index <= self.region.last
@@ -236,7 +236,7 @@ class _Drawing:
         return any(not part.optional for part in (*self._head, *self._tail))
 
     def _is_set_apart(self) -> bool:
-        """Whether, by its range alone, the first part tells where a frame starts."""
+        """True if the first part tells by its range alone where a frame starts."""
         others = [values for part in (*self._head[1:], *self._tail) for values in part.values]
         used = frozenset().union(self._payload, *others)
         marks = self._head[0].values[0]

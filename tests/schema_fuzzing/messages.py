@@ -20,7 +20,7 @@ from schema_fuzzing.setting import Built, Declared, Setting, Size
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What messages are drawn for."""
+    """Setting that messages are drawn for."""
 
     byte_bits: int
     whole_bytes: bool

@@ -198,7 +198,7 @@ def _one_run(draw: st.DrawFn, low: int, high: int) -> Any:
 
 
 def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.SearchStrategy[Any]:
-    """How some values of the integer are written as keys of cases; each value at most once."""
+    """Spellings of some values of the integer as keys of cases; each value at most once."""
     named = {name: _raw_of(entry) for name, entry in data.get("values", {}).items()}
     written: dict[int, Any] = {value: name for name, value in named.items()}
     if not data.get("closed"):

@@ -42,7 +42,7 @@ class PartType:
         return (1 << self.bits) - 1
 
     def bytes_between(self, least: int, greatest: int) -> tuple[frozenset[int], ...]:
-        """What each byte can be: the bounds tell of the most significant one, of others nothing."""
+        """Range of each byte: the bounds tell of the most significant one, of others nothing."""
         shift = self.byte_bits * (self.size - 1)
         top = frozenset(range(least >> shift, (greatest >> shift) + 1))
         rest = (frozenset(range(1 << self.byte_bits)),) * (self.size - 1)

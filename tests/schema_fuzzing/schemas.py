@@ -172,7 +172,7 @@ class _Drawing:
         return self._draw(st.sampled_from([title, {"title": title, "doc": "Some words."}]))
 
     def _extras(self, frames: Mapping[str, FramePlan], found: list[MessagePlan]) -> dict[str, Any]:
-        """What does not change a byte, and the decisions that are referred to."""
+        """Entries that do not change a byte, and the decisions that are referred to."""
         draw = self._draw
         data: dict[str, Any] = {}
         for key in ("title", "doc", "version"):

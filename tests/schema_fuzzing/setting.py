@@ -1,4 +1,4 @@
-"""What a field is drawn in, and what becomes of it.
+"""The setting that a field is drawn in, and the outcome.
 
 Sizes are worked out here independently of the compiler: a drawn schema is valid because of how it
 was made, not because the compiler was asked.
@@ -68,7 +68,7 @@ class Declared:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Where a field stands."""
+    """Place of a field."""
 
     byte_bits: int
     ordered: bool
@@ -78,7 +78,7 @@ class Setting:
     budget: int
     """Bytes that may still be used."""
     room: int | None
-    """What the compiler takes for the room that is left; None where no length part bounds it."""
+    """The room that the compiler takes for left; None where no length part bounds it."""
     delimited: bool
     last: bool
     exact: bool = True

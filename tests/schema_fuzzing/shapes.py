@@ -35,7 +35,7 @@ COMMON = (
     *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
     "end: protected", "end: unprotected", "end: none",
 )  # fmt: skip
-"""What a few hundred schemas hold."""
+"""Shapes that a few hundred schemas hold."""
 
 PAIRS = (
     *(f"start and transparency: {start}, {code}" for start in _STARTS for code in _CODES),
@@ -46,13 +46,13 @@ PAIRS = (
         if (end, code) != ("protected", "escape-none")
     ),
 )
-"""What some thousand schemas hold."""
+"""Shapes that some thousand schemas hold."""
 
 
 def shapes_of(
     data: dict[str, Any], frames: Mapping[str, FramePlan], byte_bits: int
 ) -> Iterator[str]:
-    """What occurs, each thing at least once."""
+    """Shapes that occur, each at least once."""
     yield f"{byte_bits} bits a byte"
     yield "one frame for all" if "" in frames else f"frames of {len(frames)} senders"
     order = data.get("byte_order")

@@ -57,7 +57,7 @@ def parts_of(draw: st.DrawFn, frame: Frame) -> dict[str, int]:
 
 
 def all_parts(frame: Frame, message: Message, given: dict[str, int]) -> dict[str, int]:
-    """What an event shows: identity, counters and values."""
+    """Parts that an event shows: identity, counters and values."""
     identity = dict(zip((part.name for part in frame.identity), message.identity, strict=True))
     shown: dict[str, int] = {}
     for part in frame.parts:
