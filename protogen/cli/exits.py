@@ -59,11 +59,11 @@ def explain(error: Exception) -> int:
     """Say what an error means that ends a command; return the exit code."""
     match error:
         case UserError():
-            return _complain(str(error), error.hint)
+            return complain(str(error), error.hint)
         case BrokenPipeError():
             return _lose_output()
         case OSError():
-            return _complain(_file_trouble(error))
+            return complain(_file_trouble(error))
         case _:
             return report_bug(error)
 
@@ -80,7 +80,8 @@ def report_bug(error: Exception) -> int:
     return BUG
 
 
-def _complain(message: str, hint: str | None = None) -> int:
+def complain(message: str, hint: str | None = None) -> int:
+    """Print a user's mistake to standard error; return the exit code for it."""
     from protogen.cli.console import console
 
     out = console(stderr=True)

@@ -2,37 +2,30 @@
 
 from __future__ import annotations
 
-import io
 import os
-import subprocess
-import tarfile
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import msgspec
 
 from protogen.compiler import Compilation, compile_file
-from protogen.errors import UserError
+from protogen.copying import replace
 from protogen.evolution.lock import LockError, read_lock
-from protogen.problems import SourceMap
+from protogen.evolution.revisions import NoVersionError, Revision, extracted, is_revision
+from protogen.problems import Problem, Problems, SourceMap, Span
+from protogen.project.find import find_project
+from protogen.project.read import read_project
 from protogen.project.schemas import schemas_below
+from protogen.schema.files import SUFFIX
 
 GIT = "git:"
 """Prefix of a version of a file in git: `git:main:schemas/rn1.yaml`."""
 LOCK = "lock:"
 """Prefix of a lock file: `lock:protogen.lock`."""
-_SUFFIXES = (".yaml", ".yml")
-
-
-class NoVersionError(UserError):
-    """A version that can't be had; the message says why."""
-
-
-class _AbsentError(NoVersionError):
-    """A place where no schema is."""
+_PROTOCOL = re.compile(rb"^protocol[ \t]*:[ \t]*(['\"]?)(\w+)\1", re.MULTILINE)
+"""The line that names a schema's protocol."""
 
 
 class Version(msgspec.Struct, frozen=True):
@@ -40,6 +33,29 @@ class Version(msgspec.Struct, frozen=True):
 
     title: str
     compilations: dict[str, Compilation]
+    revision: Revision | None = None
+
+    def elsewhere(self) -> dict[str, str]:
+        """The revision's schemas that are not among these: paths, and the protocols' names.
+
+        A file is a schema by the line that names its protocol; none is compiled here.
+        """
+        if self.revision is None:
+            return {}
+        folder = self.revision.folder
+        known = {Path(item.path) for item in self.compilations.values()}
+        files = [file for file in sorted(folder.rglob(f"*{SUFFIX}")) if file not in known]
+        found = {file: _PROTOCOL.search(file.read_bytes()) for file in files}
+        return {
+            file.relative_to(folder).as_posix(): named[2].decode()
+            for file, named in found.items()
+            if named is not None
+        }
+
+    def compiled(self, path: str) -> Compilation:
+        """Compile a schema that is elsewhere in the revision."""
+        assert self.revision is not None
+        return _one(self.revision.folder / path, self.revision)
 
 
 def names_no_path(given: str) -> bool:
@@ -55,42 +71,39 @@ def opened(given: str, path: Path | None = None, *, may_lack: bool = False) -> I
     there, raises NoVersionError, or with `may_lack` yields a version without schemas.
     """
     with ExitStack() as stack:
-        try:
-            found = _version(given, path, stack)
-        except _AbsentError:
-            if not may_lack:
-                raise
-            found = Version(given, {})
-        yield found
+        if given.startswith(LOCK):
+            yield _locked(Path(given.removeprefix(LOCK)), path, may_lack=may_lack)
+        elif given.startswith(GIT):
+            yield _revised(given, path, stack, may_lack=may_lack)
+        else:
+            yield _compiled(given, Path(given), may_lack=may_lack)
 
 
-def _version(given: str, path: Path | None, stack: ExitStack) -> Version:
-    if given.startswith(LOCK):
-        return _locked(Path(given.removeprefix(LOCK)), path)
-    return _revised(given, path, stack) if given.startswith(GIT) else _compiled(given, Path(given))
-
-
-def _revised(given: str, path: Path | None, stack: ExitStack) -> Version:
-    revision, _, named = given.removeprefix(GIT).partition(":")
+def _revised(given: str, path: Path | None, stack: ExitStack, *, may_lack: bool) -> Version:
+    name, _, named = given.removeprefix(GIT).partition(":")
     if not named and path is None:
         message = f"`{given}` names no file: write `{given}:PATH`"
         raise NoVersionError(message)
     wanted = Path(named) if named else path
     assert wanted is not None
-    folder, inside = stack.enter_context(_extracted(revision, wanted))
-    if named and not (folder / inside).exists() and _is_below(wanted):
+    revision = stack.enter_context(extracted(name, wanted))
+    inside = revision.inside
+    from_top = not wanted.is_absolute() and ".." not in wanted.parts
+    if named and not (revision.folder / inside).exists() and from_top:
         inside = wanted
-    return _compiled(f"{revision}:{inside.as_posix()}", folder / inside)
+    revision.check_no_submodule(revision.top / inside)
+    title = f"{name}:{inside.as_posix()}"
+    return _compiled(title, revision.folder / inside, revision, may_lack=may_lack)
 
 
 @contextmanager
 def opened_project(
     folder: Path, patterns: Sequence[str], given: str | None = None
 ) -> Iterator[Version]:
-    """The schemas that patterns name below a project's folder, as they are now.
+    """The schemas of a project as they are now, by the patterns in its file.
 
-    With `given` as they were: in `git:REV`, in `lock:FILE`, or in another folder. There may be
-    none. Raises NoVersionError.
+    With `given` as they were: in `git:REV`, in `lock:FILE`, or in another folder, each by the
+    patterns in its own project's file if it has one. There may be none. Raises NoVersionError.
     """
     if given is None:
         yield _below(str(folder), folder, patterns)
@@ -99,23 +112,39 @@ def opened_project(
     elif not given.startswith(GIT):
         if not Path(given).is_dir():
             message = f"there is no folder `{given}`, to compare the project's schemas with"
-            raise NoVersionError(message)
-        yield _below(given, Path(given), patterns)
+            raise NoVersionError(message, hint_for_revision(given))
+        yield _below(given, Path(given), _own_patterns(Path(given), given) or patterns)
     else:
-        revision, _, named = given.removeprefix(GIT).partition(":")
-        with _extracted(revision, Path(named) if named else folder) as (whole, inside):
-            yield _below(revision, whole / inside, patterns)
+        name, _, named = given.removeprefix(GIT).partition(":")
+        with extracted(name, Path(named) if named else folder) as revision:
+            place = revision.folder / revision.inside
+            patterns = _own_patterns(place, given) or patterns
+            for pattern in patterns:
+                revision.check_no_submodule(revision.top / revision.inside / pattern)
+            yield _below(name, place, patterns, revision)
 
 
-@contextmanager
-def _extracted(revision: str, wanted: Path) -> Iterator[tuple[Path, Path]]:
-    """A folder with the YAML files of a revision, and where `wanted` is in it."""
-    top = Path(_git("rev-parse", "--show-toplevel", folder=_folder(wanted)).decode().strip())
-    with TemporaryDirectory(prefix="protogen-") as name:
-        folder = Path(name)
-        _extract(revision, top, folder)
-        (folder / ".git").touch()  # What marks a project, whose files extend each other.
-        yield folder, _inside(wanted, top)
+def hint_for_revision(given: str) -> str | None:
+    """What to do where a path is not there that is a revision of git's."""
+    if is_revision(given, Path.cwd()):
+        return f"`{given}` is a revision: write {GIT}{given}"
+    return None
+
+
+def _own_patterns(folder: Path, given: str) -> Sequence[str]:
+    """Patterns of the schemas in a folder's own project file. Raises NoVersionError."""
+    if not folder.is_dir():
+        return ()
+    file = find_project(folder.resolve())
+    if file is None or file.parent.resolve() != folder.resolve():
+        return ()
+    problems = Problems()
+    project = read_project(file, problems, SourceMap())
+    if project is None:
+        words = "; ".join(problem.message for problem in problems)
+        message = f"{file.name} of {given} can't be read: {words}"
+        raise NoVersionError(message)
+    return project.settings.schemas
 
 
 def _locked(lock: Path, path: Path | None, *, may_lack: bool = False) -> Version:
@@ -140,75 +169,45 @@ def _locked(lock: Path, path: Path | None, *, may_lack: bool = False) -> Version
     return Version(str(lock), found)
 
 
-def _compiled(title: str, path: Path) -> Version:
+def _compiled(
+    title: str, path: Path, revision: Revision | None = None, *, may_lack: bool
+) -> Version:
     if path.is_file():
-        return Version(title, {"": compile_file(path)})
-    if not path.is_dir():
-        message = f"there is no `{title}`"
-        raise _AbsentError(message)
-    found = _below(title, path, ["."])
-    if not found.compilations:
-        message = f"the folder `{title}` holds no schema"
-        raise _AbsentError(message)
+        return Version(title, {"": _one(path, revision)}, revision)
+    found = Version(title, {}, revision)
+    if path.is_dir():
+        found = _below(title, path, ["."], revision)
+    if not found.compilations and not may_lack:
+        words = f"there is no `{title}`"
+        if path.is_dir():
+            words = f"the folder `{title}` holds no schema"
+        raise NoVersionError(words, hint_for_revision(title) if revision is None else None)
     return found
 
 
-def _below(title: str, folder: Path, patterns: Sequence[str]) -> Version:
+def _below(
+    title: str, folder: Path, patterns: Sequence[str], revision: Revision | None = None
+) -> Version:
     files = schemas_below(folder, patterns)
     names = {Path(os.path.relpath(file, folder)).as_posix(): file for file in files}
-    return Version(title, {name: compile_file(file) for name, file in names.items()})
+    return Version(title, {name: _one(file, revision) for name, file in names.items()}, revision)
 
 
-def _folder(path: Path) -> Path:
-    """The nearest folder that is there, to ask git in."""
-    here = path.resolve()
-    return next(folder for folder in (here, *here.parents) if folder.is_dir())
+def _one(file: Path, revision: Revision | None) -> Compilation:
+    """Compile a schema; problems of one in a revision name the revision, not where it lies now."""
+    compilation = compile_file(file)
+    if revision is None or compilation.protocol is not None:
+        return compilation
+    sources = SourceMap()
+    for path in compilation.sources.files:
+        sources.add(revision.label(path), compilation.sources.text(path) or "")
+    problems = tuple(_labelled(item, revision) for item in compilation.problems)
+    return Compilation(compilation.path, None, problems, sources)
 
 
-def _inside(path: Path, top: Path) -> Path:
-    """The path below the top of a repository of what is below the working directory."""
-    resolved = path.resolve()
-    if not resolved.is_relative_to(top):
-        message = f"`{path}` is not in the repository `{top}`"
-        raise NoVersionError(message)
-    return resolved.relative_to(top)
+def _labelled(problem: Problem, revision: Revision) -> Problem:
+    def labelled(span: Span | None) -> Span | None:
+        return None if span is None else replace(span, file=revision.label(span.file))
 
-
-def _is_below(path: Path) -> bool:
-    """True if a path may be meant from the top of a repository, as git has them."""
-    return not path.is_absolute() and ".." not in path.parts
-
-
-def _extract(revision: str, top: Path, folder: Path) -> None:
-    """Write every YAML file of a revision: schemas extend each other.
-
-    `HEAD` of a repository without commits holds none.
-    """
-    if revision == "HEAD" and not _git("rev-list", "-n", "1", "--all", folder=top):
-        return
-    listed = _git("ls-tree", "-r", "-z", "--name-only", revision, folder=top).decode().split("\0")
-    names = [name for name in listed if name.endswith(_SUFFIXES)]
-    if not names:
-        return
-    data = _git("archive", "--format=tar", revision, "--", *names, folder=top)
-    with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-        # Python before 3.11.4 has no filters.
-        filters: Any = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
-        archive.extractall(folder, **filters)  # noqa: S202 - git's paths do not lead outside
-
-
-def _git(*arguments: str, folder: Path) -> bytes:
-    try:
-        done = subprocess.run(
-            ["git", *arguments],
-            capture_output=True,
-            check=False,
-            cwd=folder,
-        )
-    except FileNotFoundError:
-        message = "git is not installed"
-        raise NoVersionError(message) from None
-    if done.returncode:
-        message = f"git: {done.stderr.decode(errors='replace').strip()}"
-        raise NoVersionError(message)
-    return done.stdout
+    notes = tuple((labelled(span), words) for span, words in problem.notes)
+    return replace(problem, span=labelled(problem.span), notes=notes)

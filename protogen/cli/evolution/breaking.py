@@ -61,8 +61,10 @@ def breaking(
     stopped = False
     reports = []
     out = console()
-    with compared(versions or (), held, project) as pairs:
-        for pair in pairs:
+    since = held or (versions[0] if versions else LAST_COMMIT)
+    with compared(versions or (), held, project) as schemas:
+        schemas.check_not_empty(since)
+        for pair in schemas.pairs:
             if pair.old is None:
                 continue
             comparison, found = _judged(pair.name, pair.old, pair.new, gate)
@@ -76,8 +78,10 @@ def breaking(
     if format == "json":
         echo_json(reports)
     elif format == "text" and not stopped:
-        since = "" if versions else f" since {held or LAST_COMMIT}"
-        out.print(f"nothing is broken{since}", style="bold")
+        out.print(
+            "nothing is broken" if versions else f"nothing is broken since {since}", style="bold"
+        )
+    typer.echo(schemas.summary, err=format != "text")
     return FINDINGS if stopped else CLEAN
 
 

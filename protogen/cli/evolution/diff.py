@@ -42,8 +42,8 @@ def diff(
     changed = False
     reports = []
     out = console()
-    with compared(versions or (), against, open_project()) as pairs:
-        for name, before, after in pairs:
+    with compared(versions or (), against, open_project()) as schemas:
+        for name, before, after in schemas.pairs:
             if before is None or after is None:
                 changed = True
                 words = "is new" if before is None else "is gone"

@@ -9,15 +9,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
-from protogen.cli.exits import FINDINGS, UsageError
+from protogen.cli.exits import FINDINGS, UsageError, complain
+from protogen.copying import replace
 
 if TYPE_CHECKING:
+    from protogen.compiler import Compilation
     from protogen.evolution.sources import Version
     from protogen.model.protocol import Protocol
     from protogen.project.read import Project
 
 LAST_COMMIT = "git:HEAD"
 """Default version that a project's schemas are compared with."""
+_MOST_NAMES = 3
+"""Schemas of OLD that are named where nothing could be compared."""
 
 
 class Pair(NamedTuple):
@@ -28,19 +32,53 @@ class Pair(NamedTuple):
     new: Protocol | None
 
 
+class Pairs(NamedTuple):
+    """The schemas of a command line, and those of OLD that have no pair because none was meant."""
+
+    pairs: list[Pair]
+    elsewhere: list[str]
+    """Paths of schemas that OLD's revision holds outside of what was given."""
+    is_first: bool
+    """True if OLD is a revision without any schema."""
+
+    @property
+    def summary(self) -> str:
+        """How many schemas are compared, new and gone."""
+        compared = sum(pair.old is not None and pair.new is not None for pair in self.pairs)
+        new = sum(pair.old is None for pair in self.pairs)
+        gone = sum(pair.new is None for pair in self.pairs)
+        schemas = "1 schema" if compared == 1 else f"{compared} schemas"
+        return f"compared {schemas}, {new} new, {gone} gone"
+
+    def check_not_empty(self, since: str) -> None:
+        """Raise UsageError if OLD has none of the schemas, though it is not the first version."""
+        if any(pair.old is not None or self.is_first for pair in self.pairs):
+            return
+        names = ", ".join(self.elsewhere[:_MOST_NAMES])
+        hint = f"it holds {names}: name the one meant as git:REV:PATH" if names else None
+        message = f"nothing was compared: {since} holds none of these schemas"
+        raise UsageError(message, hint or "name a version that holds them")
+
+
 @contextmanager
 def compared(
     versions: Sequence[str], against: str | None, project: Project | None
-) -> Iterator[list[Pair]]:
+) -> Iterator[Pairs]:
     """The versions that a command line means: OLD and NEW, NEW `against` one, or the project's.
 
     Raises UsageError where it means none. With an error in a schema, prints its problems and ends
     the command.
     """
     with ExitStack() as stack:
-        sides = list(_sides(versions, against, project, stack))
+        opened = _sides(versions, against, project, stack)
+        sides = [(_with_moved(before, after), after) for before, after in opened]
+        pairs = [pair for before, after in sides for pair in _paired(before, after)]
         _end_if_broken(sides)
-        yield [pair for before, after in sides for pair in _paired(before, after)]
+        olds = [before for before, _ in sides]
+        elsewhere = [path for old in olds for path in old.elsewhere()]
+        held = any(old.compilations for old in olds)
+        is_first = not (held or elsewhere) and all(old.revision is not None for old in olds)
+        yield Pairs(pairs, elsewhere, is_first)
 
 
 def _sides(
@@ -80,11 +118,21 @@ def _end_if_broken(sides: Sequence[tuple[Version, Version]]) -> None:
     """Print the problems of schemas with errors, if there are any, and end the command."""
     from protogen.cli.schemas import print_problems
 
-    compilations = (item for pair in sides for side in pair for item in side.compilations.values())
-    broken = [item for item in compilations if item.protocol is None]
-    if broken:
-        print_problems(broken)
+    before, after = ([pair[side] for pair in sides] for side in (0, 1))
+    broken = [_broken(versions) for versions in (before, after)]
+    print_problems([*broken[0], *broken[1]])
+    if broken[0]:
+        titles = ", ".join(dict.fromkeys(version.title for version in before))
+        message = f"OLD ({titles}) has errors, so nothing can be compared with it"
+        hint = "hold NEW against a version that compiles, or against a lock: --against-lock FILE"
+        complain(message, hint)
+    if any(broken):
         raise typer.Exit(FINDINGS)
+
+
+def _broken(versions: Sequence[Version]) -> list[Compilation]:
+    compilations = (item for version in versions for item in version.compilations.values())
+    return [item for item in compilations if item.protocol is None]
 
 
 def _paired(before: Version, after: Version) -> Iterator[Pair]:
@@ -98,3 +146,25 @@ def _paired(before: Version, after: Version) -> Iterator[Pair]:
         yield Pair(there or after.title, protocol, new.pop(there, None))
     for name, protocol in new.items():
         yield Pair(name or after.title, None, protocol)
+
+
+def _with_moved(before: Version, after: Version) -> Version:
+    """OLD with the schemas of its revision that were moved to where NEW has one that it lacks.
+
+    They have the protocol's name, and their old place is empty now.
+    """
+    if before.revision is None:
+        return before
+    now = before.revision.top if after.revision is None else after.revision.folder
+    gone = [(path, name) for path, name in before.elsewhere().items() if not (now / path).exists()]
+    names = {item.protocol.name for item in before.compilations.values() if item.protocol}
+    found = dict(before.compilations)
+    for place, item in after.compilations.items():
+        if place in before.compilations or item.protocol is None or item.protocol.name in names:
+            continue
+        paths = [path for path, name in gone if name == item.protocol.name]
+        if len(paths) == 1:
+            found[place] = before.compiled(paths[0])
+        elif after.revision is None:
+            before.revision.check_no_submodule(Path(item.path))
+    return replace(before, compilations=found)

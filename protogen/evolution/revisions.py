@@ -1,0 +1,137 @@
+"""Revisions in git: a folder with the schemas of one, and why one can't be had."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import tarfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import msgspec
+
+from protogen.errors import UserError
+from protogen.project.find import OWN_FILE, SHARED_FILE
+
+_SUFFIXES = (".yaml", ".yml")
+_GITLINK = "160000"
+"""Mode of a submodule in a tree: git keeps its commit there, and none of its files."""
+
+
+class NoVersionError(UserError):
+    """A version that can't be had; the message says why."""
+
+
+class Revision(msgspec.Struct, frozen=True):
+    """A revision's schemas and project files, extracted to a folder."""
+
+    name: str
+    top: Path
+    """The repository."""
+    folder: Path
+    inside: Path
+    """Path in the folder of what was asked for."""
+    submodules: tuple[str, ...]
+
+    def label(self, file: str) -> str:
+        """The name of an extracted file in messages: `main:schemas/rover.yaml`."""
+        path = Path(file)
+        within = path.relative_to(self.folder) if path.is_relative_to(self.folder) else path
+        return f"{self.name}:{within.as_posix()}"
+
+    def check_no_submodule(self, path: Path) -> None:
+        """Raise NoVersionError if a path in the working tree is in a submodule."""
+        inside = _inside(path, self.top)
+        for name in self.submodules:
+            if inside.is_relative_to(name):
+                message = f"`{name}` is a submodule: {self.name} keeps its commit, not its files"
+                hint = f"compare inside of it, in the folder {name}, with a revision of its own"
+                raise NoVersionError(message, hint)
+
+
+@contextmanager
+def extracted(name: str, wanted: Path) -> Iterator[Revision]:
+    """A revision of the repository that a path is in. Raises NoVersionError."""
+    top = Path(_git("rev-parse", "--show-toplevel", folder=_folder(wanted)).decode().strip())
+    inside = _inside(wanted, top)
+    with TemporaryDirectory(prefix="protogen-") as temporary:
+        folder = Path(temporary)
+        submodules = _extract(name, top, folder)
+        (folder / ".git").touch()  # What marks a project, whose files extend each other.
+        yield Revision(name, top, folder, inside, submodules)
+
+
+def is_revision(name: str, folder: Path) -> bool:
+    """True if git knows a revision by this name in a folder."""
+    done = _run("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}", folder=folder)
+    return done.returncode == 0
+
+
+def _folder(path: Path) -> Path:
+    """The nearest folder that is there, to ask git in."""
+    here = path.resolve()
+    return next(folder for folder in (here, *here.parents) if folder.is_dir())
+
+
+def _inside(path: Path, top: Path) -> Path:
+    """The path below the top of a repository of what is below the working directory."""
+    resolved = path.resolve()
+    if not resolved.is_relative_to(top):
+        message = f"`{path}` is not in the repository `{top}`"
+        raise NoVersionError(message)
+    return resolved.relative_to(top)
+
+
+def _extract(revision: str, top: Path, folder: Path) -> tuple[str, ...]:
+    """Write every YAML file of a revision, as schemas extend each other, and project files.
+
+    Returns the submodules. `HEAD` of a repository without commits holds nothing.
+    """
+    if revision == "HEAD" and not _git("rev-list", "-n", "1", "--all", folder=top):
+        return ()
+    if not is_revision(revision, top):
+        raise _missing(revision, top)
+    listed = _git("ls-tree", "-r", "-z", revision, folder=top).decode().split("\0")
+    entries = [entry.partition("\t") for entry in listed if entry]
+    names = [name for _, _, name in entries if _is_wanted(name)]
+    if names:
+        data = _git("archive", "--format=tar", revision, "--", *names, folder=top)
+        with tarfile.open(fileobj=io.BytesIO(data)) as archive:
+            # Python before 3.11.4 has no filters.
+            filters: Any = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+            archive.extractall(folder, **filters)  # noqa: S202 - git's paths do not lead outside
+    return tuple(name for mode, _, name in entries if mode.startswith(_GITLINK))
+
+
+def _is_wanted(name: str) -> bool:
+    return name.endswith(_SUFFIXES) or PurePosixPath(name).name in (OWN_FILE, SHARED_FILE)
+
+
+def _missing(revision: str, top: Path) -> NoVersionError:
+    """The error for a revision that git does not know here, with the command that gets it."""
+    remote, slash, branch = revision.partition("/")
+    remotes = _git("remote", folder=top).decode().split()
+    fetch = f"git fetch {remote} {branch}" if slash and remote in remotes else "git fetch --all"
+    if _git("rev-parse", "--is-shallow-repository", folder=top).strip() == b"true":
+        hint = f"this clone is shallow: `{fetch} --unshallow`, or clone with the whole history"
+        return NoVersionError(f"git has no revision `{revision}` here", hint)
+    return NoVersionError(f"git has no revision `{revision}` here", f"`{fetch}` gets new ones")
+
+
+def _git(*arguments: str, folder: Path) -> bytes:
+    done = _run(*arguments, folder=folder)
+    if done.returncode:
+        message = f"git: {done.stderr.decode(errors='replace').strip()}"
+        raise NoVersionError(message)
+    return done.stdout
+
+
+def _run(*arguments: str, folder: Path) -> subprocess.CompletedProcess[bytes]:
+    try:
+        return subprocess.run(["git", *arguments], capture_output=True, check=False, cwd=folder)
+    except FileNotFoundError:
+        message = "git is not installed"
+        raise NoVersionError(message) from None
