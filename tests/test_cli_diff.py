@@ -646,7 +646,7 @@ messages:
         (
             "protocol: demo\n",
             "protocol: demo\n\nlink: {baud: 1200}\n",
-            "link",
+            "link-stated",
             "",
         ),
         (

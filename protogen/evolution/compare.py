@@ -10,7 +10,10 @@ from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_fields import FieldComparison
 from protogen.evolution.compare_frames import compare_frames
+from protogen.evolution.compare_reserved import compare_reserved
 from protogen.evolution.rules import BY_NAME, Category
+from protogen.evolution.shapes import shape
+from protogen.model.frame_plan import EndRule, FramePlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Link, Protocol, Sender
 
@@ -48,8 +51,8 @@ def _changes(
             yield Change(
                 rule="endpoint-renamed", place=f"endpoint {before}", text=named(before, after)
             )
-    if _line(old.link) != _line(new.link):
-        yield Change(rule="link", place="link", text=named(_line(old.link), _line(new.link)))
+    yield from _link(old.link, new.link)
+    yield from compare_reserved(old, new, endpoints, messages)
     for sender in old.senders:
         other = _sender(new, endpoints.get(sender.name, sender.name))
         if other is not None:
@@ -84,6 +87,34 @@ def _messages(
         if message.name not in known:
             text = f"{', '.join(message.senders)} sends it, {_identity(message)}"
             yield _change("message-added", message, text)
+            yield from _unskippable(message, old, new, endpoints)
+
+
+def _unskippable(
+    message: Message, old: Protocol, new: Protocol, endpoints: dict[str, str]
+) -> Iterator[Change]:
+    """A message whose frames an old receiver can't pass over: it would look for frames inside."""
+    for sender in old.senders:
+        name = endpoints.get(sender.name, sender.name)
+        is_known = any(item.identity == message.identity for item in sender.messages)
+        if name not in message.senders or is_known:
+            continue
+        words = _obstacle(message, sender.plan, new.sender(name).plan)
+        if words:
+            found = _change("message-unskippable", message, f"{sender.name}: {words}")
+            yield replace(found, sender=sender.name)
+
+
+def _obstacle(message: Message, old: FramePlan, new: FramePlan) -> str:
+    """Reason why OLD can't pass over frames of a message; empty if it can."""
+    if old.end_bytes or old.start_is_unique or not old.identity:
+        return ""  # It goes on at the next delimiter, or has no other messages.
+    if old.end_rule is EndRule.IDENTITY:
+        return "an unknown identity tells no size"
+    greatest = new.room(message.sizes.greatest)
+    if greatest > old.greatest or not old.payload.holds(message.sizes):
+        return f"frames of up to {greatest} bytes, and old receivers take {old.greatest} at most"
+    return ""
 
 
 def _senders(
@@ -179,13 +210,23 @@ def _paired_endpoints(old: Protocol, new: Protocol) -> dict[str, str]:
 
 
 def _paired_messages(old: Protocol, new: Protocol, endpoints: dict[str, str]) -> dict[str, str]:
-    """Messages with the same name; else with the same senders, identity and layout."""
+    """Messages as `renamed_from` says, or of the same name; else those that are alike.
+
+    These have the same senders, identity, layout and names of fields. Where names of fields are
+    others, too, nothing says that the message means what it did.
+    """
     after = {message.name for message in new.messages}
     before = {message.name for message in old.messages}
-    pairs = {name: name for name in before & after}
-    fresh = [message for message in new.messages if message.name not in before]
+    said = {
+        message.renamed_from: message.name
+        for message in new.messages
+        if message.renamed_from is not None and message.renamed_from in before
+    }
+    taken = set(said.values())
+    pairs = {name: name for name in (before & after) - said.keys() - taken} | said
+    fresh = [m for m in new.messages if m.name not in before and m.name not in taken]
     for message in old.messages:
-        if message.name in after:
+        if message.name in after or message.name in said:
             continue
         senders = {endpoints.get(item, item) for item in message.senders}
         for other in fresh:
@@ -198,15 +239,37 @@ def _paired_messages(old: Protocol, new: Protocol, endpoints: dict[str, str]) ->
 
 
 def _layout(message: Message) -> list[object]:
-    return [(field.type, field.position) for field in message.fields]
+    return [(field.name, shape(field.type), field.position) for field in message.fields]
 
 
 def _sender(protocol: Protocol, name: str) -> Sender | None:
     return next((item for item in protocol.senders if item.name == name), None)
 
 
+def _link(old: Link, new: Link) -> Iterator[Change]:
+    """Changes of the line: bits that are sent another way, and the pause that ends a frame."""
+    rates = old.baud, new.baud
+    is_wire = None not in rates and rates[0] != rates[1]
+    if is_wire or _character(old) != _character(new):
+        yield Change(rule="link", place="link", text=named(_line(old), _line(new)))
+    elif rates[0] != rates[1]:
+        yield Change(rule="link-stated", place="link", text=named(_line(old), _line(new)))
+    if old.idle_timeout != new.idle_timeout:
+        words = named(_pause(old), _pause(new))
+        yield Change(rule="link-timeout", place="link.idle_timeout", text=words)
+
+
+def _character(link: Link) -> tuple[int, str, int]:
+    return link.data_bits, link.parity, link.stop_bits
+
+
 def _line(link: Link) -> str:
-    return f"{link.baud} baud {link.data_bits}{link.parity[0].upper()}{link.stop_bits}"
+    rate = "any rate" if link.baud is None else f"{link.baud} baud"
+    return f"{rate} {link.data_bits}{link.parity[0].upper()}{link.stop_bits}"
+
+
+def _pause(link: Link) -> str:
+    return "none" if link.idle_timeout is None else f"{float(link.idle_timeout * 1000):g} ms"
 
 
 # --- the whole ------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 import msgspec
@@ -11,6 +11,7 @@ from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of
+from protogen.evolution.shapes import are_alike, shape
 from protogen.model.reading.readings import decimal
 from protogen.model.types import Field
 
@@ -32,24 +33,28 @@ class FieldComparison(msgspec.Struct, frozen=True):
         self, old: Sequence[Field], new: Sequence[Field], prefix: str = ""
     ) -> Iterator[Change]:
         """Yield what changed; `prefix` is the path of the struct that the fields are in."""
-        renamed = dict(_renamed(old, new))
+        renamed, unclear = renames(old, new)
         after = {field.name: field for field in new}
         kept = {renamed.get(field.name, field.name) for field in old} & after.keys()
         places = {field.name: _place(new, index, kept) for index, field in enumerate(new)}
         for index, field in enumerate(old):
             path = _joined(prefix, field.name)
-            other = after.get(renamed.get(field.name, field.name))
+            name = renamed.get(field.name, field.name)
+            taken = field.name not in renamed and name in renamed.values()
+            other = None if taken else after.get(name)
             if other is None:
                 yield self._change("field-deleted", path, _described(field))
                 continue
-            if other.name != field.name:
+            if field.name in unclear:
+                yield self._change("field-reused", path, named(field.name, other.name))
+            elif other.name != field.name:
                 change = self._change("field-renamed", path, named(field.name, other.name))
                 yield replace(change, now=_joined(prefix, other.name))
             words = _moved(_place(old, index, kept, renamed), places[other.name])
             if words:
                 yield self._change("field-moved", path, words)
-            yield from self._field(field, other, path)
-        known = {field.name for field in old} | set(renamed.values())
+            yield from self._field(field, other, path, renamed)
+        known = ({field.name for field in old} - renamed.keys()) | set(renamed.values())
         for field in new:
             if field.name not in known:
                 yield self._change("field-added", _joined(prefix, field.name), _described(field))
@@ -58,15 +63,17 @@ class FieldComparison(msgspec.Struct, frozen=True):
         place = f"{self.message}.{path}"
         return Change(rule=rule, place=place, text=text, message=self.message, path=path)
 
-    def _field(self, old: Field, new: Field, path: str) -> Iterator[Change]:
-        types = TypeComparison(self._change, self.compare)
+    def _field(
+        self, old: Field, new: Field, path: str, renamed: Mapping[str, str]
+    ) -> Iterator[Change]:
+        types = TypeComparison(self._change, self.compare, renamed)
         yield from types.compare(old.type, new.type, path)
         if old.const != new.const:
             yield self._change("field-constant", path, named(_shown(old.const), _shown(new.const)))
         if old.default != new.default:
             words = named(_shown(old.default), _shown(new.default))
             yield self._change("field-default", path, words)
-        if old.type == new.type or old.ranged or new.ranged:
+        if shape(old.type) == shape(new.type) or old.ranged or new.ranged:
             yield from self._range(old, new, path)
         yield from self._quantity(old, new, path)
         yield from self._special(old, new, path)
@@ -111,16 +118,34 @@ def _above(one: Fraction | None, other: Fraction | None, *, up: bool = False) ->
     return one is not None and (other is None or one > other)
 
 
-def _renamed(old: Sequence[Field], new: Sequence[Field]) -> Iterator[tuple[str, str]]:
-    """Fields that are the same but for their names."""
+def renames(old: Sequence[Field], new: Sequence[Field]) -> tuple[dict[str, str], set[str]]:
+    """Fields with their new names: as `renamed_from` says, else those at the same place.
+
+    The second are those of OLD that may have been swapped: several of one type have other names
+    that do not tell which is which.
+    """
     before = {field.name for field in old}
     after = {field.name for field in new}
-    gone = [(index, field) for index, field in enumerate(old) if field.name not in after]
-    fresh = {index: field for index, field in enumerate(new) if field.name not in before}
-    for index, field in gone:
+    said = {
+        field.renamed_from: field.name
+        for field in new
+        if field.renamed_from in before and field.renamed_from is not None
+    }
+    fresh = {
+        index: field
+        for index, field in enumerate(new)
+        if field.name not in before and field.name not in said.values()
+    }
+    found: dict[Hashable, list[tuple[str, str]]] = {}
+    for index, field in enumerate(old):
         other = fresh.get(index)
-        if other and (field.type, field.position) == (other.type, other.position):
-            yield field.name, other.name
+        if other is None or field.name in after or field.name in said:
+            continue
+        if (shape(field.type), field.position) == (shape(other.type), other.position):
+            found.setdefault(shape(field.type), []).append((field.name, other.name))
+    pairs = {one: other for group in found.values() for one, other in group}
+    unclear = {one for group in found.values() if not are_alike(group) for one, _ in group}
+    return pairs | said, unclear
 
 
 def _place(

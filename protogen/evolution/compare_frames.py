@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, named
+from protogen.evolution.shapes import are_crossed, encoding_shape
+from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     ChecksumPart,
     CounterPart,
@@ -49,6 +51,7 @@ class _Frames:
 
     def compare(self, old: Frame, new: Frame) -> Iterator[Change]:
         renamed = _renamed(old, new)
+        crossed = renamed if are_crossed(tuple(renamed.items())) else {}
         before = [renamed.get(part.name, part.name) for part in old.parts]
         after = [part.name for part in new.parts]
         kept = [name for name in before if name in after]
@@ -58,7 +61,9 @@ class _Frames:
             if name not in by_name:
                 yield self._change("frame-part-deleted", part.name, _kind(part))
                 continue
-            if name != part.name:
+            if part.name in crossed:
+                yield self._change("frame-part-moved", part.name, f"{part.name} became {name}")
+            elif name != part.name:
                 change = self._change("frame-part-renamed", part.name, named(part.name, name))
                 yield replace(change, old_part=part.name, new_part=name)
             if kept.index(name) != order.index(name):
@@ -72,6 +77,10 @@ class _Frames:
 
     def _part(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
         if type(old) is not type(new):
+            roles = CounterPart | ValuePart
+            if isinstance(old, roles) and isinstance(new, roles) and _is_alike(old, new):
+                yield self._change("frame-part-role", old.name, named(_kind(old), _kind(new)))
+                return
             yield self._change("frame-part-kind", old.name, named(_kind(old), _kind(new)))
             return
         if isinstance(old, LiteralPart) and isinstance(new, LiteralPart):
@@ -113,7 +122,7 @@ class _Frames:
     def _checksum(
         self, old: ChecksumPart, new: ChecksumPart, renamed: dict[str, str]
     ) -> Iterator[Change]:
-        if (old.algorithm, _layout(old.type)) != (new.algorithm, _layout(new.type)):
+        if (_sum(old.algorithm), _layout(old.type)) != (_sum(new.algorithm), _layout(new.type)):
             before = f"{old.algorithm.name} in {old.type.label}"
             after = f"{new.algorithm.name} in {new.type.label}"
             yield self._change("frame-checksum-algorithm", old.name, named(before, after))
@@ -156,6 +165,12 @@ def _fits(sender: Sender, receiver: Sender) -> bool:
     return taken is None or all(taken.holds(item) for item in sizes)
 
 
+def _is_alike(old: NumberPart, new: NumberPart) -> bool:
+    """True if receivers take the same numbers from the same bytes."""
+    numbers = [(_layout(part.type), part.least, part.greatest) for part in (old, new)]
+    return numbers[0] == numbers[1]
+
+
 def _default(part: Part) -> int | None:
     return part.default if isinstance(part, CounterPart | ValuePart) else None
 
@@ -163,6 +178,11 @@ def _default(part: Part) -> int | None:
 def _layout(type: PartType) -> tuple[object, ...]:
     """Layout of its bytes; how the number is shown does not count."""
     return type.bits, type.signed, type.byte_bits, type.byte_order
+
+
+def _sum(algorithm: ChecksumSpec) -> object:
+    """The algorithm by its parameters; its name does not count."""
+    return replace(algorithm, name=""), algorithm.modulus
 
 
 def _kind(part: Part) -> str:
@@ -185,7 +205,8 @@ def _coverage(part: ChecksumPart) -> str:
 def _essence(item: Transparency | None, renamed: dict[str, str]) -> object:
     if item is None:
         return None
-    return renamed.get(item.first, item.first), renamed.get(item.last, item.last), item.encoding
+    first, last = (renamed.get(name, name) for name in (item.first, item.last))
+    return first, last, encoding_shape(item.encoding)
 
 
 def _stuffing(item: Transparency | None) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, Mark, named
+from protogen.evolution.shapes import are_crossed
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.types import (
     Array,
@@ -34,9 +35,11 @@ CompareFields = Callable[["Sequence[Field]", "Sequence[Field]", str], Iterator[C
 class TypeComparison:
     """Compares the types of one field."""
 
-    def __init__(self, report: Report, fields: CompareFields) -> None:
+    def __init__(self, report: Report, fields: CompareFields, renamed: Mapping[str, str]) -> None:
         self._report = report
         self._fields = fields
+        self._renamed = renamed
+        """New names of the fields beside this one, which count and select."""
 
     def compare(self, old: Type, new: Type, path: str) -> Iterator[Change]:
         """Yield what changed between two types."""
@@ -95,13 +98,15 @@ class TypeComparison:
             yield self._report("field-encoding", path, named(old.label, new.label))
 
     def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
+        if isinstance(old, Counted):
+            old = replace(old, field=self._renamed.get(old.field, old.field))
         if old == new:
             return
         words = named(_amount(old), _amount(new))
         yield self._report("field-count", path, words)
 
     def _switches(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
-        if old.selector != new.selector:
+        if self._renamed.get(old.selector, old.selector) != new.selector:
             words = named(f"the cases of {old.selector}", f"those of {new.selector}")
             yield self._report("field-cases", path, words)
         before = {case.value: case for case in old.cases}
@@ -144,6 +149,12 @@ class TypeComparison:
         after: dict[str, NamedBit] = {} if new is None else {bit.name: bit for bit in new.bits}
         numbers = {bit.bit: bit.name for bit in after.values()}
         taken = {bit.bit for bit in before.values()}
+        renamed = [
+            (name, numbers[bit.bit])
+            for name, bit in before.items()
+            if name not in after and bit.bit in numbers and numbers[bit.bit] not in before
+        ]
+        rename = "flag-moved" if are_crossed(renamed) else "flag-renamed"
         for name, bit in before.items():
             mark = _flag(bit.bit)
             if name in after:
@@ -154,7 +165,7 @@ class TypeComparison:
                     yield replace(found, names=(name, name), marks=marks)
             elif bit.bit in numbers and numbers[bit.bit] not in before:
                 words = f"bit {bit.bit} {named(name, numbers[bit.bit])}"
-                found = self._report("flag-renamed", path, words)
+                found = self._report(rename, path, words)
                 yield replace(found, names=(name, numbers[bit.bit]), marks=(mark, mark))
             else:
                 found = self._report("flag-deleted", path, f"{name}, bit {bit.bit}")
@@ -168,11 +179,18 @@ class TypeComparison:
     def _bits(
         self, old: Sequence[BitField], new: Sequence[BitField], path: str
     ) -> Iterator[Change]:
-        before, after = _runs(old), _runs(new)
-        if before != after:
-            yield self._report("bits", path, named(before or "none", after or "none"))
+        old, new = (sorted(runs, key=lambda run: run.low) for runs in (old, new))
+        words = named(_runs(old) or "none", _runs(new) or "none")
+        pairs = list(zip(old, new, strict=False))
+        renamed = [(one.name, other.name) for one, other in pairs if one.name != other.name]
+        names = {run.name for run in old}
+        is_moved = [(run.low, run.high) for run in old] != [(run.low, run.high) for run in new]
+        if is_moved or are_crossed(renamed) or any(after in names for _, after in renamed):
+            yield self._report("bits", path, words)
             return
-        for one, other in zip(old, new, strict=True):
+        if renamed:
+            yield self._report("bits-renamed", path, words)
+        for one, other in pairs:
             for change in self._enums(self._run_report(one), one.enum, other.enum, path):
                 yield replace(
                     change, marks=(_inside(change.marks[0], one), _inside(change.marks[1], one))
@@ -197,6 +215,12 @@ def named_values(
 ) -> Iterator[Change]:
     """Changes between the names of a number's values."""
     names = {value: name for name, value in new.items()}
+    renamed = [
+        (name, names[value])
+        for name, value in old.items()
+        if name not in new and value in names and names[value] not in old
+    ]
+    rename = "enum-value" if are_crossed(renamed) else "enum-value-renamed"
     for name, value in old.items():
         mark = Mark(-1, value)
         if name in new:
@@ -205,7 +229,7 @@ def named_values(
                 found = report("enum-value", path, words)
                 yield replace(found, names=(name, name), marks=(mark, Mark(-1, new[name])))
         elif value in names and names[value] not in old:
-            found = report("enum-value-renamed", path, f"{value} {named(name, names[value])}")
+            found = report(rename, path, f"{value} {named(name, names[value])}")
             yield replace(found, names=(name, names[value]), marks=(mark, mark))
         else:
             found = report("enum-value-deleted", path, f"{name}, {value}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from enum import StrEnum
 from fnmatch import fnmatchcase
 
 import msgspec
@@ -22,20 +23,37 @@ _MOST_MESSAGES = 3
 """Messages of a protocol that is gone that are named."""
 
 
+class Verdict(StrEnum):
+    """Ground of a finding's category."""
+
+    PROVED = "proved"
+    """A frame shows it, or it follows from the schemas alone."""
+    BOUNDED = "bounded"
+    """No frame shows it with each value at each of its bounds, which proves no safety."""
+    SEARCHED = "searched"
+    """No frame shows it among samples, which proves no safety."""
+
+
 class Finding(msgspec.Struct, frozen=True):
     """A change and its consequences."""
 
     change: Change
     rule: Rule
-    category: Category
-    """The rule's; SOURCE where no frame that an encoder makes shows the change."""
+    verdict: Verdict
     witnesses: tuple[Witness, ...] = ()
+
+    @property
+    def category(self) -> Category:
+        """The rule's: that no frame was found that shows a change does not make it harmless."""
+        return self.rule.category
 
     @property
     def affected(self) -> str:
         """Sides that are affected."""
         if self.category is Category.NONE:
             return "nobody"
+        if self.category in SHOWN_BY_FRAMES and not self.witnesses:
+            return "both" if self.verdict is Verdict.PROVED else "unknown"
         old_sends = any(item.old_sends for item in self.witnesses)
         new_sends = any(not item.old_sends for item in self.witnesses)
         if old_sends and new_sends:
@@ -49,6 +67,8 @@ class Finding(msgspec.Struct, frozen=True):
         """Harm that is done, the worst first."""
         if self.category is Category.NONE:
             return "nothing"
+        if self.category in SHOWN_BY_FRAMES and not self.witnesses:
+            return "misread" if self.verdict is Verdict.PROVED else "not shown"
         order = ["misread", "rejected", "lost"]
         found = sorted({item.harm.value for item in self.witnesses}, key=order.index)
         return ", ".join(found) or "recompile"
@@ -84,7 +104,8 @@ def findings(
 ) -> tuple[Comparison, list[Finding]]:
     """Compare two versions; the worst comes first.
 
-    With a gate, only what it stops. Findings of the categories WIRE and VALUE have a witness.
+    With a gate, only what it stops. Findings of the categories WIRE and VALUE have a witness, or a
+    verdict that says that none was found.
     """
     comparison = compare(old, new)
     witnesses = Witnesses(comparison)
@@ -112,10 +133,13 @@ def gone(old: Protocol, place: str, gate: Gate | None = None) -> tuple[Compariso
 
 def _finding(change: Change, witnesses: Witnesses) -> Finding:
     rule = BY_NAME[change.rule]
-    if rule.category not in SHOWN_BY_FRAMES:
-        return Finding(change, rule, rule.category)
+    if rule.category not in SHOWN_BY_FRAMES or not rule.by_frame:
+        return Finding(change, rule, Verdict.PROVED)
     found = tuple(witnesses.of(change))
-    return Finding(change, rule, rule.category if found else Category.SOURCE, found)
+    if found:
+        return Finding(change, rule, Verdict.PROVED, found)
+    is_bounded = witnesses.tries_all_bounds(change)
+    return Finding(change, rule, Verdict.BOUNDED if is_bounded else Verdict.SEARCHED)
 
 
 def worst(found: Iterable[Finding]) -> Category:

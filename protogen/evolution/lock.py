@@ -47,6 +47,7 @@ _LEFT_OUT: Mapping[str, Any] = {
     "exchanges": (),
     "decisions": (),
     "plan": None,
+    "renamed_from": None,
 }
 """Keys of text for readers and of derived facts, with what stands for them in a lock."""
 _MODULES = (

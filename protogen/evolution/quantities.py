@@ -7,13 +7,34 @@ from typing import NamedTuple
 
 from protogen.model.types import Field
 
-_BASES = frozenset(["m", "s", "g", "V", "A", "W", "J", "N", "Pa", "Hz", "Ohm", "F", "T", "rad"])
+_BASES = frozenset(
+    ["m", "s", "g", "V", "A", "W", "J", "N", "Pa", "Hz", "Ohm", "Ω", "F", "H", "T", "C", "S", "K"]
+) | {"L", "l", "rad", "deg", "bar", "eV", "Wh", "Ah", "VA", "lm", "lx", "bit", "Bd"}
+"""Units that take prefixes."""
+_OTHERS = {
+    "min": (Fraction(60), "s"),
+    "h": (Fraction(3600), "s"),
+    "d": (Fraction(86400), "s"),
+    "t": (Fraction(10**6), "g"),
+    "l": (Fraction(1), "L"),
+    "Ω": (Fraction(1), "Ohm"),
+    "ohm": (Fraction(1), "Ohm"),
+    "%": (Fraction(1, 100), ""),
+    "percent": (Fraction(1, 100), ""),
+    "°": (Fraction(1), "deg"),
+    "degrees": (Fraction(1), "deg"),
+    "inch": (Fraction(254, 10**4), "m"),
+    "ft": (Fraction(3048, 10**4), "m"),
+}
+"""Units that are a multiple of another one."""
 _PREFIXES = {
+    "T": Fraction(10**12),
     "G": Fraction(10**9),
     "M": Fraction(10**6),
     "k": Fraction(10**3),
     "d": Fraction(1, 10),
     "c": Fraction(1, 100),
+    "h": Fraction(100),
     "m": Fraction(1, 10**3),
     "u": Fraction(1, 10**6),
     "µ": Fraction(1, 10**6),
@@ -45,8 +66,20 @@ def quantity(field: Field, raw: int | float) -> tuple[Fraction, str] | None:
 
 
 def _without_prefix(unit: str) -> tuple[Fraction, str]:
-    first, slash, rest = unit.partition("/")
-    factor = _PREFIXES.get(first[:1])
-    if first in _BASES or factor is None or first[1:] not in _BASES:
+    """The unit in units without prefixes, and the factor that leads there."""
+    first, *below = unit.split("/")
+    factor, words = _simple(first)
+    for item in below:
+        divisor, name = _simple(item)
+        factor, words = factor / divisor, f"{words}/{name}"
+    return factor, words
+
+
+def _simple(unit: str) -> tuple[Fraction, str]:
+    if unit in _OTHERS:
+        return _OTHERS[unit]
+    factor = _PREFIXES.get(unit[:1])
+    if unit in _BASES or factor is None or unit[1:] not in _BASES:
         return Fraction(1), unit
-    return factor, f"{first[1:]}{slash}{rest}"
+    other, name = _OTHERS.get(unit[1:], (Fraction(1), unit[1:]))
+    return factor * other, name

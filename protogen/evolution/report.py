@@ -67,6 +67,7 @@ def _finding(comparison: Comparison, item: Finding) -> dict[str, Any]:
     return {
         "rule": item.rule.name,
         "category": item.category.value,
+        "verdict": item.verdict.value,
         "place": change.place,
         "places": list(change.places),
         "lines": {side: None if s is None else s.line for side, s in places.items()},

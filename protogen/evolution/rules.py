@@ -29,6 +29,8 @@ class Rule(msgspec.Struct, frozen=True):
     """Short description of the change."""
     fix: str
     """Advice: what to do instead, or besides."""
+    by_frame: bool = True
+    """False if no frame can show the change: it is about the line, or about earlier versions."""
 
 
 _W, _V, _S, _N = Category.WIRE, Category.VALUE, Category.SOURCE, Category.NONE
@@ -44,6 +46,7 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-part-deleted", _W, "the frame has one part less", _TOGETHER),
     Rule("frame-part-moved", _W, "a part of the frame stands elsewhere", _TOGETHER),
     Rule("frame-part-kind", _W, "a part of the frame has another job", _TOGETHER),
+    Rule("frame-part-role", _S, "senders choose a part's value another way", "check the senders"),
     Rule("frame-part-type", _W, "a number of the frame is encoded another way", _TOGETHER),
     Rule("frame-part-renamed", _S, "a part of the frame has another name", _RENAME),
     Rule(
@@ -59,11 +62,19 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
     # messages
     Rule("message-added", _N, "a message is new", "old receivers report it as unknown"),
+    Rule("message-unskippable", _W, "old receivers can't skip a new message", _TOGETHER),
     Rule("message-deleted", _W, "a message is gone", "reserve its identity"),
     Rule("message-reserved", _N, "a message is gone and its identity reserved", "nothing"),
     Rule("message-renamed", _S, "a message has another name", _RENAME),
     Rule("message-identity", _W, "a message has another identity", _NEW_ID),
-    Rule("identity-reused", _W, "an identity means another message now", _NEW_ID),
+    Rule(
+        "identity-reused",
+        _W,
+        "an identity means another message now",
+        f"{_NEW_ID}; if only names changed, say `renamed_from`",
+    ),
+    Rule("reserved-deleted", _W, "what was reserved may be used again", "keep it", by_frame=False),
+    Rule("reserved-reused", _W, "what was reserved is used again", _NEW_ID, by_frame=False),
     Rule("message-sender-added", _S, "others send the message, too", "check who listens"),
     Rule("message-sender-deleted", _W, "a sender of the message is gone", "reserve its identity"),
     Rule("message-overload", _V, "messages that share an identity are told apart otherwise", _BOTH),
@@ -73,6 +84,12 @@ RULES: tuple[Rule, ...] = (
     Rule("field-deleted", _W, "a message has one field less", _BOTH),
     Rule("field-moved", _W, "a field stands elsewhere", _BOTH),
     Rule("field-renamed", _S, "a field has another name", _RENAME),
+    Rule(
+        "field-reused",
+        _V,
+        "fields of one type have other names, and which became which is not said",
+        "say `renamed_from` in each of them, if only names changed",
+    ),
     Rule("field-width", _W, "a number has another width", _BOTH),
     Rule("field-sign", _W, "a number has a sign now, or none any more", _BOTH),
     Rule("field-byte-order", _W, "a number's bytes stand in another order", _BOTH),
@@ -104,11 +121,14 @@ RULES: tuple[Rule, ...] = (
     Rule("flag-deleted", _V, "a bit has no name any more", "keep it"),
     Rule("flag-renamed", _S, "a bit has another name", _RENAME),
     Rule("bits", _V, "runs of bits in a number are others", _BOTH),
+    Rule("bits-renamed", _S, "a run of bits has another name", _RENAME),
     # the whole
     Rule("schema-deleted", _W, "a schema is gone", "keep it until nobody speaks it any more"),
     Rule("protocol-renamed", _S, "the protocol has another name", _RENAME),
     Rule("endpoint-renamed", _S, "an endpoint has another name", _RENAME),
-    Rule("link", _S, "the line is set another way", "set both ends alike"),
+    Rule("link", _W, "the line is set another way", "set both ends alike", by_frame=False),
+    Rule("link-timeout", _W, "frames are given up after another pause", _TOGETHER, by_frame=False),
+    Rule("link-stated", _S, "the line's setting is stated now, or not any more", "compare ends"),
     Rule(
         "version-not-bumped", _S, "the meaning changed and the version did not", "raise `version`"
     ),

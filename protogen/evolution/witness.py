@@ -106,6 +106,14 @@ class Witnesses:
                 found.append(best)
         return found
 
+    def tries_all_bounds(self, change: Change) -> bool:
+        """True if each value that the change may touch is tried at each of its bounds."""
+        return all(
+            boundary_rounds(message, sender.frame) <= ROUNDS
+            for old_sends in (True, False)
+            for sender, message in self._sendings(change, old_sends)
+        )
+
     def _best(self, change: Change, old_sends: bool) -> Witness | None:
         seen = [
             witness

@@ -54,6 +54,8 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     examples: tuple[Example, ...] = ()
     spec_hash: str = ""
     """SHA-256, in hex, of identity, layout and meaning of values."""
+    renamed_from: str | None = None
+    """Name in the version before, where that was another one."""
     about: About = NOTHING
     span: Span
 

@@ -420,6 +420,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     unit: str | None = None
     special: tuple[NamedValue, ...] = ()
     unknown: bool = False
+    renamed_from: str | None = None
+    """Name in the version before, where that was another one."""
     about: About = NOTHING
 
     @property

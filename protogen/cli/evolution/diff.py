@@ -66,6 +66,7 @@ def diff(
 
 def print_findings(out: Console, comparison: Comparison, found: list[Finding]) -> None:
     """Print findings by message, with their witnesses."""
+    from protogen.evolution.findings import SHOWN_BY_FRAMES, Verdict
     from protogen.evolution.report import by_subject, place, title
 
     for subject, items in by_subject(found):
@@ -77,8 +78,10 @@ def print_findings(out: Console, comparison: Comparison, found: list[Finding]) -
             where = place(comparison, item)
             if where:
                 out.print(f"    at {where}", style="dim")
-            if item.witnesses:
+            if item.category in SHOWN_BY_FRAMES:
                 out.print(f"    affects {item.affected}: {item.harm}")
+            if item.verdict is not Verdict.PROVED:
+                out.print(f"    {item.verdict}: no frame was found that shows it: no proof")
             for witness in item.witnesses:
                 out.print(f"    {witness.words}")
             if item.category not in ("NONE",):

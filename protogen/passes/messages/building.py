@@ -82,6 +82,7 @@ class _Resolution:
             fields=self._fields,
             sizes=sizes,
             unspecified=isinstance(syntax.fields, str),
+            renamed_from=syntax.renamed_from,
             about=about(syntax.doc, syntax.source),
             span=self._context.find_key(self._loc),
         )

@@ -37,6 +37,7 @@ def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
         unit=syntax.unit,
         special=check.special(),
         unknown=syntax.unknown,
+        renamed_from=syntax.renamed_from,
         about=about(syntax.doc, syntax.source, context.find_key(item.chain[0][1])),
     )
 

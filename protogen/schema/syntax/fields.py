@@ -188,6 +188,9 @@ class FieldSyntax(Syntax):
     )
     byte_order: ByteOrder | None = Field(None, description="Byte order of this field.")
     unknown: bool = Field(False, description="The document does not say what the field is.")
+    renamed_from: Name | None = Field(
+        None, description="The field's name in the version before: only the name changed."
+    )
     doc: Text | None = Field(None, description="What the field means.")
     source: SourceRef | None = Field(None, description="Where the field is written down.")
 

@@ -127,6 +127,9 @@ class MessageSyntax(Syntax):
         default_factory=dict,
         description="Fields in wire order, or `unspecified`: the document does not say.",
     )
+    renamed_from: Name | None = Field(
+        None, description="The message's name in the version before: only the name changed."
+    )
     min_size: Count | None = Field(None, description="Least payload size if unspecified.")
     max_size: Count | None = Field(None, description="Greatest payload size if unspecified.")
     examples: dict[Name, Example] | None = Field(

@@ -1,0 +1,86 @@
+"""Changes of what is reserved: entries that go, and what is used though it was reserved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from protogen.evolution.change import Change
+from protogen.model.meanings import Enum
+from protogen.model.messages import Message
+from protogen.model.nesting import fields_inside
+from protogen.model.protocol import Protocol
+from protogen.model.types import Field, Type
+
+
+class _Entry(NamedTuple):
+    """One thing that is reserved, in the names of NEW: an identity, a field or a value."""
+
+    place: str
+    what: object
+    words: str
+
+
+def compare_reserved(
+    old: Protocol, new: Protocol, endpoints: Mapping[str, str], messages: Mapping[str, str]
+) -> Iterator[Change]:
+    """Yield the entries of OLD that NEW has no more; whether it uses them is told apart.
+
+    What was reserved inside of a message or type that is gone goes with it.
+    """
+    there = {place for place, _ in _used(new)} | {sender.name for sender in new.senders}
+    kept = {(entry.place, entry.what) for entry in _entries(new, {}, {})}
+    used = _used(new)
+    for entry in _entries(old, endpoints, messages):
+        key = entry.place, entry.what
+        if key in used:
+            words = f"{entry.words} is {used[key]}"
+            yield Change(rule="reserved-reused", place=f"reserved {entry.place}", text=words)
+        elif key not in kept and entry.place in there:
+            yield Change(rule="reserved-deleted", place=f"reserved {entry.place}", text=entry.words)
+
+
+def _entries(
+    protocol: Protocol, endpoints: Mapping[str, str], messages: Mapping[str, str]
+) -> Iterator[_Entry]:
+    reserved = protocol.reserved
+    for item in reserved.identities:
+        shown = " ".join(f"0x{value:02X}" for value in item.identity)
+        place = endpoints.get(item.sender, item.sender)
+        yield _Entry(place, item.identity, f"identity {shown} of {item.sender}")
+    for names in reserved.fields:
+        place = messages.get(names.message, names.message)
+        for name in names.names:
+            yield _Entry(place, name, f"the name {name} in {names.message}")
+    for values in reserved.values:
+        message, dot, rest = values.path.partition(".")
+        place = f"{messages.get(message, message)}{dot}{rest}" if dot else message
+        for value in values.values:
+            yield _Entry(place, value, f"value {value} of {values.path}")
+
+
+def _used(protocol: Protocol) -> dict[tuple[str, object], str]:
+    """Identities, fields and values in use, with what uses them."""
+    used: dict[tuple[str, object], str] = {}
+    for message in protocol.messages:
+        for sender in message.senders:
+            used[sender, message.identity] = message.name
+        for path, field in _fields(message):
+            used[message.name, path] = f"a field of {message.name}"
+            used |= _values(f"{message.name}.{path}", field.type)
+    for enum in protocol.enums:
+        used |= {(enum.name, item.value): item.name for item in enum.values}
+    return used
+
+
+def _fields(message: Message) -> Iterator[tuple[str, Field]]:
+    open_: list[tuple[str, Field]] = [(field.name, field) for field in message.fields]
+    while open_:
+        path, field = open_.pop()
+        yield path, field
+        open_ += [(f"{path}.{inner.name}", inner) for inner in fields_inside(field.type)]
+
+
+def _values(path: str, type_: Type) -> dict[tuple[str, object], str]:
+    enum: Enum | None = getattr(type_, "enum", None)
+    return {} if enum is None else {(path, item.value): item.name for item in enum.values}
