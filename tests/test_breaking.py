@@ -1,4 +1,4 @@
-"""Each rule has a folder in `breaking/`: two small schemas and what the step between them must do.
+"""Each rule has an example, two small schemas, and in `breaking/` what the step between them does.
 
 `old.yaml` and `new.yaml` are whole schemas; without a `new.yaml` the schema is gone. A line of
 `expected.txt` is a finding: the rule, the place, who is affected, and how. There may be these
@@ -18,6 +18,7 @@ import pytest
 from cli_support import run
 
 from protogen.compiler import compile_file
+from protogen.evolution.examples import FOLDER
 from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Gate, findings, gone
 from protogen.evolution.observe import Reading
 from protogen.evolution.rules import BY_NAME, RULES
@@ -26,8 +27,8 @@ from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 from protogen.runtime.values import as_dict
 
-FOLDER = Path(__file__).parent / "breaking"
-NAMES = sorted(path.name for path in FOLDER.iterdir())
+EXPECTED = Path(__file__).parent / "breaking"
+NAMES = sorted(path.name for path in EXPECTED.iterdir())
 STEPS = [name for name in NAMES if (FOLDER / name / "new.yaml").exists()]
 
 
@@ -39,7 +40,7 @@ class Expected(NamedTuple):
 
 
 def expected(name: str) -> list[Expected]:
-    lines = (FOLDER / name / "expected.txt").read_text(encoding="utf-8").splitlines()
+    lines = (EXPECTED / name / "expected.txt").read_text(encoding="utf-8").splitlines()
     return [Expected(*line.split(" | ")) for line in lines]
 
 

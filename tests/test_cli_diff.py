@@ -15,7 +15,7 @@ from cli_support import PATIENCE, run, start
 from tooling import require_tool
 from typer.testing import Result
 
-from protogen.evolution.rules import RULES
+from protogen.evolution.rules import RULES, Rule
 
 OLD = """\
 protocol: demo
@@ -84,7 +84,7 @@ class TestDiff:
     def test_text_has_rule_place_frame_and_mend(self, folder: Path) -> None:
         lines = answer(folder, "diff", "old.yaml", "gone.yaml", code=1).splitlines()
         assert lines == [
-            "ping",
+            "gone.yaml: ping",
             "  WIRE [message-deleted] ping: a message is gone: identity 0x03 is free for another"
             " meaning",
             "    at old.yaml:14 (old)",
@@ -164,7 +164,9 @@ class TestBreaking:
         command = ["breaking", "old.yaml", "turned.yaml", "--format", "github"]
         lines = answer(folder, *command, code=1).splitlines()
         assert len(lines) == 2
-        begins = "::error file=turned.yaml,line=13,title=field-byte-order::reading.value: "
+        begins = (
+            "::error file=turned.yaml,line=13,title=field-byte-order::turned.yaml: reading.value: "
+        )
         assert lines[0].startswith(begins)
         assert "%0Aold board sends reading AA 01 " in lines[0]
         assert "%0Anew board sends reading AA 01 " in lines[0]
@@ -172,7 +174,7 @@ class TestBreaking:
     def test_github_of_a_message_that_is_gone(self, folder: Path) -> None:
         command = ["breaking", "old.yaml", "gone.yaml", "--format", "github"]
         (line,) = answer(folder, *command, code=1).splitlines()
-        assert line.startswith("::error file=gone.yaml,title=message-deleted::ping: ")
+        assert line.startswith("::error file=gone.yaml,title=message-deleted::gone.yaml: ping: ")
 
     def test_github_prints_nothing_without_findings(self, folder: Path) -> None:
         command = ["breaking", "old.yaml", "reserved.yaml", "--format", "github"]
@@ -193,6 +195,9 @@ class TestBreaking:
             (["--ignore", "ping.*"], ["field-byte-order", "field-unit"]),
             (["--ignore", "field-unit=reading.*"], ["field-byte-order"]),
             (["--ignore", "*=reading.value"], []),
+            (["--ignore", "demo.reading.*"], []),
+            (["--ignore", "field-unit=demo.*"], ["field-byte-order"]),
+            (["--ignore", "other.reading.*"], ["field-byte-order", "field-unit"]),
         ],
         ids=" ".join,
     )
@@ -201,11 +206,67 @@ class TestBreaking:
         output = answer(folder, *command, code=1 if left else 0)
         assert sorted(set(rules_in(output))) == left
 
+    def test_an_ignore_that_matches_nothing_is_reported(self, folder: Path) -> None:
+        ignored = ["--ignore", "reading.*", "--ignore", "field-unit=lamp.*"]
+        done = protogen(folder, "breaking", "old.yaml", "turned.yaml", *ignored)
+        assert done.exit_code == 0
+        assert done.stderr == (
+            "warning: `field-unit=lamp.*` is to be ignored and matches no change\n"
+        )
+
+    @pytest.mark.parametrize(
+        ("versions", "words"),
+        [
+            (("1.2.0", "1.2.0"), "new.yaml: this needs a new major version; `version` is 1.2.0"),
+            (("1.2.0", "1.3.0"), "this needs a new major version; `version` is 1.3.0, was 1.2.0"),
+            (("1.2.0", "2.0.0"), ""),
+            (("0.2", "0.3"), ""),
+            (("0.2.1", "0.2.2"), "this needs a new major version"),
+            (("red", "green"), "this needs a new major version; `version` is green, was red"),
+        ],
+    )
+    def test_says_which_version_is_needed(
+        self, versions: tuple[str, str], words: str, folder: Path
+    ) -> None:
+        for name, text, version in zip(("a", "new"), (OLD, TURNED), versions, strict=True):
+            stated = f'{text}version: "{version}"\n'
+            (folder / f"{name}.yaml").write_text(stated, encoding="utf-8")
+        output = answer(folder, "breaking", "a.yaml", "new.yaml", code=1)
+        assert words in output
+        assert ("needs a new" in output) == bool(words)
+        output = answer(folder, "breaking", "a.yaml", "new.yaml", "--format", "json", code=1)
+        assert json.loads(output)[0]["needs"] == "major"
+
     def test_several_schemas_against_one(self, folder: Path) -> None:
         command = ["breaking", "reserved.yaml", "gone.yaml", "--against", "old.yaml"]
         output = answer(folder, *command, "--format", "json", code=1)
         assert [report["schema"] for report in json.loads(output)] == ["reserved.yaml", "gone.yaml"]
         assert rules_in(output) == ["message-deleted"]
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_rules_explains_each_with_an_example(rule: Rule, folder: Path) -> None:
+    output = answer(folder, "rules", rule.name, code=0)
+    assert output.startswith(f"{rule.name} {rule.category.value}: {rule.about}\n")
+    assert f"[{rule.name}]" in output
+    assert "\n- " in output or "\n-" in output or "\n+" in output
+    (entry,) = json.loads(answer(folder, "rules", rule.name, "--format", "json", code=0))
+    assert entry["before"] != entry["after"]
+    named = [item for item in entry["findings"] if item["rule"] == rule.name]
+    assert named
+    is_shown = rule.category.value in ("WIRE", "VALUE") and rule.by_frame
+    assert all(bool(item["witnesses"]) == is_shown for item in named)
+
+
+def test_rules_as_json(folder: Path) -> None:
+    listed = json.loads(answer(folder, "rules", "--format", "json", code=0))
+    assert [item["rule"] for item in listed] == [rule.name for rule in RULES]
+
+
+def test_a_rule_that_is_not_there(folder: Path) -> None:
+    words = complaint(folder, "rules", "field-scal")
+    assert "there is no rule `field-scal`" in words
+    assert "did you mean `field-scale`?" in words
 
 
 def test_rules_lists_them_all(folder: Path) -> None:
@@ -242,15 +303,16 @@ class TestFolders:
         assert texts == {"first.yaml": "is gone", "second.yaml": "is new"}
         lines = answer(folder, "breaking", "was", "is", code=1).splitlines()
         assert lines == [
-            "demo",
+            "first.yaml: demo",
             "  WIRE [schema-deleted] first.yaml: a schema is gone: demo had reading, ping",
             "    affects new receiver of old frames: rejected",
             "    old board sends ping AA 03 00 68 2A; new finds no message in it: nobody listens",
             "    fix: keep it until nobody speaks it any more",
+            "first.yaml: this needs a new major version",
             "compared 0 schemas, 1 new, 1 gone",
         ]
         output = answer(folder, "breaking", "was", "is", "--format", "github", code=1)
-        assert output.startswith("::error title=schema-deleted::first.yaml: ")
+        assert output.startswith("::error title=schema-deleted::first.yaml: first.yaml: ")
         ignored = ["--ignore", "schema-deleted=first.yaml"]
         output = answer(folder, "breaking", "was", "is", *ignored, code=0)
         assert output == "nothing is broken\ncompared 0 schemas, 1 new, 1 gone\n"
@@ -311,6 +373,21 @@ class TestGit:
         rules = rules_in(output)
         assert set(rules) == {"field-byte-order", "field-unit"}
         assert len(rules) == (4 if new == "schemas" else 2)
+
+    def test_a_finding_that_a_dialect_shares_is_printed_once(self, repository: Path) -> None:
+        (repository / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        command = ["breaking", "schemas", "--against", "git:HEAD"]
+        lines = answer(repository, *command, code=1).splitlines()
+        assert lines.count("    fix: reserve its identity") == 1
+        assert lines[0] == "demo.yaml: ping"
+        assert "  the same in dialects/two.yaml" in lines
+        assert len(answer(repository, *command, "--format", "github", code=1).splitlines()) == 1
+
+    def test_github_has_paths_below_the_repository(self, repository: Path) -> None:
+        (repository / "schemas" / "demo.yaml").write_text(TURNED, encoding="utf-8")
+        command = ["breaking", "demo.yaml", "--against", "git:HEAD", "--format", "github"]
+        output = answer(repository / "schemas", *command, code=1)
+        assert output.startswith("::error file=schemas/demo.yaml,line=13,")
 
     def test_two_revisions(self, repository: Path) -> None:
         (repository / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")

@@ -87,8 +87,8 @@ class Gate(msgspec.Struct, frozen=True):
         known = {rule.name for rule in RULES} | {category.value for category in Category} | {"*"}
         return [name for name in (*self.use, *self.except_, *self.ignore) if name not in known]
 
-    def stops(self, change: Change) -> bool:
-        """True if a change may not pass."""
+    def stops(self, change: Change, protocol: str) -> bool:
+        """True if a change of a protocol may not pass."""
         rule = BY_NAME[change.rule]
         if rule.category is Category.NONE or rule.name in self.except_:
             return False
@@ -96,7 +96,28 @@ class Gate(msgspec.Struct, frozen=True):
             return False
         patterns = [*self.ignore.get("*", ()), *self.ignore.get(rule.name, ())]
         places = (change.place, *change.places)
-        return not all(any(fnmatchcase(p, pattern) for pattern in patterns) for p in places)
+        return not all(
+            any(_matches(place, protocol, pattern) for pattern in patterns) for place in places
+        )
+
+    def unused(self, comparisons: Sequence[Comparison]) -> list[str]:
+        """What is to be ignored and is in none of the comparisons, as it is written."""
+        return [
+            pattern if rule == "*" else f"{rule}={pattern}"
+            for rule, patterns in self.ignore.items()
+            for pattern in patterns
+            if not any(
+                rule in ("*", change.rule) and _matches(place, comparison.old.name, pattern)
+                for comparison in comparisons
+                for change in comparison.changes
+                for place in (change.place, *change.places)
+            )
+        ]
+
+
+def _matches(place: str, protocol: str, pattern: str) -> bool:
+    """True if a pattern fits a place, or the place behind the protocol's name."""
+    return fnmatchcase(place, pattern) or fnmatchcase(f"{protocol}.{place}", pattern)
 
 
 def findings(
@@ -109,7 +130,7 @@ def findings(
     """
     comparison = compare(old, new)
     witnesses = Witnesses(comparison)
-    kept = [item for item in comparison.changes if gate is None or gate.stops(item)]
+    kept = [item for item in comparison.changes if gate is None or gate.stops(item, old.name)]
     found = [_finding(change, witnesses) for change in kept]
     found.sort(key=lambda item: ORDER[item.category])
     return comparison, found
@@ -126,7 +147,7 @@ def gone(old: Protocol, place: str, gate: Gate | None = None) -> tuple[Compariso
     words = f"{old.name} had {', '.join(names)}{more}"
     change = Change(rule="schema-deleted", place=place, text=words)
     comparison = Comparison(old, nothing, {}, {}, (change,))
-    if gate is not None and not gate.stops(change):
+    if gate is not None and not gate.stops(change, old.name):
         return comparison, []
     return comparison, [_finding(change, Witnesses(comparison))]
 

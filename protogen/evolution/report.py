@@ -31,6 +31,35 @@ def place(comparison: Comparison, finding: Finding) -> str:
     return ", ".join(f"{Path(s.file).name}:{s.line} ({side})" for side, s in found.items())
 
 
+def shared(
+    reports: Sequence[tuple[str, Comparison, Sequence[Finding]]],
+) -> Iterator[tuple[str, Comparison, list[Finding], list[str]]]:
+    """Findings of several schemas, each once, by the schema that is first to have it.
+
+    A dialect has those of its base again. The last are the other schemas that share the findings.
+    """
+    owners: dict[object, list[int]] = {}
+    for number, (_, comparison, found) in enumerate(reports):
+        for item in found:
+            owners.setdefault(_source(number, comparison, item), []).append(number)
+    for number, (name, comparison, found) in enumerate(reports):
+        groups: dict[tuple[int, ...], list[Finding]] = {}
+        for item in found:
+            first, *others = owners[_source(number, comparison, item)]
+            if first == number:
+                groups.setdefault(tuple(others), []).append(item)
+        for numbers, items in groups.items():
+            yield name, comparison, items, [reports[other][0] for other in numbers]
+
+
+def _source(number: int, comparison: Comparison, item: Finding) -> object:
+    """What makes two findings one: the change, and the lines that it comes from."""
+    places = places_of(comparison, item.change)
+    lines = tuple(None if s is None else (Path(s.file).name, s.line) for s in places)
+    where = lines if any(lines) else number
+    return item.rule.name, item.change.place, item.change.text, where
+
+
 def by_subject(found: Sequence[Finding]) -> Iterator[tuple[str, list[Finding]]]:
     """The findings of each message; those of the whole come first."""
     ordered = sorted(found, key=lambda item: item.change.message or "")

@@ -64,6 +64,19 @@ def extracted(name: str, wanted: Path) -> Iterator[Revision]:
         yield Revision(name, top, folder, inside, submodules)
 
 
+def path_in_repository(file: str) -> str:
+    """The path of a file below the top of its repository; as it is given where there is none."""
+    path = Path(file)
+    try:
+        done = _run("rev-parse", "--show-toplevel", folder=_folder(path.parent))
+    except NoVersionError:
+        return file
+    top, resolved = Path(done.stdout.decode().strip()), path.resolve()
+    if done.returncode or not resolved.is_relative_to(top):
+        return file
+    return resolved.relative_to(top).as_posix()
+
+
 def is_revision(name: str, folder: Path) -> bool:
     """True if git knows a revision by this name in a folder."""
     done = _run("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}", folder=folder)

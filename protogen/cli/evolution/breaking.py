@@ -13,6 +13,8 @@ from protogen.cli.options import Against, Versions
 from protogen.cli.schemas import open_project
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from protogen.evolution.compare import Comparison
     from protogen.evolution.findings import Finding, Gate
     from protogen.model.protocol import Protocol
@@ -37,7 +39,10 @@ def breaking(
     ] = None,
     ignore: Annotated[
         list[str] | None,
-        typer.Option(metavar="[RULE=]PLACE", help="Places that do not count, as in rn1.gyro.*."),
+        typer.Option(
+            metavar="[RULE=]PLACE",
+            help="Places that do not count: gyro.*, or rn1.gyro.*.",
+        ),
     ] = None,
     format: Annotated[
         Literal["text", "json", "github"],
@@ -53,36 +58,53 @@ def breaking(
     gate for pull requests names the branch that they go to, as in --against git:origin/main.
     """
     from protogen.cli.evolution.versions import LAST_COMMIT, compared
-    from protogen.evolution.report import as_json
 
     project = open_project()
     gate = _gate(project, use or [], except_ or [], ignore or [])
     held = f"lock:{against_lock}" if against_lock is not None else against
-    stopped = False
-    reports = []
-    out = console()
     since = held or (versions[0] if versions else LAST_COMMIT)
+    reports: list[tuple[str, Comparison, list[Finding]]] = []
     with compared(versions or (), held, project) as schemas:
         schemas.check_not_empty(since)
-        for pair in schemas.pairs:
-            if pair.old is None:
-                continue
-            comparison, found = _judged(pair.name, pair.old, pair.new, gate)
-            stopped = stopped or bool(found)
-            if format == "json":
-                reports.append({"schema": pair.name} | as_json(comparison, found))
-            elif format == "github":
-                _print_github(comparison, found)
-            elif found:
-                print_findings(out, comparison, found)
-    if format == "json":
-        echo_json(reports)
-    elif format == "text" and not stopped:
-        out.print(
-            "nothing is broken" if versions else f"nothing is broken since {since}", style="bold"
-        )
+        for name, old, new in schemas.pairs:
+            if old is not None:
+                comparison, found = _judged(name, old, new, gate)
+                reports.append((name, comparison, found))
+        _report(format, reports)
+    stopped = any(found for _, _, found in reports)
+    if format == "text" and not stopped:
+        words = "nothing is broken" if versions else f"nothing is broken since {since}"
+        console().print(words, style="bold")
     typer.echo(schemas.summary, err=format != "text")
+    for pattern in gate.unused([comparison for _, comparison, _ in reports]):
+        typer.echo(f"warning: `{pattern}` is to be ignored and matches no change", err=True)
     return FINDINGS if stopped else CLEAN
+
+
+def _report(format: str, reports: Sequence[tuple[str, Comparison, list[Finding]]]) -> None:
+    from protogen.evolution.report import as_json, shared
+    from protogen.evolution.version_step import advice, step_of
+
+    if format == "json":
+        listed = [
+            {"schema": name, "needs": step_of(comparison.changes).value}
+            | as_json(comparison, found)
+            for name, comparison, found in reports
+        ]
+        echo_json(listed)
+        return
+    out = console()
+    for name, comparison, found, others in shared(reports):
+        if format == "github":
+            _print_github(comparison, found, name)
+            continue
+        print_findings(out, comparison, found, name)
+        if others:
+            out.print(f"  the same in {', '.join(others)}", style="dim")
+    for name, comparison, found in reports:
+        words = advice(comparison) if found or comparison.new.version is not None else None
+        if words is not None and format == "text":
+            out.print(f"{name}: {words}")
 
 
 def _judged(
@@ -117,15 +139,16 @@ def _gate(project: Project | None, use: list[str], except_: list[str], ignore: l
     return gate
 
 
-def _print_github(comparison: Comparison, found: list[Finding]) -> None:
+def _print_github(comparison: Comparison, found: list[Finding], name: str) -> None:
     from protogen.evolution.places import places_of
     from protogen.evolution.report import title
+    from protogen.evolution.revisions import path_in_repository
 
     for item in found:
         span = places_of(comparison, item.change).new
-        where = [f"file={file}" for file in comparison.new.files[:1]]
+        where = [f"file={path_in_repository(file)}" for file in comparison.new.files[:1]]
         if span is not None:
-            where = [f"file={span.file}", f"line={span.line}"]
+            where = [f"file={path_in_repository(span.file)}", f"line={span.line}"]
         properties = ",".join([*where, f"title={item.rule.name}"])
-        words = "%0A".join([title(item), *(witness.words for witness in item.witnesses)])
-        typer.echo(f"::error {properties}::{words}")
+        lines = [f"{name}: {title(item)}", *(witness.words for witness in item.witnesses)]
+        typer.echo(f"::error {properties}::{'%0A'.join(lines)}")

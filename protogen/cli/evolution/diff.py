@@ -58,19 +58,22 @@ def diff(
             elif format == "markdown":
                 typer.echo(markdown(comparison, found))
             else:
-                print_findings(out, comparison, found)
+                print_findings(out, comparison, found, name)
     if format == "json":
         echo_json(reports)
     return FINDINGS if changed else CLEAN
 
 
-def print_findings(out: Console, comparison: Comparison, found: list[Finding]) -> None:
-    """Print findings by message, with their witnesses."""
+def print_findings(
+    out: Console, comparison: Comparison, found: list[Finding], schema: str | None = None
+) -> None:
+    """Print findings by schema and message, with their witnesses."""
     from protogen.evolution.findings import SHOWN_BY_FRAMES, Verdict
     from protogen.evolution.report import by_subject, place, title
 
     for subject, items in by_subject(found):
-        out.print(subject or comparison.new.name, style="bold cyan")
+        heading = subject or comparison.new.name
+        out.print(heading if schema is None else f"{schema}: {heading}", style="bold cyan")
         for item in items:
             style = {"WIRE": "bold red", "VALUE": "red", "SOURCE": "yellow"}.get(item.category)
             out.print(f"  {item.category}", style=style, end=" ")
