@@ -198,6 +198,7 @@ def test_sender_may_be_given_for_all_lines() -> None:
     [
         ("{", "line 1: not JSON: "),
         ("[" * 100_000, "line 1: not JSON: "),
+        ('{"fields": {"ratio": 1e400}}', "line 1: not JSON: 1e400 is too large for 64 bits"),
         ("\n[1]", "line 2: must be a JSON object"),
         (line(sender="nobody"), "line 1: sender: 'nobody' sends nothing; pc, esp do"),
         (line(message="nothing"), "line 1: message: pc sends no message called 'nothing'"),

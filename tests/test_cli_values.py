@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -40,6 +41,9 @@ def raw(message: str, *assignments: str) -> dict[str, Any]:
         ("on_line=true", "on_line", 1),
         ("ratio=1.5", "ratio", 1.5),
         ("ratio=1.5V", "ratio", 3.0),
+        ("ratio=-inf", "ratio", -math.inf),
+        ("letter={", "letter", 0x7B),
+        ("flags={}", "flags", 0),
     ],
 )
 def test_numbers(assignment: str, field: str, value: object) -> None:
@@ -154,6 +158,17 @@ def test_cases_of_a_switch() -> None:
         ("numbers", ["mode=1.5"], "mode: `1.5` is none of: a whole number from 0 to 255", None),
         ("numbers", ["flags=[1]"], "flags: `[1]` is none of: a whole number from 0 to 255", ...),
         ("numbers", ["ratio=fast"], 'ratio: "fast" is none of: a number', None),
+        ("numbers", ["mode={}"], "mode: {} is none of: a whole number from 0 to 255", ...),
+        ("numbers", ["angle={}"], "angle: {} is none of: a whole number", ...),
+        ("numbers", ["on_line={}"], "on_line: {} is none of: a whole number", ...),
+        ("numbers", ["letter={}"], "letter: {} is none of: a whole number", ...),
+        ("lists", ["levels=[true]"], "levels[0]: `true` is none of: a whole number", ...),
+        ("numbers", ["angle=1e999999999deg"], "angle: `1e999999999deg` is none of", ...),
+        ("numbers", ["angle=1e99999999"], "angle: `1e99999999` is none of", ...),
+        ("numbers", ["ratio=1e999999999V"], 'ratio: "1e999999999V" is none of: a number', ...),
+        ("numbers", ["ratio=1e999V"], "ratio: `1e999V` is too large for 64 bits", ...),
+        ("numbers", ["ratio=1e400"], "ratio: `1e400` is too large for 64 bits", ...),
+        ("lists", ["levels=[1e400]"], "1e400 is too large for 64 bits", ...),
         ("numbers", ["mode=1", "mode=2"], "`mode` is given twice", None),
         ("numbers", ["flags=1", "flags.hot=1"], "`flags.hot` is given twice", None),
         ("numbers", ["mode"], "`mode` is no assignment", "write FIELD=VALUE, or @PART=VALUE"),

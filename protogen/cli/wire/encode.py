@@ -160,11 +160,13 @@ def _encode_lines(codec: Codec, sender: str | None, write: Write) -> None:
 
 
 def _json_lines(lines: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+    from protogen.cli.wire.scalars import finite
+
     for number, text in enumerate(lines, start=1):
         if not text.strip():
             continue
         try:
-            line = json.loads(text)
+            line = json.loads(text, parse_float=finite)
         except (ValueError, RecursionError) as error:
             raise UsageError(f"line {number}: not JSON: {error}") from None
         if not isinstance(line, dict):

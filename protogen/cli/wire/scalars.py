@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import reduce
@@ -16,17 +17,20 @@ from protogen.model.reading.readings import decimal
 from protogen.model.types import Field
 from protogen.problems import did_you_mean, hint_for
 from protogen.runtime.payload.nearest import nearest_reading
+from protogen.schema.text.scalars import exact_number
 
 
 def integer_value(step: IntegerStep, written: Any, path: str) -> int:
     """Return the raw value of an integer. Raises UsageError."""
+    if isinstance(written, bool):
+        written = str(written).lower()
     if isinstance(written, int):
         return int(written)
-    if isinstance(written, Mapping):
+    if isinstance(written, Mapping) and (step.type.flags or step.type.bit_fields):
         return _bits(step, written, path)
     if not isinstance(written, str):
         raise refusal(path, written, allowed(step))
-    if written.lstrip().startswith("{"):
+    if written.lstrip().startswith("{") and not (step.type.role == "char" and len(written) == 1):
         return integer_value(step, from_json(written, path), path)
     number = _number(written)
     if number is not None:
@@ -46,7 +50,7 @@ def _fix(step: IntegerStep, written: str) -> str | None:
     if step.type.flags is not None and "," in written:
         flags = "|".join(_closest(name.strip(), names) for name in written.split(","))
         return f"flags are joined by `|`, in quotes for the shell: '{flags}'"
-    number = _exact(written.strip())
+    number = exact_number(written.strip())
     if number is not None and step.field.unit is not None:
         nearest = _nearest(step, number)
         return (
@@ -121,14 +125,7 @@ def _physical(field: Field, text: str) -> Fraction | None:
     """Return the number in front of the field's unit; None if it is not that."""
     if field.unit is None or not text.strip().endswith(field.unit):
         return None
-    return _exact(text.strip().removesuffix(field.unit).strip())
-
-
-def _exact(text: str) -> Fraction | None:
-    try:
-        return Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        return None
+    return exact_number(text.strip().removesuffix(field.unit).strip())
 
 
 def _raw(step: IntegerStep, physical: Fraction, written: str, path: str) -> int:
@@ -156,16 +153,20 @@ def _nearest(step: IntegerStep, physical: Fraction) -> str | None:
 
 def float_value(field: Field, written: Any, path: str) -> float:
     """Return the raw value of a floating-point number. Raises UsageError."""
-    if isinstance(written, int | float):
-        return float(written)
+    is_number = isinstance(written, int | float) and not isinstance(written, bool)
     text = written.strip() if isinstance(written, str) else ""
     physical = _physical(field, text)
-    if physical is not None:
-        return float((physical - field.offset) / field.scale)
     try:
-        return float(text)
+        if physical is not None:
+            return float((physical - field.offset) / field.scale)
+        value = float(written if is_number else text)
+    except OverflowError:
+        raise UsageError(f"{path}: `{written}` is too large for 64 bits") from None
     except ValueError:
         raise refusal(path, written, "a number") from None
+    if math.isinf(value) and any(map(str.isdigit, text)):
+        raise UsageError(f"{path}: `{written}` is too large for 64 bits, and no infinity")
+    return value
 
 
 def octets_value(written: Any, path: str) -> bytes:
@@ -214,9 +215,17 @@ def text_value(written: Any, path: str) -> str:
     return written
 
 
+def finite(digits: str) -> float:
+    """Return a floating-point number of JSON. Raises ValueError where it would be infinite."""
+    number = float(digits)
+    if math.isinf(number):
+        raise ValueError(f"{digits} is too large for 64 bits")
+    return number
+
+
 def from_json(text: str, path: str) -> Any:
     """Return what the JSON text stands for. Raises UsageError."""
     try:
-        return json.loads(text)
+        return json.loads(text, parse_float=finite)
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: `{text}` is not JSON: {error}") from None

@@ -14,15 +14,11 @@ from typing import Annotated, Any
 import msgspec
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
+from protogen.schema.text.scalars import exact_number
+
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
 """Names are lower snake case: each target derives its own spelling from that."""
 
-_GREATEST_NUMBER = 400
-"""Characters of a number. No protocol needs more, and reading a longer one takes its time."""
-
-_RATIONAL = re.compile(
-    r"[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)"
-)
 _DURATION = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?) ?(us|ms|s)")
 _DURATION_UNITS = {
     "us": Fraction(1, 1_000_000),
@@ -53,9 +49,9 @@ def _to_fraction(value: object) -> object:
     if isinstance(value, int) and not isinstance(value, bool):
         return Fraction(int(value))
     if isinstance(value, float | str):
-        text = str(_as_written(value)).strip()
-        if len(text) <= _GREATEST_NUMBER and _RATIONAL.fullmatch(text):
-            return Fraction(text)
+        number = exact_number(str(_as_written(value)).strip())
+        if number is not None:
+            return number
     raise ValueError("expected an exact number such as 0.01, 1/16 or -3")
 
 

@@ -7,12 +7,13 @@ in numbers and no dates.
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 
 Scalar = str | int | float | bool | None
 """The value of a scalar."""
 
 _GREATEST_NUMBER = 400
-"""A longer plain scalar is a text: no number of a protocol needs more characters than this."""
+"""Characters of a number. No protocol needs more, and reading a longer one takes its time."""
 
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL")),
@@ -26,6 +27,9 @@ _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INFINITE = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _NOT_A_NUMBER = frozenset((".nan", ".NaN", ".NAN"))
 _NUMBER_START = frozenset("+-.0123456789")
+_RATIONAL = re.compile(
+    r"[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)"
+)
 
 
 class SourceInt(int):
@@ -54,8 +58,18 @@ class SourceFloat(float):
         return number
 
 
+def exact_number(text: str) -> Fraction | None:
+    """Return the number that ``text`` is, such as `0.01`, `1/16` or `-3e-5`; None if it is none.
+
+    A schema and a command line ask here, so that both bound what is written, exponents included.
+    """
+    if len(text) > _GREATEST_NUMBER or not _RATIONAL.fullmatch(text):
+        return None
+    return Fraction(text)
+
+
 def resolve(text: str) -> Scalar:
-    """Return the value of the plain scalar ``text``."""
+    """Return the value of the plain scalar ``text``; one too long for a number is a text."""
     if text in _WORDS:
         return _WORDS[text]
     if text[0] not in _NUMBER_START or len(text) > _GREATEST_NUMBER:
