@@ -2,6 +2,7 @@
 
 import json
 import math
+import struct
 from collections import ChainMap
 from dataclasses import dataclass, field, replace
 from enum import KEEP, IntFlag
@@ -189,6 +190,9 @@ def test_numbers_of_numpy_are_in_range_or_refused() -> None:
         ({"shade": 3}, "shade", "RED = 1, GREEN = 2"),
         ({"on": 2}, "on", "false or true"),
         ({"on": numpy.array([0, 1])}, "on", "false or true"),
+        ({"on": 1.0}, "on", "false or true, not 1.0"),
+        ({"on": numpy.float32(0)}, "on", "false or true"),
+        ({"on": Fraction(1)}, "on", "false or true"),
         ({"fixed": 8}, "fixed", "must be 7"),
         ({"near": 9}, "near", "9 is not in 10..100"),
         ({"ratio": -11.0}, "ratio", "not in -10.."),
@@ -197,6 +201,9 @@ def test_numbers_of_numpy_are_in_range_or_refused() -> None:
         ({"ratio": 10**400}, "ratio", "an integer that is too large"),
         ({"wide": -(10**400)}, "wide", "an integer that is too large"),
         ({"ratio": "1"}, "ratio", "must be a number"),
+        ({"ratio": True}, "ratio", "must be a number"),
+        ({"ratio": numpy.float32(-11)}, "ratio", "not in -10.."),
+        ({"ratio": numpy.float64(1e39)}, "ratio", "too large for 32 bits"),
         ({"name": "abcd"}, "name", "at most 3"),
         ({"name": "a\0"}, "name", "NUL"),
         ({"name": 5}, "name", "must be text"),
@@ -260,6 +267,18 @@ def test_lenient_encoding_refuses_what_no_decoder_would_accept(
     assert error(good(**values), strict=False).path == path
 
 
+def test_lenient_encoding_takes_nul_for_padding() -> None:
+    payload = good(name="a\0").to_payload(strict=False)
+    assert payload == good(name="a").to_payload()
+    assert good(name="a\0").violations()[0].path == "name"
+
+
+def test_floats_of_numpy_are_numbers() -> None:
+    message = good(ratio=numpy.float32(1.5), wide=numpy.int16(-2))
+    assert message.to_payload() == good(ratio=1.5, wide=-2.0).to_payload()
+    assert message.to_dict() == good(ratio=1.5, wide=-2.0).to_dict()
+
+
 @pytest.mark.parametrize("values", [{"colour": 77}, {"bits": 0xF0}, {"near": 255}])
 def test_values_without_a_name_and_special_values_are_sent(values: dict[str, Any]) -> None:
     assert Everything.from_payload(good(**values).to_payload()) == good(**values)
@@ -312,10 +331,33 @@ def test_special_values_have_no_physical_value() -> None:
     assert lidar.nearest(None) == 0
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf])
-def test_physical_values_are_finite(value: float) -> None:
-    with pytest.raises(ValueError, match="no physical value"):
-        good().ratio_m = value
+@pytest.mark.parametrize("raw", [-0.0, math.inf, -math.inf, math.nan, 0.1, 3.4028234663852886e38])
+@pytest.mark.parametrize("scale", [Fraction(1), Fraction(-1, 2), Fraction(1, 4)])
+def test_a_float_is_the_same_after_its_physical_value_was_set(raw: float, scale: Fraction) -> None:
+    rule = rt.FloatRule(32, scale=scale)
+    again = rule.nearest(rule.physical(raw))
+    assert struct.pack("<d", again) == struct.pack("<d", raw)
+
+
+def test_physical_values_are_numbers_that_the_bits_can_hold() -> None:
+    message = good()
+    for value in (math.nan, math.inf):
+        with pytest.raises(ValueError, match="no physical value"):
+            message.near_mm = value
+    for wrong in ("1e99999999", "5", b"5", [5], True):
+        with pytest.raises(ValueError, match="must be a number"):
+            message.near_mm = wrong  # type: ignore[assignment]
+        with pytest.raises(ValueError, match="must be a number"):
+            message.ratio_m = wrong  # type: ignore[assignment]
+    with pytest.raises(ValueError, match=r"63 is not in -1 mm\.\.62\.75 mm"):  # 255 / 4 - 1
+        message.near_mm = 63
+    with pytest.raises(ValueError, match="too large for 32 bits"):
+        message.ratio_m = 1e39
+    with pytest.raises(ValueError, match="too large for 64 bits"):
+        rt.FloatRule(64, scale=Fraction(1, 10)).nearest(1e308)
+    message.near_mm = numpy.int64(62)  # (62 + 1) * 4
+    message.ratio_m = numpy.float32(1.5)
+    assert (message.near, message.ratio) == (252, 3.0)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -343,6 +385,9 @@ def test_arrays_have_lists_of_physical_values() -> None:
     scan.angles_deg = [3.0, 0.0]
     scan.ways_m = [1.0, None]
     assert scan == Scan(angles=[6, 0], ways=[10, 0])
+    for wrong in (3.0, None, "34"):
+        with pytest.raises(ValueError, match="must be a list of numbers"):
+            scan.angles_deg = wrong  # type: ignore[assignment]
 
 
 def test_bit_ranges_read_and_write_some_bits() -> None:
@@ -354,6 +399,15 @@ def test_bit_ranges_read_and_write_some_bits() -> None:
     assert message.near == 0b0010_0010
     with pytest.raises(ValueError, match=r"8 is not in 0\.\.7"):
         message.high_bits = 8
+
+
+@pytest.mark.parametrize("wrong", [1.5, None, "1"])
+def test_bit_ranges_are_integers(wrong: Any) -> None:
+    message = good(near=0b0101_0001)
+    for name in ("high_bits", "colour_bits"):
+        with pytest.raises(ValueError, match="must be an integer"):
+            setattr(message, name, wrong)
+    assert message.near == 0b0101_0001
 
 
 def test_properties_of_the_class_tell_of_themselves() -> None:

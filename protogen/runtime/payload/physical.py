@@ -9,8 +9,12 @@ Each stands in a class body beside the field that holds the raw value:
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast, overload
+
+from protogen.runtime.errors import EncodeError
+from protogen.runtime.payload.number import as_integer
 
 if TYPE_CHECKING:
     from protogen.runtime.payload.rules import FloatRule, IntegerRule
@@ -72,6 +76,8 @@ class _PhysicalValues(_PhysicalView[ValueT]):
         return [self._shown(raw) for raw in getattr(record, self._field)]
 
     def _raw(self, record: object, value: Any) -> Any:
+        if isinstance(value, str) or not isinstance(value, Iterable):
+            raise EncodeError("", f"must be a list of numbers, not {value!r}")
         return [self._rule.nearest(element) for element in value]
 
 
@@ -106,10 +112,11 @@ class BitRange(_View[int]):
         return (int(getattr(record, self._field)) >> self._low) & self._greatest
 
     def _raw(self, record: object, value: int) -> int:
-        if not 0 <= value <= self._greatest:
-            raise ValueError(f"{int(value)} is not in 0..{self._greatest}")
-        others = int(getattr(record, self._field)) & ~(self._greatest << self._low)
-        return others | int(value) << self._low
+        run = as_integer(value)
+        if not 0 <= run <= self._greatest:
+            raise ValueError(f"{run} is not in 0..{self._greatest}")
+        others = as_integer(getattr(record, self._field)) & ~(self._greatest << self._low)
+        return others | run << self._low
 
 
 class EnumRange(BitRange, Generic[EnumT]):

@@ -11,6 +11,7 @@ import math
 from collections import ChainMap
 from collections.abc import Mapping
 from fractions import Fraction
+from numbers import Integral, Number, Real
 from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from protogen.runtime.errors import EncodeError, join_path
@@ -181,6 +182,10 @@ class IntegerRule(Rule):
             return self._only_special()
         exact = (_exact(physical) - self.offset) / self.scale
         raw = round(exact)
+        low, high = self._capacity()
+        if not low <= raw <= high:
+            bounds = sorted((low, high), key=lambda bound: bound * self.scale)
+            raise ValueError(f"{physical} is not in {'..'.join(map(self._shown, bounds))}")
         if raw in self.special.values():
             raise ValueError(self._means_no_reading(exact, raw))
         return raw
@@ -266,17 +271,16 @@ class FloatRule(Rule):
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> float:
         """The number, if it is not too large for its bits."""
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            raise EncodeError("", f"must be a number, not {value!r}")
-        number = _float(value)
-        if math.isfinite(number) and abs(value) > _GREATEST_FLOAT[self.bits]:
+        number = _float(value, "a number")
+        if math.isfinite(number) and abs(number) > _GREATEST_FLOAT[self.bits]:
             raise EncodeError("", f"{value} is too large for {self.bits} bits")
         if strict:
-            refuse(self.violations(value, scope))
+            refuse(self.violations(number, scope))
         return number
 
     def violations(self, value: float, scope: Scope) -> list[Violation]:
         """A constant or range that does not hold."""
+        value = float(value)
         if self.const is not None and value != self.const:
             return [Violation("", f"must be {self.const}, not {value}")]
         if _within(value, self.least, self.greatest):
@@ -291,34 +295,45 @@ class FloatRule(Rule):
         """A number, or the text of one that JSON does not have."""
         if data in ("nan", "inf", "-inf"):
             return float(data)
-        if not isinstance(data, int | float) or isinstance(data, bool):
-            raise EncodeError("", f"must be a number, nan, inf or -inf, not {data!r}")
-        return _float(data)
+        return _float(data, "a number, nan, inf or -inf")
 
     def physical(self, raw: float) -> float:
         """The physical value in `unit`."""
-        return float(raw * self.scale + self.offset)
+        scaled = raw * self.scale
+        return float(scaled + self.offset if self.offset else scaled)  # -0.0 + 0 is 0.0.
 
     def nearest(self, physical: float | Fraction) -> float:
-        """The raw value for a physical value. Raises ValueError if it is not finite."""
-        return float((_exact(physical) - self.offset) / self.scale)
+        """The raw value for a physical value. Raises ValueError if it does not fit the bits."""
+        number = _float(physical, "a number")
+        if math.isnan(number):
+            return number
+        if math.isinf(number) or not (number or self.offset):  # -0.0 is no Fraction.
+            return number if self.scale > 0 else -number
+        raw = (_exact(physical) - self.offset) / self.scale
+        if abs(raw) > _GREATEST_FLOAT[self.bits]:
+            raise ValueError(f"{physical} is too large for {self.bits} bits")
+        return float(raw)
 
 
-def _float(value: float) -> float:
+def _float(value: Any, kind: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise EncodeError("", f"must be {kind}, not {value!r}")
     try:
         return float(value)
     except OverflowError:
         raise EncodeError("", "is an integer that is too large for a float") from None
 
 
-_GREATEST_FLOAT = {32: (2 - 2**-23) * 2.0**127, 64: math.inf}
+_GREATEST_FLOAT = {32: (2 - 2**-23) * 2.0**127, 64: (2 - 2**-52) * 2.0**1023}
 
 
-def _exact(physical: float | Fraction) -> Fraction:
-    try:
-        return Fraction(physical)
-    except (OverflowError, ValueError):
-        raise ValueError(f"{physical!r} is no physical value") from None
+def _exact(physical: Any) -> Fraction:
+    if isinstance(physical, Fraction):
+        return physical
+    number = _float(physical, "a number")  # A text may have an exponent that fills the memory.
+    if not math.isfinite(number):
+        raise ValueError(f"{physical!r} is no physical value")
+    return Fraction(int(physical) if isinstance(physical, Integral) else number)
 
 
 def _within(value: float, least: int | Fraction | None, greatest: int | Fraction | None) -> bool:
@@ -358,6 +373,9 @@ class BoolRule(Rule):
 
 
 def _is_bit(value: Any) -> bool:
+    """True for a bool, also NumPy's, and for the integers 0 and 1."""
+    if isinstance(value, Number) and not isinstance(value, Integral):
+        return False
     try:
         return value in (0, 1)
     except ValueError:  # Whether an array of numbers equals one is no single question.
@@ -424,28 +442,30 @@ class OctetsRule(SeveralRule[bytes]):
 class TextRule(SeveralRule[str]):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
-    `size` is a number: the text has at most so many characters and does not end with NUL, which
-    pads it. It is the name of a field: exactly as many as that says. None: `greatest` at most.
+    `size` is a number: the text has at most so many characters, and NUL pads it. It is the name of
+    a field: exactly as many as that says. None: `greatest` at most.
     """
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""
-        if not isinstance(value, str):
-            raise EncodeError("", f"must be text, not {value!r}")
+        text = self.from_json(value, scope)
         if strict:
-            refuse(self.violations(value, scope))
-        if any(character > "\xff" for character in value):
-            raise EncodeError("", f"must be text of characters up to U+00FF, not {value!r}")
+            refuse(self.violations(text, scope))
+        if any(character > "\xff" for character in text):
+            raise EncodeError("", f"must be text of characters up to U+00FF, not {text!r}")
         if isinstance(self.size, int):
-            self._check_padded(value, self.size)
+            _check_most(len(text), self.size, "characters")
+            text = text.rstrip("\0")  # The padding is the same bytes.
         else:
-            self._check_count(len(value), scope, "characters")
-        if self.const is not None and value != self.const:
+            self._check_count(len(text), scope, "characters")
+        if self.const is not None and text != self.const:
             raise EncodeError("", f"must be {self.const!r}")
-        return value
+        return text
 
     def violations(self, value: str, scope: Scope) -> list[Violation]:
-        """Characters that ASCII does not have: the same byte is another one in each code page."""
+        """A NUL at the end that padding hides; what ASCII does not have, as code pages differ."""
+        if isinstance(self.size, int) and value.endswith("\0"):
+            return [Violation("", "ends with NUL, which a receiver takes for padding")]
         if value.isascii():
             return []
         index = next(index for index, character in enumerate(value) if character > "\x7f")
@@ -457,8 +477,3 @@ class TextRule(SeveralRule[str]):
         if not isinstance(data, str):
             raise EncodeError("", f"must be text, not {data!r}")
         return data
-
-    def _check_padded(self, value: str, size: int) -> None:
-        _check_most(len(value), size, "characters")
-        if value.endswith("\0"):
-            raise EncodeError("", "ends with NUL, which a receiver takes for padding")
