@@ -123,6 +123,7 @@ def test_an_unknown_frame_comes_back_from_its_parts_and_payload() -> None:
     [
         ({"message": "ack", "parts": {"counter": True}, "fields": {}}, "counter"),
         ({"message": "gps", "parts": {"counter": 1}, "fields": {"nmea": True}}, "fields.nmea"),
+        ({"message": "ack", "parts": {"counter": 1, "command": 65.5}, "fields": {}}, "command"),
         ({"event": "unknown", "parts": {"command": True, "counter": 1}, "payload": ""}, "command"),
         ({"event": "unknown", "parts": {"command": 90, "counter": True}, "payload": ""}, "counter"),
         ({"event": "unknown", "parts": {"command": 9.5, "counter": 1}, "payload": ""}, "command"),
@@ -133,6 +134,15 @@ def test_true_and_floats_are_no_integers_to_json(line: dict[str, Any], path: str
     with pytest.raises(EncodeError) as caught:
         matty.PROTOCOL.encode_line({"sender": "esp", **line})
     assert caught.value.path == path
+
+
+def test_parts_that_contradict_the_message_are_refused() -> None:
+    matty = module_at(ROOT / "schemas" / "matty.yaml")
+    line = {"sender": "pc", "message": "stop", "fields": {}, "parts": {"counter": 1, "command": 71}}
+    with pytest.raises(EncodeError, match="command: 71 is not stop, whose command is 83"):
+        matty.PROTOCOL.encode_line(line)
+    line["parts"] = {"counter": 1, "command": 83}
+    assert matty.PROTOCOL.encode_line(line) == bytes.fromhex("55 02 01 53 AA")
 
 
 def test_bytes_that_are_no_frame_come_back_from_their_digits() -> None:

@@ -44,8 +44,14 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
     except EncodeError as error:
         raise error.inside("fields") from None
     parts = _parts(line) if "parts" in line else {}
-    shown = {part.name for part in sender.layout.identity}
-    given = {name: value for name, value in parts.items() if name not in shown}
+    identity = {
+        part.name: value
+        for part, value in zip(sender.layout.identity, message.IDENTITY, strict=True)
+    }
+    for part, value in identity.items():
+        if parts.get(part, value) != value:
+            raise EncodeError(part, f"{parts[part]!r} is not {name}, whose {part} is {value}")
+    given = {part: value for part, value in parts.items() if part not in identity}
     return encode_frame(sender, message.IDENTITY, payload, given, strict=False)
 
 
