@@ -291,6 +291,14 @@ def test_each_direction_of_a_log_comes_back() -> None:
     assert flex == "1B 02 05 05 00 08 00 00 00 00 03 63 87 27 C0 1B 03\n"
 
 
+@pytest.mark.parametrize("command", ["decode", "explain"])
+def test_frames_that_only_one_can_have_sent_need_no_sender(command: str) -> None:
+    said = run(command, MATTY, "--hex", "55020141BC", "--sender", "esp")
+    guessed = run(command, MATTY, "--hex", "55020141BC")
+    assert guessed.exit_code == 0, guessed.stderr
+    assert guessed.stdout == said.stdout
+
+
 # --- mistakes -------------------------------------------------------------------------------------
 
 
@@ -298,6 +306,7 @@ def test_each_direction_of_a_log_comes_back() -> None:
     ("arguments", "messages"),
     [
         (["--hex", "00"], ["nothing says who sent the bytes", "give --sender pc or esp"]),
+        (["--hex", "55020141BC00"], ["nothing says who sent the bytes", "give --sender pc or esp"]),
         (
             ["--sender", "esq", "--hex", "00"],
             ["`matty` has no sender `esq`; it has pc, esp", "did you mean `esp`?"],

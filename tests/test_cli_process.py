@@ -307,6 +307,27 @@ def test_lines_of_json_are_not_awaited_from_a_terminal() -> None:
     assert b"name one, or pipe lines of JSON in" in result.stderr
 
 
+def test_names_of_files_need_no_locale(tmp_path: Path) -> None:
+    """A bare container has the locale C, and Python may be told to take it at its word."""
+    schema = tmp_path / "m\u00f6we.yaml"
+    schema.write_bytes(Path(MATTY).read_bytes())
+    (tmp_path / "protogen.toml").write_text('schemas = ["m\u00f6we.yaml"]\n', encoding="utf-8")
+    bare = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    for arguments in (["generate"], ["generate", "--check"], ["lock"], ["check", "m\u00f6we.yaml"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "protogen", *arguments],
+            env={**os.environ, **bare},
+            cwd=tmp_path,
+            capture_output=True,
+            check=False,
+            timeout=PATIENCE,
+        )
+        assert done.returncode == 0, done.stderr
+    made = (tmp_path / "generated" / "python" / "matty.py").read_text(encoding="utf-8")
+    assert " from m\u00f6we.yaml (spec" in made.splitlines()[0]
+    assert '"m\u00f6we.yaml"' in (tmp_path / "protogen.lock").read_text(encoding="utf-8")
+
+
 def test_a_live_stream_is_shown_as_it_comes() -> None:
     process = launch("decode", MATTY, "--sender", "pc", "--format", "jsonl")
     assert process.stdin is not None

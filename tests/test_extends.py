@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from protogen.compiler import compile_file
 from protogen.problems import Problems, SourceMap, Span
 from protogen.schema.dialects.extends import Merged, merge_bases
 from protogen.schema.dialects.merge import merge
@@ -17,6 +19,13 @@ from protogen.schema.dialects.project_folder import project_folder
 from protogen.schema.dialects.renames import apply_renames
 from protogen.schema.text.document import parse_document, read_document
 from protogen.schema.text.nodes import MappingNode, Node, ScalarNode, SequenceNode, to_data
+
+
+def test_a_base_that_is_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    (tmp_path / "dialect.yaml").write_text("protocol: two\nextends: pipe.yaml\n")
+    (problem,) = compile_file(tmp_path / "dialect.yaml").problems
+    assert problem.message == "the base can't be read: it is a pipe"
 
 
 def tree(text: str, file: str) -> Node:

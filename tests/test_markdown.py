@@ -228,7 +228,7 @@ def test_index_lists_protocols_and_dialects():
     assert index[0][2] == ["[tiny](tiny.md)", "Tiny protocol", "`pc`", "1", "tiny.txt"]
     assert index[1][2] == ["[a_dialect](a_dialect.md)", "Tiny protocol", "tiny.yaml", "`pc`", "1"]
     assert "## Dialects" in files["fidelity.md"].text
-    assert "from 2 schemas (spec" in (files["index.md"].banner or "")
+    assert "\n<!-- from a_dialect.yaml -->\n<!-- spec sha256 " in (files["index.md"].banner or "")
 
 
 def test_no_protocol_gives_no_file():

@@ -102,3 +102,12 @@ def test_no_file_names_a_registry_or_a_path_of_one_machine(
 
 def read(path: Path) -> str:
     return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+
+
+def test_an_editable_install_does_not_show_the_folder_of_examples(tmp_path: Path) -> None:
+    """Else `import generated.python.rover` of a project could find protogen's own modules."""
+    program = "import protogen, generated"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert "No module named 'generated'" in done.stderr

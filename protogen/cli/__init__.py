@@ -7,6 +7,7 @@ of any of them either: a command imports what it needs when it runs, so that `--
 from __future__ import annotations
 
 import io
+import os
 import sys
 from importlib import import_module
 from typing import Annotated, Any
@@ -94,8 +95,19 @@ def _options(
     pass
 
 
+def _start_again_in_utf8() -> None:
+    """Start again in Python's UTF-8 mode where the locale says that names of files are ASCII.
+
+    Else names with other characters could not be written, nor found by what files say of them.
+    """
+    is_utf8 = sys.getfilesystemencoding() == "utf-8"
+    if not is_utf8 and os.environ.get("PYTHONUTF8") != "1":
+        os.execve(sys.executable, sys.orig_argv, {**os.environ, "PYTHONUTF8": "1"})  # noqa: S606
+
+
 def main() -> None:
     """Run the command line."""
+    _start_again_in_utf8()
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A character that the terminal's encoding lacks is no reason to stop.
         sys.stdout.reconfigure(errors="backslashreplace")

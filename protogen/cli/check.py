@@ -10,8 +10,7 @@ import typer
 from protogen.cli.console import echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet, SchemaPaths
-from protogen.cli.schemas import compile_files, each_once
-from protogen.schema.files import schema_files
+from protogen.cli.schemas import chosen_schemas, compile_files, each_once
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -21,7 +20,7 @@ EXAMPLE = "Example: protogen check schemas"
 
 
 def check(
-    schemas: SchemaPaths,
+    schemas: SchemaPaths = None,
     format: Annotated[
         Literal["text", "json", "github"],
         typer.Option(help="How to print: for people, programs, or GitHub Actions."),
@@ -33,7 +32,7 @@ def check(
     Every problem of every schema is reported. Exits with 0 if there is nothing to fix, 1 if there
     is.
     """
-    compilations = compile_files(schema_files(schemas), "checking")
+    compilations = compile_files(chosen_schemas(schemas), "checking")
     match format:
         case "text":
             _print_text(compilations, quiet=quiet)

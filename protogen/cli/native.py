@@ -11,7 +11,6 @@ from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, UsageError, guarded
 from protogen.cli.options import SchemaPaths
 from protogen.convert.formats import OutputFormat
-from protogen.schema.files import schema_files
 
 if TYPE_CHECKING:
     from protogen.convert.columns.tables import Tables
@@ -27,20 +26,20 @@ GROUP = typer.Typer(
 
 @GROUP.command(cls=Command, epilog="Example: protogen native build schemas")
 @guarded
-def build(schemas: SchemaPaths) -> int:
+def build(schemas: SchemaPaths = None) -> int:
     """Compile what reads captures of these schemas fast, ahead of its first use.
 
     Uses the compiler that CC names, else one on the PATH, else that of the package ziglang.
     Libraries are kept in a cache that only you can write to; what is there already is not compiled
     again.
     """
-    from protogen.cli.schemas import open_protocol
+    from protogen.cli.schemas import chosen_schemas, open_protocol
     from protogen.convert.columns.tables import tables_of
     from protogen.live.rows import driver_of
     from protogen.native.build import build as build_library
     from protogen.native.errors import NativeError
 
-    protocols = [open_protocol(file) for file in schema_files(schemas)]
+    protocols = [open_protocol(file) for file in chosen_schemas(schemas)]
     try:
         for protocol in protocols:
             for sender in protocol.senders:

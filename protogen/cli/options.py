@@ -10,7 +10,10 @@ import typer
 SchemaFile = Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")]
 
 SchemaPaths = Annotated[
-    list[Path], typer.Argument(metavar="SCHEMA", help="Schema files, or folders of them.")
+    list[Path] | None,
+    typer.Argument(
+        metavar="SCHEMA", help="Schema files, or folders of them. Default: the project's schemas."
+    ),
 ]
 CaptureFile = Annotated[
     Path, typer.Argument(metavar="FILE|-", help="The capture; - is standard input.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,6 +73,11 @@ def open_project() -> Project | None:
     project = read_project(file, problems, sources)
     _end_if_wrong(problems, sources)
     return project
+
+
+def chosen_schemas(paths: Sequence[Path] | None) -> tuple[Path, ...]:
+    """Return the schemas at paths; without any, those of the project around."""
+    return schema_files(paths) if paths else own_schemas()
 
 
 def own_schemas() -> tuple[Path, ...]:

@@ -11,7 +11,14 @@ from tempfile import TemporaryDirectory
 import msgspec
 
 from protogen.cache_folder import check, safe_folder
-from protogen.native.cache import SUFFIX, as_native_error, cache_folder
+from protogen.native.cache import (
+    SUFFIX,
+    as_native_error,
+    cache_folder,
+    digest_file,
+    digest_of,
+    is_whole,
+)
 from protogen.native.compiler import Compiler, compilers, working
 from protogen.native.driver import Driver
 from protogen.native.errors import NativeError, NoCompilerError
@@ -52,7 +59,7 @@ def compiled(name: str, text: str, words: tuple[str, ...]) -> Built:
         return Built(path, False)
     folder = safe_folder(cache_folder())
     paths = [folder / f"{stem}-{_digest(item.identity)[:8]}{SUFFIX}" for item in found]
-    path = next((path for path in paths if path.exists()), None)
+    path = next((path for path in paths if is_whole(path)), None)
     is_new = path is None
     if path is None:
         chosen = working(found)
@@ -74,7 +81,7 @@ def _built_ahead(stem: str) -> Path | None:
         folder = cache_folder()
         if not folder.is_dir():
             return None
-        built = safe_folder(folder).glob(f"{stem}-*{SUFFIX}")
+        built = filter(is_whole, safe_folder(folder).glob(f"{stem}-*{SUFFIX}"))
         path = max(built, key=lambda item: item.stat().st_mtime_ns, default=None)
     except OSError:  # Somebody cleans the cache, or does not let us look there.
         return None
@@ -96,6 +103,9 @@ def _compile(text: str, found: Compiler, path: Path) -> None:
             source.write_text(text, encoding="utf-8")
             found.build(source, library)
             library.chmod(0o700)
+            digest = Path(name, "digest")
+            digest.write_text(digest_of(library.read_bytes()), encoding="ascii")
+            digest.replace(digest_file(path))
             library.replace(path)
     except OSError as error:
         raise NativeError(f"{path.parent}: {error.strerror}") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,6 +29,25 @@ def cache_folder() -> Path:
     return caches.cache_folder("native")
 
 
+def digest_of(content: bytes) -> str:
+    """Hash of a library's content, as it is kept beside it."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_file(library: Path) -> Path:
+    """The file with the hash of a library."""
+    return library.with_name(f"{library.name}.sha256")
+
+
+def is_whole(library: Path) -> bool:
+    """True if a library is there and holds what was compiled: loading half of one can crash."""
+    try:
+        kept = digest_file(library).read_text(encoding="ascii")
+        return kept == digest_of(library.read_bytes())
+    except (OSError, ValueError):
+        return False
+
+
 def libraries() -> list[Path]:
     """The libraries that are kept."""
     folder = cache_folder()
@@ -39,4 +59,5 @@ def clean() -> int:
     found = libraries()
     for library in found:
         library.unlink(missing_ok=True)
+        digest_file(library).unlink(missing_ok=True)
     return len(found)

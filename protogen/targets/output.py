@@ -19,7 +19,8 @@ from stat import S_ISREG
 
 import msgspec
 
-from protogen.targets.banner import is_banner
+from protogen.targets.banner import is_banner, version_in
+from protogen.version import VERSION
 
 MANIFEST = PurePosixPath("manifest.json")
 """Lists, in a folder of generated files, those that can't hold a banner."""
@@ -32,7 +33,8 @@ _LONGEST_BANNER = 4096
 class File(msgspec.Struct, frozen=True):
     r"""A file to be generated, at a path relative to its folder.
 
-    `banner` is the first line, without its line break; None where the format has no comments.
+    `banner` is the first line, and more where it tells of several schemas; None where the format
+    has no comments.
     `text` is the rest. Lines end in ``\n``. A `shared` file tells of all schemas of the folder, so
     it is left as it is where only some of them are generated. A file that is made `once` is for
     its user to go on with: where there is one, whatever it holds, it stays.
@@ -139,7 +141,7 @@ def expected_files(
     """Return the sha256 of each file that the folder should hold; None: any content will do."""
     wanted = _wanted(files, folder, prune)
     any_content: dict[PurePosixPath, str | None] = {file.path: None for file in files}
-    return any_content | {file.path: sha256(file.bytes).hexdigest() for file in wanted}
+    return any_content | {file.path: _hash(file.bytes) for file in wanted}
 
 
 def is_current(
@@ -153,7 +155,7 @@ def is_current(
 
 def _holds(path: Path, digest: str | None) -> bool:
     content = _read(path)
-    return content is not None and digest in (None, sha256(content).hexdigest())
+    return content is not None and digest in (None, _hash(content))
 
 
 # --- what is there ------------------------------------------------------------------------------
@@ -169,10 +171,10 @@ def _difference(file: File, folder: Path, listed: Mapping[str, str]) -> Differen
         return Difference(file.path, State.REFUSED, reason)
     if present is None:
         return Difference(file.path, State.MISSING)
-    if present == file.bytes:
+    if with_plain_ends(present) == file.bytes:
         return None
     if _is_ours(file.path, present, listed):
-        return Difference(file.path, State.STALE)
+        return Difference(file.path, State.STALE, _age(present))
     return Difference(file.path, State.REFUSED, "not made by protogen; move it away first")
 
 
@@ -197,11 +199,21 @@ def _content(path: Path) -> bytes | None:
 
 
 def _is_ours(path: PurePosixPath, present: bytes, listed: Mapping[str, str]) -> bool:
+    """True if we made a file, or both sides of one in which a merge left a conflict."""
+    sides = sides_of(present)
     if path == MANIFEST:
-        return _parse_manifest(present) is not None
+        return all(_parse_manifest(side) is not None for side in sides)
     if str(path) in listed:
-        return listed[str(path)] == sha256(present).hexdigest()
-    return is_banner(_first_line(present))
+        return any(listed[str(path)] == _hash(side) for side in sides)
+    return all(is_banner(_first_line(side)) for side in sides)
+
+
+def _age(present: bytes) -> str:
+    """The version that made a file, if that is another one."""
+    version = version_in(_first_line(present))
+    if version in (None, VERSION):
+        return ""
+    return f"made by protogen {version}, this is {VERSION}"
 
 
 def _first_line(content: bytes) -> str:
@@ -253,6 +265,41 @@ def _read(path: Path, size: int = -1) -> bytes | None:
         return None
 
 
+# --- checkouts and merges -----------------------------------------------------------------------
+
+
+def with_plain_ends(content: bytes) -> bytes:
+    """The content with the line ends that we write; git may check files out with CRLF."""
+    return content.replace(b"\r\n", b"\n")
+
+
+def sides_of(content: bytes) -> tuple[bytes, ...]:
+    """Both sides of a file in which a merge left conflicts; else the content alone."""
+    if b"<<<<<<< " not in content:
+        return (content,)
+    ours: list[bytes] = []
+    theirs: list[bytes] = []
+    sides: tuple[list[bytes], ...] = (ours, theirs)
+    for line in content.splitlines(keepends=True):
+        marker = line[:7]
+        if marker == b"<<<<<<<":
+            sides = (ours,)
+        elif marker == b"|||||||":
+            sides = ()
+        elif marker == b"=======" and sides != (ours, theirs):
+            sides = (theirs,)
+        elif marker == b">>>>>>>":
+            sides = (ours, theirs)
+        else:
+            for side in sides:
+                side.append(line)
+    return b"".join(ours), b"".join(theirs)
+
+
+def _hash(content: bytes) -> str:
+    return sha256(with_plain_ends(content)).hexdigest()
+
+
 # --- the manifest -------------------------------------------------------------------------------
 
 
@@ -261,9 +308,7 @@ def _wanted(files: Sequence[File], folder: Path, prune: bool) -> tuple[File, ...
     due = tuple(file for file in files if not _stays(file, folder, prune))
     kept = {} if prune else _read_manifest(folder)
     hashes = kept | {
-        str(file.path): sha256(file.bytes).hexdigest()
-        for file in due
-        if file.banner is None and not file.once
+        str(file.path): _hash(file.bytes) for file in due if file.banner is None and not file.once
     }
     return (*due, _manifest(hashes)) if hashes else due
 
@@ -281,7 +326,8 @@ def _manifest(hashes: Mapping[str, str]) -> File:
 
 
 def _read_manifest(folder: Path) -> dict[str, str]:
-    return _parse_manifest(_read(folder / MANIFEST) or b"") or {}
+    sides = sides_of(_read(folder / MANIFEST) or b"")
+    return {path: text for side in sides for path, text in (_parse_manifest(side) or {}).items()}
 
 
 def _parse_manifest(content: bytes) -> dict[str, str] | None:
@@ -308,10 +354,16 @@ def _apply(
         if item.state is State.EXTRA:
             _remove(path, folder)
         else:
-            _replace(path, contents[item.path])
+            _replace(path, _as_before(path, contents[item.path]))
     except OSError as error:
         return Difference(item.path, State.REFUSED, _os_reason(error))
     return None
+
+
+def _as_before(path: Path, content: bytes) -> bytes:
+    """The content with the line ends of the file that is there: a checkout may have CRLF."""
+    before = _read(path, _LONGEST_BANNER) or b""
+    return content.replace(b"\n", b"\r\n") if b"\r\n" in before else content
 
 
 def _replace(path: Path, content: bytes) -> None:

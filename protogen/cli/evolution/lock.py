@@ -10,13 +10,12 @@ import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import SchemaPaths
-from protogen.schema.files import schema_files
 
 EXAMPLE = "Example: protogen lock schemas && protogen breaking schemas --against-lock protogen.lock"
 
 
 def lock(
-    schemas: SchemaPaths,
+    schemas: SchemaPaths = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="The lock file.")
     ] = Path("protogen.lock"),
@@ -28,13 +27,13 @@ def lock(
 
     For trees without git: `protogen breaking --against-lock` holds schemas against it.
     """
-    from protogen.cli.schemas import open_protocol
+    from protogen.cli.schemas import chosen_schemas, open_protocol
     from protogen.evolution.lock import lock_text
 
     base = output.resolve().parent
     found = {
         Path(os.path.relpath(file.resolve(), base)).as_posix(): open_protocol(file)
-        for file in schema_files(schemas)
+        for file in chosen_schemas(schemas)
     }
     text = lock_text(found)
     if not check:

@@ -44,8 +44,29 @@ class Codec(msgspec.Struct, frozen=True):
             return find_sender(self.protocol, name).name
         if len(self.senders) == 1:
             return self.senders[0]
-        hint = f"give --sender {' or '.join(self.senders)}"
-        raise UsageError("nothing says who sent the bytes", hint)
+        raise self._unclear("nothing says who sent the bytes")
+
+    def sender_of_frames(self, name: str | None, data: bytes) -> str:
+        """Return who sent these bytes: as `sender_of_bytes`, or the only one who can have.
+
+        That is one whose frames are all of the bytes, while no other's are any of them. Raises
+        UsageError if that is not clear.
+        """
+        if name is not None or len(self.senders) == 1 or not data:
+            return self.sender_of_bytes(name)
+        kinds = {sender: self._kinds(sender, data) for sender in self.senders}
+        found = [sender for sender, seen in kinds.items() if "message" in seen]
+        if len(found) == 1 and kinds[found[0]] == {"message"}:
+            return found[0]
+        both = f": they are frames of {' and of '.join(found)}" if len(found) > 1 else ""
+        raise self._unclear(f"nothing says who sent the bytes{both}")
+
+    def _kinds(self, sender: str, data: bytes) -> set[str]:
+        decoder = self.decoder(sender)
+        return {event.kind for event in (*decoder.feed(data), *decoder.flush())}
+
+    def _unclear(self, message: str) -> UsageError:
+        return UsageError(message, f"give --sender {' or '.join(self.senders)}")
 
     def decoder(self, sender: str) -> Decoder[Any, Any]:
         """Return a new decoder of what ``sender`` sends."""

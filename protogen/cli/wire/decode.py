@@ -69,7 +69,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
     kind = _input_format(input, tagged=tagged, has_text=hex is not None)
     codec = open_codec(schema)
     both_ways = kind == "tagged" and sender is None
-    senders = codec.senders if both_ways else (codec.sender_of_bytes(sender),)
+    senders = codec.senders if both_ways else (_sender(codec, sender, hex),)
     complaints = Complaints()
     has_invalid = False
     show = _printer(codec, format, show_sender=both_ways)
@@ -84,6 +84,13 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 
 # --- in -------------------------------------------------------------------------------------------
+
+
+def _sender(codec: Codec, name: str | None, text: str | None) -> str:
+    """Return who sent the bytes; those of a text are all there, and may tell it."""
+    if text is None:
+        return codec.sender_of_bytes(name)
+    return codec.sender_of_frames(name, parse_hex(text))
 
 
 def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:

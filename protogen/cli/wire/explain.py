@@ -39,8 +39,8 @@ def explain(
     from protogen.cli.wire.codec import open_codec
 
     codec = open_codec(schema)
-    decoder = codec.decoder(codec.sender_of_bytes(sender))
     data = parse_hex(_standard_input() if hex is None else hex)
+    decoder = codec.decoder(codec.sender_of_frames(sender, data))
     out = console()
     if not data:
         out.print("no bytes")

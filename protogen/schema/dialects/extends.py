@@ -107,6 +107,9 @@ def _read_base(
     file: str, named: ScalarNode, place: str, problems: Problems, sources: SourceMap
 ) -> Document | None:
     try:
+        if Path(place).is_fifo():  # Nobody may ever write to it.
+            problems.add("PG022", named.span, "the base can't be read: it is a pipe")
+            return None
         data = read_bytes(place)
     except OSError as error:
         problems.add("PG022", named.span, f"the base can't be read: {reason(error)}")
