@@ -175,3 +175,15 @@ def test_a_message_may_be_called_like_an_identity(compiled: ModuleType) -> None:
         assert compiled.decode(frame, "a", engine="construct") == message
         (event,) = compiled.Decoder("a").feed(frame)
         assert event.message == message
+
+
+def test_a_sender_of_thousands_of_messages_can_be_imported(tmp_path: Path) -> None:
+    """Python compiles only so many nested operators, and `A | B | C` nests."""
+    messages = (f"  m{i}: {{id: {i}, from: a, fields: {{x: uint8}}}}\n" for i in range(3001))
+    head = HEAD.replace("{type: uint8, id", "{type: uint16, id")
+    schema = tmp_path / "corner.yaml"
+    schema.write_text(head + "messages:\n" + "".join(messages))
+    module = protogen.module_of(protogen.load(schema))
+    frame = bytes.fromhex("55 B8 0B 05 AA")  # 0x0BB8 is 3000.
+    assert module.encode(module.M3000(x=5)) == frame
+    assert module.decode(frame, "a") == module.M3000(x=5)

@@ -210,7 +210,7 @@ def _float_choices(step: FloatStep) -> Choices:
         # Rounding to 32 bits never leaves two numbers of 32 bits.
         return Choices((low, high), lambda random: _rounded(random.uniform(low, high), bits))
     form = "<f" if bits == 32 else "<d"
-    greatest = (2 - 2**-23) * 2.0**127 if bits == 32 else math.ldexp(2 - 2**-52, 1023)
+    greatest = float(step.type.greatest)
     values = (0.0, -0.0, 1.0, -1.5, greatest, -greatest, "inf", "-inf", "nan")
     return Choices(values, lambda random: _any_float(form, random))
 

@@ -6,6 +6,7 @@ A type says how a value lies on the wire; what the value means is on the field.
 from __future__ import annotations
 
 import struct
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
@@ -152,6 +153,11 @@ class Float(_Number, frozen=True, kw_only=True):
     bit_fields: ClassVar[tuple[()]] = ()
     named_types: ClassVar[tuple[()]] = ()
     is_closed: ClassVar[bool] = False
+
+    @property
+    def greatest(self) -> Fraction:
+        """The greatest finite number."""
+        return Fraction((2 - 2**-23) * 2.0**127 if self.bits == 32 else sys.float_info.max)
 
     def raw(self, value: float) -> int:
         """The number whose bits lie on the wire."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 
 from protogen.model.meanings import NamedValue
-from protogen.model.types import Array, Constant, Field, NumberType, Type, is_integer
+from protogen.model.types import Array, Constant, Field, Float, NumberType, Type, is_integer
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
@@ -72,6 +73,10 @@ class _Check:
         if not is_integer(type_):
             if written is None or not isinstance(type_, NumberType):
                 return None, None
+            if isinstance(type_, Float) and any(abs(end) > type_.greatest for end in written):
+                text = f"`range` goes beyond what {type_.name} holds: {float(type_.greatest)}"
+                self._error("PG114", "range", text)
+                return None, None
             return self._ordered(*written)
         least, greatest = Fraction(type_.least), Fraction(type_.greatest)
         if written is None:
@@ -92,10 +97,21 @@ class _Check:
 
     def scale(self) -> Fraction:
         """The scale; zero would lose every value."""
-        if self._item.scale == 0:
+        scale = self._item.scale if self._item.scale is not None else Fraction(1)
+        if scale == 0:
             self._error("PG123", "scale", "a scale of zero makes every value the same")
             return Fraction(1)
-        return self._item.scale if self._item.scale is not None else Fraction(1)
+        for key, offset in (("scale", Fraction(0)), ("offset", self._item.offset)):
+            if offset is not None and not self._is_readable(scale, offset):
+                self._error("PG123", key, f"`{key}` makes physical values that no float64 holds")
+                return Fraction(1)
+        return scale
+
+    def _is_readable(self, scale: Fraction, offset: Fraction) -> bool:
+        """True if physical values, and the scale itself, fit the numbers that programs use."""
+        ends = (self._element.least, self._element.greatest) if is_integer(self._element) else (1,)
+        greatest = max(abs(scale), abs(offset), *(abs(end * scale + offset) for end in ends))
+        return greatest <= sys.float_info.max and abs(scale) >= sys.float_info.min
 
     def special(self) -> tuple[NamedValue, ...]:
         """The raw values that mean that there is no reading."""

@@ -270,11 +270,12 @@ other can't come to more than a program can hold.
     Code(
         "PG123",
         "zero-scale",
-        "A scale of zero",
+        "A scale of zero, or beyond floating point",
         """\
 The physical value is the raw value times `scale` plus `offset`. With a scale of zero all raw values
 would mean the same, and an encoder could not get back to them. Leave `scale` out where raw and
-physical value are equal.
+physical value are equal. Programs have physical values as 64-bit floating point, up to 1.8e308: a
+`scale` or `offset` that makes greater ones, or a scale below 2.3e-308, is a mistake as well.
 """,
         with_fields("angle: {type: sint16, scale: 0, unit: deg}"),
         with_fields("angle: {type: sint16, scale: 1/16, unit: deg}"),

@@ -71,6 +71,10 @@ def _signs(expression: str) -> list[tuple[int, str]]:
     return found
 
 
+_LONGEST_CHAIN = 200
+"""Python nests each `|` in the next, and compiles only so many levels."""
+
+
 def union(start: str, members: str, indent: int) -> str:
     """`start` and a union of types, in brackets where it does not fit one line."""
     if indent + len(start) + len(members) <= WIDTH:
@@ -79,6 +83,9 @@ def union(start: str, members: str, indent: int) -> str:
     if len(inner) + len(members) <= WIDTH:
         return f"{start}(\n{inner}{members}\n{margin})"
     first, *others = members.split(" | ")
+    if len(others) >= _LONGEST_CHAIN:
+        lines = [f"{inner}{member}," for member in (first, *others)]
+        return "\n".join([f"{start}_typing.Union[  # noqa: UP007", *lines, f"{margin}]"])
     lines = [f"{inner}{first}", *(f"{inner}| {other}" for other in others)]
     return "\n".join([f"{start}(", *lines, f"{margin})"])
 
