@@ -213,3 +213,18 @@ def test_failure_is_reported_with_all_that_it_takes(monkeypatch: pytest.MonkeyPa
     assert lines[3].startswith('  parts:  {"counter": ')
     assert lines[4] == "  again:  --seed 7 --message go"
     assert lines[5].endswith("samples, 1 message fails (seed 7)")
+
+
+def test_long_samples_are_shortened(monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(self: object) -> dict[str, list[int]]:
+        return {"speed": list(range(5000))}
+
+    def module(protocol: object) -> object:
+        return handwritten_matty
+
+    monkeypatch.setattr("protogen.live.codec.module_of", module)
+    monkeypatch.setattr(handwritten_matty.Go, "to_dict", wrong)
+    result = run("fuzz", MATTY, "--message", "go", "--seed", "7", "--examples", "3")
+    assert result.exit_code == 1
+    assert max(map(len, result.output.splitlines())) < 500
+    assert "go, sent by pc, through construct:\n  the payload " in result.output

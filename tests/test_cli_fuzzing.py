@@ -7,6 +7,7 @@ import struct
 from collections.abc import Sequence
 from functools import cache
 from itertools import islice
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -20,6 +21,7 @@ from protogen.fuzzing.engine import Refused, Seen
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.fuzzing.trips import case_count, cases, same, smallest, try_case
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 
 # --- samples --------------------------------------------------------------------------------------
@@ -160,6 +162,50 @@ def test_one_count_for_several_and_a_count_that_is_an_enum() -> None:
         lengths = {len(values["first"]), len(values["pair"]["levels"]), len(values["raw"]) // 2}
         assert lengths == {values["outer"]}
         assert 1 <= values["outer"] <= 5
+
+
+BOUNDED = """\
+protocol: bounded
+endpoints: {a: A, b: B}
+byte_order: little
+frame:
+  sync: {literal: 0x55, unprotected: accepted}
+  length: {type: uint8, counts: payload, range: [5, 40]}
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: xor-8, covers: id..payload}
+decisions:
+  accepted: {question: May it occur?, document: Silent., choice: Yes., because: The sum tells.}
+types:
+  item: {fields: {n: uint8, data: {type: bytes, size: n}}}
+messages:
+  raw: {id: 1, from: a, fields: {all: {type: bytes, size: fill}}}
+  words: {id: 2, from: a, fields: {first: uint8, all: {type: uint16, count: fill}}}
+  items: {id: 3, from: a, fields: {all: {type: item, count: fill}}}
+"""
+
+
+def test_samples_have_the_sizes_that_the_length_part_allows(tmp_path: Path) -> None:
+    path = tmp_path / "bounded.yaml"
+    path.write_text(BOUNDED)
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    sizes: dict[str, set[int]] = {"raw": set(), "words": set(), "items": set()}
+    for case in cases(protocol, 200, 1):
+        values = case.values["all"]
+        match case.message:
+            case "raw":
+                size = len(bytes.fromhex(values))
+            case "words":
+                size = 1 + 2 * len(values)
+            case _:
+                size = sum(1 + item["n"] for item in values)
+                assert all(len(item["data"]) == 2 * item["n"] for item in values)
+        sizes[case.message].add(size)
+    assert {min(found) for found in sizes.values()} == {5}
+    assert [max(found) for found in sizes.values()] == [40, 39, 40]
+    engine = PythonEngine(module_of(protocol).PROTOCOL)
+    assert not any(try_case(engine, protocol, case).problem for case in cases(protocol, 50, 1))
 
 
 # --- cases ----------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 EXAMPLE = "Example: protogen fuzz schemas/rn1.yaml --examples 1000"
 
 _GREATEST_SEED = 1 << 32
+_LONGEST_TEXT = 400
 
 
 def fuzz(
@@ -113,12 +114,20 @@ def _print_failure(failure: Outcome, engine: Engine, seed: int) -> None:
     out = console()
     case = failure.case
     out.print(f"{case.message}, sent by {case.sender}, through {engine.name}:", style="bold red")
-    out.print(f"  {failure.problem}")
-    out.print(f"  fields: {json.dumps(case.values)}")
-    out.print(f"  parts:  {json.dumps(case.parts)}")
+    out.print(f"  {_shortened(failure.problem)}")
+    out.print(f"  fields: {_shortened(json.dumps(case.values))}")
+    out.print(f"  parts:  {_shortened(json.dumps(case.parts))}")
     if failure.frame:
-        out.print(f"  frame:  {failure.frame.hex(' ').upper()}")
+        out.print(f"  frame:  {_shortened(failure.frame.hex(' ').upper())}")
     out.print(f"  again:  --seed {seed} --message {case.message}")
+
+
+def _shortened(text: str) -> str:
+    """Return the beginning and the end of a long text; the seed gives the whole sample again."""
+    if len(text) <= _LONGEST_TEXT:
+        return text
+    half = _LONGEST_TEXT // 2
+    return f"{text[:half]} ... {text[-half:]} ({len(text)} characters)"
 
 
 def _print_summary(engine: Engine, tried: int, refused: int, failed: int, seed: int) -> None:

@@ -36,7 +36,13 @@ from protogen.model.payload_plan import (
     Reference,
     RepeatStep,
     RestStep,
+    without_constant,
 )
+from protogen.model.sizes import SizeSet
+from protogen.model.types import Text
+
+_TRIES = 100
+"""Draws until one has a size that the frame lets a payload have."""
 
 Values = dict[str, Any]
 """Names of fields or parts with their values."""
@@ -91,7 +97,7 @@ Chooser = Boundaries | Chance
 
 
 def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Values, Values]]:
-    """Yield values of the fields and of the caller's parts, without end.
+    """Yield values of the fields and of the caller's parts, as long as some fit the frame.
 
     The first `boundary_rounds` of them hold every boundary of every value: the least and the
     greatest, names, special values, single bits, empty and full arrays.
@@ -99,7 +105,11 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
     yield from _boundary_samples(message, frame)
     chance = Chance(random)
     while True:
-        yield _sample(message, frame, chance)
+        tries = (_sample(message, frame, chance) for _ in range(_TRIES))
+        sample = next(filter(None, tries), None)
+        if sample is None:
+            return
+        yield sample
 
 
 def boundary_rounds(message: Message, frame: Frame) -> int:
@@ -112,14 +122,20 @@ def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, 
     for round in count():
         if round == max(rounds):
             return
-        yield _sample(message, frame, Boundaries(round, rounds))
+        sample = _sample(message, frame, Boundaries(round, rounds))
+        if sample is not None:
+            yield sample
 
 
-def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values]:
+def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values] | None:
+    """A sample; None where its payload has a size that the frame does not let it have."""
     if message.unspecified:
         fields = {message.fields[0].name: chooser.choose(unspecified_choices(message))}
     else:
-        fields = _Sampler().record(message.plan.steps, chooser)
+        sampler = _Sampler(message.sizes)
+        fields = sampler.record(message.plan.steps, chooser)
+        if sampler.size not in message.sizes:
+            return None
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
     return fields, parts
 
@@ -130,7 +146,10 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
 class _Sampler:
     """Chooses values step by step; those in front count and select what follows."""
 
-    def __init__(self) -> None:
+    def __init__(self, sizes: SizeSet) -> None:
+        self.size = 0
+        """Bytes of the values so far."""
+        self._sizes = sizes
         self._records: list[Values] = []
 
     def record(self, steps: Sequence[AnyStep], chooser: Chooser) -> Values:
@@ -149,24 +168,48 @@ class _Sampler:
             case RecordStep():
                 return self.record(step.steps, chooser)
             case RepeatStep():
-                length = chooser.choose(count_choices(self._lengths(step.count)))
-                places = range(length)
-                return [self._value(step.element, chooser.element(index)) for index in places]
+                return self._array(step, chooser)
             case ChooseStep():
                 return self._case(step, chooser)
             case ConstantStep():
-                return constant_value(step)
+                return self._taken(step, constant_value(step))
             case _:
-                lengths = self._lengths(step.count) if isinstance(step, BytesStep) else (0, 0)
-                return chooser.choose(scalar_choices(step, lengths, need))
+                lengths = self._lengths(step.count, 1) if isinstance(step, BytesStep) else (0, 0)
+                return self._taken(step, chooser.choose(scalar_choices(step, lengths, need)))
+
+    def _taken(self, step: AnyStep, value: Any) -> Any:
+        """A value whose bytes are counted; where their number varies, it is text or hex digits."""
+        bare = without_constant(step)
+        is_text = isinstance(bare, BytesStep) and isinstance(bare.type, Text)
+        fixed = step.sizes.fixed
+        self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)
+        return value
+
+    def _array(self, step: RepeatStep, chooser: Chooser) -> list[Any]:
+        count = step.count
+        length = chooser.choose(count_choices(self._lengths(count, step.element.sizes.least)))
+        values: list[Any] = []
+        while len(values) < length or (count.fills and self.size < self._sizes.least):
+            before = self.size
+            value = self._value(step.element, chooser.element(len(values)))
+            if count.fills and (self.size > self._sizes.greatest or self.size == before):
+                self.size = before  # There is no room for it, or it takes none.
+                break
+            values.append(value)
+        return values
 
     def _number(self, number: int | Reference) -> int:
         if isinstance(number, int):
             return number
         return int(self._records[number.level][number.name])
 
-    def _lengths(self, count: Count) -> tuple[int, int]:
-        return lengths_of(count, 0 if count.by is None else self._number(count.by))
+    def _lengths(self, count: Count, size: int) -> tuple[int, int]:
+        """The least and the greatest number of elements that have at least `size` bytes."""
+        least, greatest = lengths_of(count, 0 if count.by is None else self._number(count.by))
+        if count.fills and size:
+            greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
+            least = min(greatest, -(min(0, self.size - self._sizes.least) // size))
+        return least, greatest
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
         inside = chooser.inside(len(step.cases) + (step.rest is not None))
@@ -174,6 +217,8 @@ class _Sampler:
         if isinstance(chosen, RecordStep) and not chosen.steps:
             return None
         if chosen is None or isinstance(chosen, RestStep):
-            greatest = 0 if chosen is None else chosen.count.greatest
-            return inside.choose(bytes_choices(0, greatest, SEVEN_BITS))
+            lengths = (0, 0) if chosen is None else self._lengths(chosen.count, 1)
+            value = inside.choose(bytes_choices(*lengths, SEVEN_BITS))
+            self.size += len(value) // 2
+            return value
         return self._value(chosen, inside)
