@@ -86,6 +86,16 @@ def test_no_compiler_warns(path: Path, style: Style, events: Events, tmp_path: P
         quiet([require_tool("g++"), "-std=c++11", *WARNINGS, *COMPILED, unit], tmp_path)
 
 
+@pytest.mark.parametrize("level", ["-O2", "-O3"])
+@pytest.mark.parametrize("name", ["rn1", "rn1_firmware"])
+def test_no_compiler_warns_of_vectors(name: str, level: str, tmp_path: Path) -> None:
+    source = ROOT / "generated" / "c" / f"{name}.c"
+    define = f"-D{name.upper()}_SSE2=1"
+    for compiler in ("gcc", "clang"):
+        flags = ("-std=c99", level, *WARNINGS, define, "-S", "-o", tmp_path / "unit.s")
+        quiet([require_tool(compiler), *flags, source])
+
+
 @pytest.mark.parametrize("events", EVENTS)
 @pytest.mark.parametrize("path", LINTED, ids=name_of)
 def test_a_single_header_holds_the_code_of_the_source(

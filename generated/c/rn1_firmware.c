@@ -80,7 +80,8 @@ static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count)
 static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
     size_t i = 0;
 #if RN1_FIRMWARE_SSE2
-    for (; count - i >= 8U; i += 8U) {
+    const size_t eights = count & ~(size_t)7U; /* The compiler sees that this is no more than count. */
+    for (; i < eights; i += 8U) {
         const void *const from = &at[2U * i];
         const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
         const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));

@@ -31,7 +31,8 @@ _MOST_TERMS = 4
 _LOAD_RUN = """\
 size_t i = 0;
 #if {upper}_SSE2
-for (; count - i >= 8U; i += 8U) {{
+const size_t eights = count & ~(size_t)7U; /* The compiler sees that this is no more than count. */
+for (; i < eights; i += 8U) {{
     const void *const from = &at[2U * i];
     const __m128i pairs = _mm_loadu_si128((const __m128i *)from);
     const __m128i low = _mm_and_si128(pairs, _mm_set1_epi16(0x7F));
