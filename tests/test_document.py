@@ -287,6 +287,14 @@ class TestFind:
         document = parsed("part: {literal: 5, range: {literal: 6}}")
         assert str(document.find(("part", "literal", "range", "literal"))) == "f:1:37"
 
+    def test_names_that_repeat_at_each_depth_are_followed_once(self) -> None:
+        # In 30 mappings within each other, 60 components can be skipped in 2**30 ways.
+        document = parsed("{fields: {a: " * 30 + "5" + "}}" * 30)
+        names = ("fields", "a") * 30
+        assert str(document.find(names)) == f"f:1:{30 * len('{fields: {a: ') + 1}"
+        labelled = ("label", *names[:-1], "label")
+        assert str(document.find(labelled)) == f"f:1:{30 * len('{fields: {a: ') - len('{a: ') + 1}"
+
     def test_nodes_lead_only_to_what_they_have(self) -> None:
         root = parsed(self.TEXT).root
         assert root.at(("messages", "sonar")) is None

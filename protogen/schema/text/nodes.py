@@ -129,7 +129,7 @@ def find(root: Node, loc: Loc, *, key: bool = False) -> Span:
     """
     if loc and loc[-1] == "[key]":
         return find(root, loc[:-1], key=True)
-    _, item, node = _follow(root, loc)
+    _, item, node = _Places(loc).follow(root, 0)
     return item[0].span if key and item is not None else node.span
 
 
@@ -137,14 +137,31 @@ _Found = tuple[int, Item | None, Node]
 """Number of components that led somewhere, the item that the last one led to, and its node."""
 
 
-def _follow(node: Node, loc: Loc) -> _Found:
-    best: _Found = (0, None, node)
-    for position, step in enumerate(loc):
-        child = node.child(step)
-        if child is None:
-            continue
-        found = _follow(child, loc[position + 1 :])
-        if found[0] + 1 > best[0]:
-            own = node.item(step) if isinstance(node, MappingNode) else None
-            best = (found[0] + 1, found[1] if found[0] else own, found[2])
-    return best
+class _Places:
+    """Nodes that a location leads to; each is looked up once, as locations may repeat names."""
+
+    def __init__(self, loc: Loc) -> None:
+        self._loc = loc
+        self._found: dict[tuple[int, int], _Found] = {}
+
+    def follow(self, node: Node, start: int) -> _Found:
+        """Follow the components from `start` on, as many of them as lead somewhere."""
+        key = (id(node), start)
+        if key not in self._found:
+            self._found[key] = self._follow(node, start)
+        return self._found[key]
+
+    def _follow(self, node: Node, start: int) -> _Found:
+        best: _Found = (0, None, node)
+        for position in range(start, len(self._loc)):
+            if best[0] >= len(self._loc) - position:
+                break
+            step = self._loc[position]
+            child = node.child(step)
+            if child is None:
+                continue
+            found = self.follow(child, position + 1)
+            if found[0] + 1 > best[0]:
+                own = node.item(step) if isinstance(node, MappingNode) else None
+                best = (found[0] + 1, found[1] if found[0] else own, found[2])
+        return best
