@@ -425,6 +425,39 @@ def test_random_schemas(
         sys.modules.pop(module.__name__, None)
 
 
+def test_arrays_are_nested_deeper_than_there_are_letters(tmp_path: Path) -> None:
+    types = "".join(
+        f"  t{depth}: {{fields: {{a: {{type: t{depth + 1}, count: 1}}}}}}\n" for depth in range(16)
+    )
+    path = tmp_path / "deep.yaml"
+    path.write_text(
+        "protocol: deep\nendpoints: {board: Board}\nbyte_order: little\n"
+        "frame: {sync: {literal: 0xFD}, length: {type: uint8, counts: payload}, payload: {}}\n"
+        "transparency: {covers: length..payload, encoding: base16-upper}\n"
+        f"types:\n{types}  t16: {{fields: {{x: {{type: uint16, range: [0, 999]}}}}}}\n"
+        "messages: {deep: {from: board, fields: {a: {type: t0, count: 1}}}}\n",
+        encoding="utf-8",
+    )
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    (source,) = emit([protocol], COptions(style="single"))
+    (tmp_path / "deep.h").write_text(source.text, encoding="utf-8")
+    member = ".".join(["message", *["a[0]"] * 17, "x"])
+    lines = [
+        "#define DEEP_IMPLEMENTATION",
+        '#include "deep.h"',
+        "int main(void) {",
+        "    static struct deep_deep message;",
+        "    const uint8_t payload[2] = {0x02, 0x01};  /* 0x0102, little-endian */",
+        "    if (deep_deep_decode(&message, payload, 2) != DEEP_OK) { return 1; }",
+        f"    return {member} == 0x0102 ? 0 : 2;",
+        "}",
+    ]
+    (tmp_path / "main.c").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    run([require_tool("cc"), *FLAGS, "main.c", "-o", "main"], tmp_path)
+    run([tmp_path / "main"], tmp_path)
+
+
 # --- the sources ----------------------------------------------------------------------------------
 
 COMPILERS = {

@@ -23,6 +23,7 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.spelling import constant, unsigned
 
 _INDICES = "ijklmnopqrstuvw"
+"""Names of indices; those of loops that are nested deeper have a number."""
 
 
 def amount(count: int | str) -> str:
@@ -145,7 +146,8 @@ class Walk:
     @contextmanager
     def loop(self, count: int | str) -> Iterator[str]:
         """A loop over so many elements; yields the index."""
-        index = _INDICES[self._loops]
+        turn, letter = divmod(self._loops, len(_INDICES))
+        index = _INDICES[letter] + (str(turn + 1) if turn else "")
         self._loops += 1
         with self.lines.block(f"for (size_t {index} = 0; {index} < {amount(count)}; {index}++)"):
             yield index
