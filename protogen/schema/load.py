@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any
 
 import msgspec
@@ -12,6 +13,8 @@ from protogen.schema.dialects.extends import Merged, merge_bases
 from protogen.schema.shape import Shape, read_shape
 from protogen.schema.text.document import decode_document, read_document
 from protogen.schema.text.nodes import MappingNode, to_data
+
+_C = re.compile(r"^\s*(#include|#define|#ifndef|typedef|/\*|//|struct \w+ *\{)", re.MULTILINE)
 
 
 class Loaded(msgspec.Struct, frozen=True):
@@ -46,7 +49,10 @@ def load_syntax(
     if merged is None:
         return None
     if not isinstance(merged.root, MappingNode):
-        problems.add("PG102", merged.root.span, "a schema is a mapping, such as `protocol: name`")
+        words = "a schema is a mapping, such as `protocol: name`"
+        problems.add(
+            "PG102", merged.root.span, words, _language_hint(sources.text(document.file) or "")
+        )
         return None
     # Of two equal keys the first one counts; with that, the rest can still be looked at.
     sound = all(problem.code == "PG006" for problem in problems.errors)
@@ -56,3 +62,10 @@ def load_syntax(
     if shape is None or not sound:
         return None
     return Loaded(shape, data, merged, spoilt or shape.spoilt)
+
+
+def _language_hint(text: str) -> str | None:
+    """Hint for a file that is written in another language."""
+    if _C.search(text):
+        return "this looks like C: protogen makes C from a schema, which is YAML"
+    return None

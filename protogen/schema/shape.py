@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from protogen.problems import Problems, Span, hint_for
+from protogen.schema import hints
 from protogen.schema.recovery import Loc, Recovery
 from protogen.schema.syntax.base import Source
 from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, NamedValue
@@ -44,8 +45,15 @@ def read_shape(data: Any, find: Find, problems: Problems) -> Shape | None:
         return Shape(ProtocolSyntax.model_validate(data))
     except ValidationError as error:
         details = error.errors(include_url=False)
+    reversed_pairs = {
+        detail["loc"][:-1]
+        for detail in details
+        if detail["loc"][-1:] == ("[key]",) and isinstance(detail["input"], int)
+    }
     for detail in details:
-        _report(detail, find, problems)
+        is_key = detail["loc"][-1:] == ("[key]",)
+        if is_key or detail["loc"][:-1] not in reversed_pairs:  # The name is behind its number.
+            _report(detail, data, find, problems)
     return _without(data, details)
 
 
@@ -64,22 +72,54 @@ def _without(data: Any, details: Sequence[ErrorDetails]) -> Shape | None:
     return Shape(syntax, recovery.consequences(syntax), frozenset(recovery.lost), spoilt)
 
 
-def _report(detail: ErrorDetails, find: Find, problems: Problems) -> None:
+def _report(detail: ErrorDetails, data: Any, find: Find, problems: Problems) -> None:
     loc = detail["loc"]
     match detail["type"]:
         case "string_type" if loc[-1] == "[key]":
-            _report_name(loc, detail["input"], find, problems)
+            hint = hints.pair_hint(loc[-3], _at(data, loc[:-2]))
+            _report_name(loc, detail["input"], find, problems, hint)
+        case "invalid_key":
+            text = f"`{loc[-1]}` is no key"
+            hint = "a decimal number has a point, such as 0.1; a comma ends a value"
+            problems.add("PG100", find(loc, key=True), text, hint)
         case "extra_forbidden":
             known = keys_at(loc[:-1])
             text = f"`{loc[-1]}` is no key here"
-            problems.add("PG100", find(loc, key=True), text, _key_hint(str(loc[-1]), known))
+            around = _at(data, loc[:-1])
+            hint = hints.indent_hint(around, str(loc[-1]), _mappings_at(loc[:-1]))
+            hint = hint or hints.key_hint(str(loc[-1]), known) or _key_hint(str(loc[-1]), known)
+            problems.add("PG100", find(loc, key=True), text, hint)
         case "missing":
-            problems.add("PG101", find(loc[:-1], key=True), f"`{loc[-1]}` is missing here")
+            hint = hints.missing_hint(loc, data)
+            problems.add("PG101", find(loc[:-1], key=True), f"`{loc[-1]}` is missing here", hint)
         case "string_pattern_mismatch":
-            _report_name(loc, detail["input"], find, problems)
+            _report_name(loc, detail["input"], find, problems, hints.endpoint_hint(detail, data))
         case _:
             words = _form(detail) or _plain_words(detail["msg"])
-            problems.add("PG102", find(loc), words, _choice_hint(detail))
+            hint = _choice_hint(detail) or hints.form_hint(
+                detail["msg"], _key(loc), detail["input"]
+            )
+            problems.add("PG102", find(loc), words, hint)
+
+
+def _at(data: Any, loc: Steps) -> Any:
+    """What stands at a place of the data; the label of a tagged union is no step."""
+    for step in loc:
+        if isinstance(data, dict):
+            data = data.get(step, data)
+        elif isinstance(data, list) and isinstance(step, int) and step < len(data):
+            data = data[step]
+    return data
+
+
+def _mappings_at(loc: Steps) -> list[str]:
+    """The keys at a place that hold names."""
+    return [
+        str(key)
+        for model in _models_at(SCHEMA, loc)
+        for key, form in keys_of(model).items()
+        if form.names is not None
+    ]
 
 
 _FORMS: dict[type[BaseModel], str] = {
@@ -99,21 +139,44 @@ _FORMS: dict[type[BaseModel], str] = {
 """Forms of what may stand where one of these is."""
 
 
+_NAMES = {
+    "messages": "`messages` is a mapping: each message's name, with its keys below",
+    "frame": "`frame` is a mapping: each part's name, with its keys behind it",
+    "endpoints": "`endpoints` is a mapping: each endpoint's name, with its title behind it",
+    "types": "`types` is a mapping: each type's name, with its keys behind it",
+    "values": "`values` is a mapping of names to numbers",
+    "special": "`special` is a mapping of names to numbers",
+    "flags": "`flags` is a mapping of names to bits",
+    "bits": "`bits` is a mapping of names to bits",
+    "cases": "`cases` is a mapping of values to fields",
+}
+"""Mappings of names."""
+
+
+def _key(loc: Loc) -> str:
+    """The key at the end of a place: no label of a tagged union, nor the frame of all senders."""
+    return next((str(step) for step in reversed(loc) if step not in ("", "mapping")), "")
+
+
 def _form(detail: ErrorDetails) -> str | None:
     """All forms that what stands here may have, where it has none of them."""
     loc = detail["loc"]
     if detail["type"] in ("model_type", "model_attributes_type"):
         models = _models_at(SCHEMA, loc)
         return next((_FORMS[model] for model in models if model in _FORMS), None)
+    if detail["type"] == "dict_type" and _key(loc) in _NAMES:
+        return _NAMES[_key(loc)]
     if detail["type"] == "dict_type" and "fields" in loc[-2:]:
         more = ", or `unspecified`" if loc[-1] == "mapping" else ""
         return f"`fields` is a mapping of names to fields{more}"
     return None
 
 
-def _report_name(loc: Loc, written: object, find: Find, problems: Problems) -> None:
+def _report_name(
+    loc: Loc, written: object, find: Find, problems: Problems, hint: str | None
+) -> None:
     text = f"`{written}` is no name: names are lower snake case, such as `left_motor`"
-    problems.add("PG103", find(loc), text)
+    problems.add("PG103", find(loc), text, hint)
 
 
 def _key_hint(word: str, known: Sequence[str]) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from protogen.copying import field_names
@@ -9,6 +10,7 @@ from protogen.model.checksums import (
     SIMPLE_ALGORITHMS,
     ChecksumSpec,
     algorithm_names,
+    crc_catalogue,
     find_algorithm,
 )
 from protogen.model.frame import (
@@ -283,7 +285,7 @@ class FrameBuilder:
             return self._parameters(name, item.algorithm)
         found = find_algorithm(item.algorithm or "")
         if found is None:
-            hint = hint_for(item.algorithm or "", algorithm_names())
+            hint = hint_for(item.algorithm or "", algorithm_names()) or _algorithms(item)
             text = f"there is no checksum algorithm `{item.algorithm}`"
             self._error("PG134", name, "algorithm", text, hint)
         return found
@@ -340,3 +342,12 @@ def _circle(frame: Frame, name: str) -> list[str]:
 
 def _holds_cobs(frame: Frame, part: ChecksumPart) -> bool:
     return isinstance(frame.encoding, Cobs) and not frame.stuffed.isdisjoint(part.covers)
+
+
+def _algorithms(item: PartSyntax) -> str:
+    """The algorithms that there are, by name; of CRCs those of the width that is asked for."""
+    width = re.search(r"crc\D*(\d+)", str(item.algorithm).casefold())
+    names = [spec.name for spec in SIMPLE_ALGORITHMS]
+    family = "" if width is None else f"CRC-{width[1]}/"
+    names += [spec.name for spec in crc_catalogue() if family and spec.name.startswith(family)]
+    return f"there are {', '.join(names)}, and each CRC by its name in the catalogue or parameters"

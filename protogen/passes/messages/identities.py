@@ -48,7 +48,10 @@ class IdentityReader:
         if given == {_ONLY}:
             how = ", ".join(f"{name}: ..." for name in parts)
             text = f"the frame has {len(parts)} identity parts"
-            hint = f"write id: {{{how}}}" if parts else "leave out `id`"
+            hint = f"write id: {{{how}}}"
+            if not parts:
+                text = "no part of the frame tells messages apart"
+                hint = "mark the part that does, as in `kind: {type: uint8, id: true}`"
             self._context.error("PG151", (*self._loc, "id"), text, hint)
             return False
         for name in sorted(given - set(parts)):

@@ -34,6 +34,9 @@ def _check(context: Context, found: Reference, code: str) -> None:
             code, hint = "PG105", None
         case Kind.TYPE:
             hint = type_hint(name, declared)
+        case Kind.DECISION if hint is None:
+            keys = "question: ..., document: ..., choice: ..., because: ..."
+            hint = f"add it: `decisions: {{{name}: {{{keys}}}}}`"
         case Kind.EXAMPLE:
             message = str(scope[1])
             if message not in context.syntax.messages:

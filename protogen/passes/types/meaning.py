@@ -6,10 +6,12 @@ import sys
 from fractions import Fraction
 
 from protogen.model.meanings import NamedValue
+from protogen.model.reading.readings import decimal
 from protogen.model.types import Array, Constant, Field, Float, NumberType, Type, is_integer
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.type_names import UNKNOWN_TYPE
 from protogen.passes.types.value_names import named_values
 
 _NUMERIC_KEYS = ("range", "scale", "offset", "special", "unit")
@@ -70,6 +72,8 @@ class _Check:
     def bounds(self) -> tuple[Fraction | None, Fraction | None]:
         """The raw bounds: the range, else what the type can hold (None for floats)."""
         type_, written = self._element, self._item.range
+        if type_ is UNKNOWN_TYPE:
+            return None, None  # Reported where it is named.
         if not is_integer(type_):
             if written is None or not isinstance(type_, NumberType):
                 return None, None
@@ -84,10 +88,20 @@ class _Check:
         low, high = self._ordered(*written)
         for end in (low, high):
             if end.denominator != 1 or not least <= end <= greatest:
-                text = f"{end} is not a raw value of {self._item.type}: {least} to {greatest}"
-                self._error("PG114", "range", text)
+                text = f"{decimal(end)} is not a raw value of {self._item.type}: "
+                text += f"{least} to {greatest}"
+                self._error("PG114", "range", text, self._raw_range(low, high))
                 return least, greatest
         return low, high
+
+    def _raw_range(self, low: Fraction, high: Fraction) -> str:
+        """What to write if the bounds are physical values."""
+        scale, offset = self._item.scale or Fraction(1), self._item.offset or Fraction(0)
+        raw = [(end - offset) / scale for end in (low, high)]
+        words = "a range is one of raw values"
+        if raw == [low, high] or any(end.denominator != 1 for end in raw):
+            return words
+        return f"{words}: for {decimal(low)} to {decimal(high)} write [{raw[0]}, {raw[1]}]"
 
     def _ordered(self, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
         if low > high:
@@ -121,5 +135,5 @@ class _Check:
         here = self._field.at("special")
         return named_values(self._context, bounds, self._item.special, here, self._item.type)
 
-    def _error(self, code: str, key: str, text: str) -> None:
-        self._context.error(code, self._field.at(key), text)
+    def _error(self, code: str, key: str, text: str, hint: str | None = None) -> None:
+        self._context.error(code, self._field.at(key), text, hint)

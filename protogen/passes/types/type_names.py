@@ -57,9 +57,26 @@ def has_width(name: str) -> bool:
     return width is None or 1 <= width <= GREATEST_WIDTH
 
 
+_ARRAY = re.compile(r"(\w+)\[(\w+)\]")
+_OTHER_FORMS = {
+    "enum": "write the integer's type, such as `uint8`, and `values: {NAME: NUMBER}` beside it",
+    "flags": "write the integer's type, such as `uint8`, and `flags: {NAME: BIT}` beside it",
+    "struct": "leave out `type`, and write `fields:`",
+    "union": "leave out `type`, and write `switch:` and `cases:`",
+    "array": "write the type of an element, and `count:` beside it",
+}
+"""What stands in the place of a type in other languages."""
+
+
 def type_hint(name: str, declared: Iterable[str] = ()) -> str | None:
     """Type that was probably meant: by its name in another language, or a slip of one here."""
     word = name.casefold().replace(" ", "")
+    array = _ARRAY.fullmatch(word)
+    if array is not None:
+        key = "size" if array[1] in ("ascii", "bytes") else "count"
+        return f"write `{{type: {array[1]}, {key}: {array[2]}}}`"
+    if word in _OTHER_FORMS:
+        return _OTHER_FORMS[word]
     integers = _OTHER_INTEGER.fullmatch(word)
     if integers is None:
         known = (*declared, *COMMON_NAMES)

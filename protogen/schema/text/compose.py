@@ -64,7 +64,7 @@ def compose(
     except _GiveUpError:
         return None
     except yaml.MarkedYAMLError as error:
-        _report_syntax(error, Places(text, file), problems)
+        _report_syntax(error, text, Places(text, file), problems)
         return None
     return composer.finish()
 
@@ -221,12 +221,30 @@ class _Composer:
         return position_of(event.end_mark)
 
 
-def _report_syntax(error: yaml.MarkedYAMLError, places: Places, problems: Problems) -> None:
+def _mark_hint(error: yaml.MarkedYAMLError, text: str) -> str | None:
+    """Hint by what stands where the parser stopped."""
+    mark, context = error.problem_mark, error.context_mark
+    if mark is None:
+        return None
+    here = text[mark.index : mark.index + 1]
+    if here in ("}", "]") and "expected key" in (error.problem or ""):
+        return f"there is one `{here}` too many"
+    if context is not None and "flow" in (error.context or ""):
+        lines = text[context.index : mark.index].splitlines()
+        if any(" #" in line for line in lines):
+            return "a `#` behind a space begins a comment; a text that holds one needs quotes"
+    return None
+
+
+def _report_syntax(
+    error: yaml.MarkedYAMLError, text: str, places: Places, problems: Problems
+) -> None:
     """Report what the parser could not read, in its words."""
     mark = error.problem_mark or error.context_mark
     problem = error.problem or "this is not YAML"
     span = places.of_file() if mark is None else places.point(position_of(mark))
     hint = next((hint for words, hint in _SYNTAX_HINTS.items() if words in problem), None)
+    hint = _mark_hint(error, text) or hint
     notes = []
     if error.context is not None and error.context_mark is not None:
         notes.append((places.point(position_of(error.context_mark)), error.context))

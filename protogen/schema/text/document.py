@@ -24,6 +24,7 @@ _FORBIDDEN = re.compile(
 )
 _STAND_IN = "\N{REPLACEMENT CHARACTER}"
 _COMMENT = re.compile(r"(?:^| )#")
+_CONFLICT = re.compile(r"^<<<<<<< .*$", re.MULTILINE)
 _BYTE_ORDER_MARK = "\ufeff"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
@@ -95,6 +96,13 @@ def parse_document(
     Never raises for any text.
     """
     text = text.removeprefix(_BYTE_ORDER_MARK)
+    conflict = _CONFLICT.search(text)
+    if conflict is not None:
+        line = text.count("\n", 0, conflict.start()) + 1
+        words = "a merge left a conflict here"
+        hint = "keep what is right of both sides, and remove the lines with the marks"
+        problems.add("PG004", Span.at(file, line, 1, 7), words, hint)
+        return None
     spoiled = Problems(_character_problems(text, file))
     problems.extend(spoiled)
     found = Problems()
