@@ -142,7 +142,7 @@ frame:
   start: {literal: 0xAA, unprotected: start_in_data}
   number: {type: uint16, range: [10, 1000]}
   id: {type: uint8, id: true}
-  step: {type: uint4, counter: true}
+  step: {type: uint8, counter: true, range: [0, 15]}
   size: {type: uint8, range: [1, 3], default: 1}
   length: {type: uint8, counts: payload, range: [1, 12]}
   payload: {}

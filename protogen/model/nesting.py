@@ -53,7 +53,9 @@ def takes_rest(type_: Type) -> bool:
 
 def can_count(type_: Type) -> bool:
     """True if a value can say how many elements or bytes another field has."""
-    return is_integer(type_) and not type_.signed and type_.role != "bool"
+    if not is_integer(type_) or type_.signed or type_.role == "bool":
+        return False
+    return type_.flags is None and not type_.bit_fields
 
 
 def with_structs(type_: Type, settle: Callable[[Struct], Struct]) -> Type:

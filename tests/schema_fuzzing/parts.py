@@ -108,7 +108,7 @@ class Maker:
     ) -> tuple[PartType, dict[str, Any]]:
         """A type, and the keys that say so; one that can say at least `least_greatest`."""
         names: list[tuple[str, int]] = [("byte", 8), ("char", self._byte_bits)]
-        names += [(f"uint{width}", width) for width in (4, 7, 8, 8, 12, 16)]
+        names += [(f"uint{width}", width) for width in (self._byte_bits, 8, 8, 12, 16)]
         if bits is not None:
             names = [item for item in names if item[1] == bits] or [(f"uint{bits}", bits)]
         if one_byte:

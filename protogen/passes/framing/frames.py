@@ -212,6 +212,10 @@ class FrameBuilder:
             text = f"`{item.type}` is no unsigned integer, which a part of a frame is"
             self._context.error("PG104", loc, text, type_hint(item.type))
             return None
+        if item.algorithm is None and found.bits < found.byte_bits:
+            text = f"a part takes whole bytes, and `{item.type}` is less than one"
+            hint = f"make it `uint{found.byte_bits}`, with a `range` if its upper bits are zero"
+            self._context.error("PG105", loc, text, hint)
         if found.size > 1 and order is None:
             hint = "set `byte_order: little` or `big` on the part or the protocol"
             text = "nothing says in which order the bytes of this number are sent"

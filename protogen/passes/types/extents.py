@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.nesting import can_count
-from protogen.model.types import Counted, Extent, Field, Fill, Fixed
+from protogen.model.types import Counted, Extent, Field, Fill, Fixed, is_integer
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.setting import Setting
 from protogen.problems import hint_for
@@ -27,11 +27,20 @@ def extent_of(
     if field is not None and can_count(field.type):
         return _counted_by(field, element, setting.room)
     if field is not None:
-        context.error("PG117", loc, f"`{written}` can't count: it is not an unsigned integer")
+        context.error("PG117", loc, *_why_not(field))
     elif not setting.elsewhere:
         text = f"no earlier field is called `{written}`"
         context.error("PG116", loc, text, hint_for(written, setting.outer))
     return Fixed(count=0)
+
+
+def _why_not(field: Field) -> tuple[str, str | None]:
+    """The reason why a field can't count, and what to do."""
+    type_ = field.type
+    if is_integer(type_) and (type_.flags is not None or type_.bit_fields):
+        text = f"`{field.name}` can't count: it is made of single bits, which would all be counted"
+        return text, "declare the number without `bits` and `flags`, or let `fill` take the rest"
+    return f"`{field.name}` can't count: it is not an unsigned integer", None
 
 
 def _fill(context: Context, written: FillSyntax, loc: Loc, element: int, setting: Setting) -> Fill:

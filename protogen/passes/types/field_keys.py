@@ -37,7 +37,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
         context.error_at_key("PG110", item.at("cases"), text, hint)
     if syntax.size is not None and syntax.type not in _STRINGS:
         text = f"`size` is for ascii and bytes; `{name}` is neither"
-        hint = "a number of elements is `count`"
+        hint = "elements are counted by `count`; bytes are `type: bytes` with this `size`"
         context.error_at_key("PG110", item.at("size"), text, hint)
     if syntax.count is not None:
         _count_fits(context, item)

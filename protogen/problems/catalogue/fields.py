@@ -21,10 +21,11 @@ always an unsigned integer, `byte` or `char`.
     Code(
         "PG105",
         "bad-width",
-        "An integer is wider than 64 bits, or has none",
+        "An integer has a width that it can't have",
         """\
 Integers have 1 to 64 bits, because that is what fits a number in every language. A longer run of
-bytes is `bytes` with a `size`, or an array.
+bytes is `bytes` with a `size`, or an array. A part of a frame takes whole bytes: two parts of four
+bits would not share a byte, but take one each. Declare the byte, and say in `doc` what is in it.
 """,
         with_fields("serial_number: uint96"),
         with_fields("serial_number: {type: bytes, size: 12}"),
@@ -164,7 +165,7 @@ change the order if the wire has it the other way round.
         "A field that can't count",
         """\
 How many elements follow is told by an unsigned integer. A signed one could be negative, a float
-could be a half, and an array is not one number.
+could be a half, an array is not one number, and flags or runs of bits are several.
 """,
         with_fields("""
             points: sint8
