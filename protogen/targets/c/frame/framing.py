@@ -11,7 +11,7 @@ from protogen.targets.c.decoders.decoder import DecoderView, decoder_view
 from protogen.targets.c.frame.algorithms import Algorithm
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
-from protogen.targets.c.frame.message_frames import MessageFrame, message_frame
+from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.protocol_names import is_stateless
@@ -139,13 +139,15 @@ def _message_frames(
     decoders: tuple[DecoderView, ...],
     views: dict[str, MessageView],
 ) -> Iterator[MessageFrame]:
-    by_name = {decoder.name: decoder for decoder in decoders}
+    of_sender = {
+        decoder.name: SenderFrames(frames[decoder.name], decoder, protocol.sender(decoder.name))
+        for decoder in decoders
+    }
     for message in protocol.messages:
         own = {frames[name].decoder.name: name for name in message.senders if name in frames}
         for frame_name, name in own.items() if message.name in views else ():
             suffix = f"_from_{frame_name}" if len(own) > 1 else ""
-            sender, view = protocol.sender(name), views[message.name]
-            yield message_frame(frames[name], by_name[name], sender, message, view, suffix)
+            yield of_sender[name].view(message, views[message.name], suffix)
 
 
 def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions) -> bool:

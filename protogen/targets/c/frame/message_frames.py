@@ -26,6 +26,8 @@ class MessageFrame(msgspec.Struct, frozen=True):
     greatest_payload: int
     """The greatest payload that a frame can carry."""
     least_payload: int
+    is_sized: bool
+    """True if its identity stands for payloads of one size."""
 
     # --- names ------------------------------------------------------------------------------------
 
@@ -84,9 +86,7 @@ class MessageFrame(msgspec.Struct, frozen=True):
     def needs_cut_check(self) -> bool:
         """True if a decoder may end a frame where an end stands in the data."""
         plan = self.decoder.plan
-        group = next((g for g in plan.groups if self.message in g.messages), None)
-        is_fixed = group is not None and group.fixed is not None
-        is_known = is_fixed and plan.size_known_at is not None
+        is_known = self.is_sized and plan.size_known_at is not None
         return plan.cut_ambiguous and plan.length is None and not is_known
 
     @property
@@ -124,25 +124,29 @@ class MessageFrame(msgspec.Struct, frozen=True):
         return (f"const {self.view.struct} *message", *parts)
 
 
-def message_frame(
-    frame: FrameView,
-    decoder: DecoderView,
-    sender: Sender,
-    message: Message,
-    view: MessageView,
-    suffix: str,
-) -> MessageFrame:
-    """The frame functions of a message; `decoder` is that of a sender of the message."""
-    plan = sender.plan
-    has_length = plan.length is not None
-    sizes = sender.framing.messages
-    return MessageFrame(
-        message=message,
-        view=view,
-        frame=frame,
-        decoder=decoder,
-        suffix=suffix,
-        greatest_frame=next(item.greatest for item in sizes if item.message == message.name),
-        greatest_payload=plan.payload.greatest if has_length else message.sizes.greatest,
-        least_payload=plan.payload.least if has_length else 0,
-    )
+class SenderFrames:
+    """Frame functions of a sender's messages; what they look up is worked out once for all."""
+
+    def __init__(self, frame: FrameView, decoder: DecoderView, sender: Sender) -> None:
+        self._frame = frame
+        self._decoder = decoder
+        self._plan = sender.plan
+        self._greatest = {item.message: item.greatest for item in sender.framing.messages}
+        groups = [group for group in decoder.plan.groups if group.fixed is not None]
+        self._sized = {item.name for group in groups for item in group.messages}
+
+    def view(self, message: Message, view: MessageView, suffix: str) -> MessageFrame:
+        """The frame functions of a message."""
+        plan = self._plan
+        has_length = plan.length is not None
+        return MessageFrame(
+            message=message,
+            view=view,
+            frame=self._frame,
+            decoder=self._decoder,
+            suffix=suffix,
+            greatest_frame=self._greatest[message.name],
+            greatest_payload=plan.payload.greatest if has_length else message.sizes.greatest,
+            least_payload=plan.payload.least if has_length else 0,
+            is_sized=message.name in self._sized,
+        )
