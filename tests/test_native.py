@@ -293,7 +293,7 @@ byte_order: big
 frame:
   sync: {{literal: {{hex: 7E}}{unprotected}}}
   mark: {{literal: {{hex: 01 02}}}}
-  level: {{type: uint4}}
+  level: {{type: uint12}}
   id: {{type: uint8, id: true}}
   length: {{type: uint8, counts: [payload, check]}}
   payload: {{}}
