@@ -54,3 +54,11 @@ def test_messages_and_fields_say_where_they_are_written(path):
         for field in message.fields:
             if not message.unspecified:
                 assert field.about.source is not None, f"{message.name}.{field.name}"
+
+
+def test_errors_are_names_of_the_module() -> None:
+    from generated.python import rn1
+
+    with pytest.raises(rn1.DecodeError, match="noise"):
+        rn1.decode(b"\x00", sender="host")
+    assert issubclass(rn1.EncodeError, ValueError)

@@ -18,6 +18,10 @@ from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "6baa3a58f2e3bb708220180f1f44f5fabd459f4b176946c5580b841864174129"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

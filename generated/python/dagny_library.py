@@ -18,6 +18,10 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "24728b7a9b7205d00f7a52d605f1c3708d73177b891af3259fa4096019b84ebb"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

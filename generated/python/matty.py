@@ -18,6 +18,10 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "0c279702240892abbf46c1dba40fd0bfc28d955cf8f9231472d19cdce291e429"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

@@ -17,6 +17,10 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "726898ed912fa822b88887315e8f66eefc016b1aa21b6ec013246747f9291116"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

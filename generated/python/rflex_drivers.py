@@ -19,6 +19,10 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "1505b9412ac30877e4786b80edfb26c1644687195cd01d012659df4eb4bcf04e"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

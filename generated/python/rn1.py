@@ -18,6 +18,10 @@ from protogen.runtime import api as _rt
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "565ea17f0e53401a51734accef5f6311e381b9176fff89e4804f1d33d5f40210"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

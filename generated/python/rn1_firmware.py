@@ -18,6 +18,10 @@ from protogen.runtime import api as _rt
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "a8d17e0fa1202aa9fdab7fc4015dac24998a756fc884d8eaf4b7d6931bc328dd"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

@@ -17,6 +17,10 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+EncodeError = _rt.EncodeError
+"""A message that can't be encoded: a value is missing or out of range."""
+DecodeError = _rt.DecodeError
+"""Bytes that are not exactly one valid frame; it has the offset, the path and the reason."""
 SPEC_HASH = "38490cb78d21d42471aca2b27899ab3dab1efed0a378179e7f6a540c9bd1c76e"
 """SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it."""
 

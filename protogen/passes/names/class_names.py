@@ -12,7 +12,7 @@ from protogen.passes.draft import Draft
 ROOT_NAMES = frozenset(
     {
         "protocol", "encode", "decode", "decoder", "encoder", "messages", "message", "parts",
-        "sender", "not_implemented",
+        "sender", "not_implemented", "encode_error", "decode_error",
     }
 )  # fmt: skip
 """Names that generated modules use themselves, which a type or message would hide.

@@ -94,14 +94,14 @@ class _Check:
                 return least, greatest
         return low, high
 
-    def _raw_range(self, low: Fraction, high: Fraction) -> str:
+    def _raw_range(self, low: Fraction, high: Fraction) -> str | None:
         """What to write if the bounds are physical values."""
         scale, offset = self._item.scale or Fraction(1), self._item.offset or Fraction(0)
         raw = [(end - offset) / scale for end in (low, high)]
-        words = "a range is one of raw values"
         if raw == [low, high] or any(end.denominator != 1 for end in raw):
-            return words
-        return f"{words}: for {decimal(low)} to {decimal(high)} write [{raw[0]}, {raw[1]}]"
+            return None
+        words = f"for {decimal(low)} to {decimal(high)} write [{raw[0]}, {raw[1]}]"
+        return f"a range is one of raw values: {words}"
 
     def _ordered(self, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
         if low > high:
