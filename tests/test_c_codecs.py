@@ -640,6 +640,32 @@ def execute(machine: str, sources: list[str], folder: Path) -> None:
     run([*map(require_tool, runner), folder / "main"], folder)
 
 
+def test_names_of_values_are_no_words_of_a_language(tmp_path: Path) -> None:
+    path = tmp_path / "words.yaml"
+    path.write_text(
+        "protocol: words\nendpoints: {board: Board}\n"
+        "transparency: slip\n"
+        "frame: {payload: {}, end: {literal: 0xC0}}\n"
+        "messages:\n  state:\n    from: board\n    fields:\n"
+        "      mode: {type: uint8, values: {none: 0, default: 1, static: 2, float: 3, self: 4}}\n"
+        "      run: {type: uint8, bits: {low: {bits: 0..3, values: {function: 0, union: 1}}}}\n",
+        encoding="utf-8",
+    )
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    assert [entry.name for entry in module_of(protocol).StateMode] == [
+        "NONE", "DEFAULT", "STATIC", "FLOAT", "SELF",
+    ]  # fmt: skip
+    (header,) = emit([protocol], COptions(style="single"))
+    (tmp_path / "words.h").write_text(header.text, encoding="utf-8")
+    names = "WORDS_STATE_MODE_STATIC + WORDS_STATE_MODE_SELF + WORDS_STATE_RUN_LOW_UNION"
+    include = '#define WORDS_IMPLEMENTATION\n#include "words.h"\n'
+    text = f"{include}int main(void) {{ return {names} - 7; }}\n"
+    (tmp_path / "main.c").write_text(text, encoding="utf-8")
+    run([require_tool("cc"), *FLAGS, "main.c", "-o", "main"], tmp_path)
+    run([tmp_path / "main"], tmp_path)
+
+
 def test_no_name_stands_for_two_things() -> None:
     names = Names("robot")
     assert names.claim("status", "encode") == "robot_status_encode"

@@ -9,6 +9,7 @@ from protogen.passes.draft import Draft
 from protogen.passes.names.references import check_references
 from protogen.passes.names.reserved_words import (
     AS_CLASSES,
+    DIRECTIVES,
     OWN_ARGUMENTS,
     OWN_ATTRIBUTES,
     languages_reserving,
@@ -18,7 +19,6 @@ from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.protocol import Frame
 
 _NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
-_VALUE_KEYS = ("values", "flags", "bits", "special")
 
 
 def check_names(context: Context, draft: Draft) -> None:
@@ -53,6 +53,12 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
         report("PG106", loc, text, f"another name, such as `{name}_value`")
 
 
+def _usable_as_value(context: Context, name: str, loc: Loc) -> None:
+    """Names of values stand behind that of their enum in every language: `X_MODE_NONE`."""
+    if name in DIRECTIVES:
+        _usable(context, name, loc)
+
+
 def _free(context: Context, name: str, own: frozenset[str], loc: Loc) -> None:
     if name in own:
         text = f"`{name}` is a name that generated code uses itself"
@@ -75,12 +81,15 @@ def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> No
 
 def _inside_field(context: Context, item: FieldSyntax, loc: Loc) -> None:
     """The names that stand inside of a field, those of its cases included."""
-    for key in _VALUE_KEYS:
+    for key in ("flags", "special"):
         for entry in getattr(item, key) or ():
             _usable(context, entry, (*loc, key, entry))
+    for entry in item.values or ():
+        _usable_as_value(context, entry, (*loc, "values", entry))
     for name, bits in (item.bits or {}).items():
+        _usable(context, name, (*loc, "bits", name))
         for entry in bits.values or ():
-            _usable(context, entry, (*loc, "bits", name, "values", entry))
+            _usable_as_value(context, entry, (*loc, "bits", name, "values", entry))
     _fields(context, item.fields or {}, (*loc, "fields"))
     for key, case in (item.cases or {}).items():
         _inside_field(context, case, (*loc, "cases", key))

@@ -85,7 +85,8 @@ there must be one form to start from. The name in the document can stand under `
         """\
 The name is taken in C, C++, Python or JavaScript, or by the code that protogen generates, or it is
 a directive of `extends`. No target changes a name, so that a field has one name in every language
-and in the document. Add a word that says more: `class` becomes `class_id`.
+and in the document. Add a word that says more: `class` becomes `class_id`. Names of an enum's
+values stand behind that of their enum, so that they may be words of a language.
 """,
         with_fields("default: uint16"),
         with_fields("default_speed: uint16"),
