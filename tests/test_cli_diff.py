@@ -479,6 +479,49 @@ class TestNothingCompared:
             ("compared 1 schema, 0 new, 0 gone\n", "compared 2 schemas, 0 new, 0 gone\n")
         )
 
+    def test_a_schema_that_is_gone_where_the_others_were_moved(self, repository: Path) -> None:
+        (repository / "schemas" / "second.yaml").write_text(SECOND, encoding="utf-8")
+        git(repository, "add", "--all")
+        git(repository, "commit", "--quiet", "--message", "Two beside each other")
+        git(repository, "mv", "schemas", "protocols")
+        (repository / "protocols" / "second.yaml").unlink()
+        output = answer(repository, "breaking", "protocols", "--against", "git:HEAD", code=1)
+        assert "WIRE [schema-deleted] schemas/second.yaml" in output
+        assert output.endswith("compared 2 schemas, 0 new, 1 gone\n")
+
+    def test_attributes_for_releases_take_no_schema_out(self, repository: Path) -> None:
+        (repository / ".gitattributes").write_text("*.yaml export-ignore\n")
+        git(repository, "add", "--all")
+        git(repository, "commit", "--quiet", "--message", "Attributes")
+        (repository / "schemas" / "demo.yaml").write_text(GONE, encoding="utf-8")
+        output = answer(repository, "breaking", "schemas", "--against", "git:HEAD", code=1)
+        assert "WIRE [message-deleted] ping" in output
+
+    @pytest.mark.parametrize("is_absolute", [False, True])
+    def test_links_lead_to_what_the_revision_has(self, is_absolute: bool, project: Path) -> None:
+        real = project / "real"
+        (project / "schemas").rename(real)
+        (project / "schemas").mkdir()
+        target = real if is_absolute else Path("../real")
+        (project / "schemas" / "demo.yaml").symlink_to(target / "demo.yaml")
+        (project / "schemas" / "loop").symlink_to("loop")
+        git(project, "add", "--all")
+        git(project, "commit", "--quiet", "--message", "Links")
+        (real / "demo.yaml").write_text(GONE, encoding="utf-8")
+        output = answer(project, "breaking", code=1)
+        assert "WIRE [message-deleted] ping" in output
+        assert output.endswith("compared 1 schema, 0 new, 0 gone\n")
+
+    def test_a_link_out_of_the_repository(
+        self, project: Path, tmp_path_factory: pytest.TempPathFactory
+    ) -> None:
+        outside = tmp_path_factory.mktemp("elsewhere") / "outside.yaml"
+        (project / "schemas" / "demo.yaml").rename(outside)
+        (project / "schemas" / "demo.yaml").symlink_to(outside)
+        git(project, "add", "--all")
+        git(project, "commit", "--quiet", "--message", "Link")
+        assert "is not in the repository" in complaint(project, "breaking").replace("\n", " ")
+
     def test_a_lock_of_other_schemas(self, project: Path) -> None:
         other = project / "elsewhere" / "second.yaml"
         other.parent.mkdir()

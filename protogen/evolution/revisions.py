@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
+import os
 import subprocess
-import tarfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import msgspec
 
@@ -17,6 +15,8 @@ from protogen.errors import UserError
 from protogen.project.find import OWN_FILE, SHARED_FILE
 
 _SUFFIXES = (".yaml", ".yml")
+_LINK = "120000"
+"""Mode of a symbolic link in a tree."""
 _GITLINK = "160000"
 """Mode of a submodule in a tree: git keeps its commit there, and none of its files."""
 
@@ -109,14 +109,29 @@ def _extract(revision: str, top: Path, folder: Path) -> tuple[str, ...]:
         raise _missing(revision, top)
     listed = _git("ls-tree", "-r", "-z", revision, folder=top).decode().split("\0")
     entries = [entry.partition("\t") for entry in listed if entry]
-    names = [name for _, _, name in entries if _is_wanted(name)]
-    if names:
-        data = _git("archive", "--format=tar", revision, "--", *names, folder=top)
-        with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-            # Python before 3.11.4 has no filters.
-            filters: Any = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
-            archive.extractall(folder, **filters)  # noqa: S202 - git's paths do not lead outside
+    names = [name for mode, _, name in entries if mode.startswith(_LINK) or _is_wanted(name)]
+    # Not by `git archive`, which leaves out what attributes keep from releases.
+    index = {"GIT_INDEX_FILE": str(folder / ".index")}
+    _git("read-tree", revision, folder=top, settings=index)
+    written = ("checkout-index", "-z", "--stdin", f"--prefix={folder}/")
+    _git(*written, folder=top, settings=index, text="\0".join(names).encode())
+    _keep_links_inside(folder, top)
     return tuple(name for mode, _, name in entries if mode.startswith(_GITLINK))
+
+
+def _keep_links_inside(folder: Path, top: Path) -> None:
+    """Let links into the repository lead into the revision; those that lead out of it go."""
+    links = [path for path in folder.rglob("*") if path.is_symlink()]
+    for link in links:
+        target = link.readlink()
+        if target.is_absolute() and target.is_relative_to(top):
+            link.unlink()
+            link.symlink_to(folder / target.relative_to(top))
+    for link in links:
+        # Path.resolve raises errors for links that lead to themselves.
+        place = Path(os.path.realpath(link))
+        if not (place.exists() and place.is_relative_to(os.path.realpath(folder))):
+            link.unlink()
 
 
 def _is_wanted(name: str) -> bool:
@@ -134,17 +149,25 @@ def _missing(revision: str, top: Path) -> NoVersionError:
     return NoVersionError(f"git has no revision `{revision}` here", f"`{fetch}` gets new ones")
 
 
-def _git(*arguments: str, folder: Path) -> bytes:
-    done = _run(*arguments, folder=folder)
+def _git(
+    *arguments: str, folder: Path, settings: Mapping[str, str] | None = None, text: bytes = b""
+) -> bytes:
+    done = _run(*arguments, folder=folder, settings=settings, text=text)
     if done.returncode:
         message = f"git: {done.stderr.decode(errors='replace').strip()}"
         raise NoVersionError(message)
     return done.stdout
 
 
-def _run(*arguments: str, folder: Path) -> subprocess.CompletedProcess[bytes]:
+def _run(
+    *arguments: str, folder: Path, settings: Mapping[str, str] | None = None, text: bytes = b""
+) -> subprocess.CompletedProcess[bytes]:
+    command = ["git", *arguments]
+    environment = {**os.environ, **(settings or {})}
     try:
-        return subprocess.run(["git", *arguments], capture_output=True, check=False, cwd=folder)
+        return subprocess.run(
+            command, capture_output=True, check=False, cwd=folder, env=environment, input=text
+        )
     except FileNotFoundError:
         message = "git is not installed"
         raise NoVersionError(message) from None

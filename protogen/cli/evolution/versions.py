@@ -151,7 +151,8 @@ def _paired(before: Version, after: Version) -> Iterator[Pair]:
 def _with_moved(before: Version, after: Version) -> Version:
     """OLD with the schemas of its revision that were moved to where NEW has one that it lacks.
 
-    They have the protocol's name, and their old place is empty now.
+    They have the protocol's name, and their old place is empty now. Where OLD has nothing else,
+    those beside them that are not in NEW are gone.
     """
     if before.revision is None:
         return before
@@ -159,12 +160,19 @@ def _with_moved(before: Version, after: Version) -> Version:
     gone = [(path, name) for path, name in before.elsewhere().items() if not (now / path).exists()]
     names = {item.protocol.name for item in before.compilations.values() if item.protocol}
     found = dict(before.compilations)
+    folders = set()
     for place, item in after.compilations.items():
         if place in before.compilations or item.protocol is None or item.protocol.name in names:
             continue
         paths = [path for path, name in gone if name == item.protocol.name]
         if len(paths) == 1:
             found[place] = before.compiled(paths[0])
+            if place and not before.compilations:
+                folders.add(Path(paths[0]).parent)
         elif after.revision is None:
             before.revision.check_no_submodule(Path(item.path))
+    kept = {item.protocol.name for item in after.compilations.values() if item.protocol}
+    for path, name in gone:
+        if Path(path).parent in folders and name not in kept:
+            found[path] = before.compiled(path)
     return replace(before, compilations=found)
