@@ -41,6 +41,7 @@ THINNED = (
 """Files of which only the tests of the kept schemas are selected, and those of no schema."""
 
 ONLY = {
+    "test_breaking_pairs.py": r"300|\[(enum|struct),",
     "test_bench_python.py": r"\[0-|in_order|reference",
     "test_c_fuzz.py": r"^$",
     "test_c_proof.py": r"^$",
