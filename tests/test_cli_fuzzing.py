@@ -13,7 +13,7 @@ from typing import Any
 
 import handwritten_matty
 import pytest
-from cli_support import ROOT, SINK, compiled
+from cli_support import ROOT, SINK, compiled, run
 
 from protogen.compiler import compile_file
 from protogen.copying import replace
@@ -380,3 +380,31 @@ def test_an_engine_may_refuse_what_would_be_cut_elsewhere() -> None:
 )
 def test_equality_of_values(left: object, right: object, equal: bool) -> None:
     assert same(left, right) is equal
+
+
+NEVER = """\
+protocol: never
+endpoints: {device: Device}
+decisions:
+  newline: {question: Can the end be inside?, document: silent, choice: yes, because: no stuffing}
+frame:
+  kind: {type: char, id: true}
+  payload: {}
+  end: {literal: {hex: 0D 0A}, unprotected: newline}
+messages:
+  note:
+    id: N
+    from: device
+    fields:
+      mark: {type: bytes, size: 2, const: {hex: 0D 0A}}
+      text: {type: bytes, size: {fill: true, max: 4}}
+"""
+
+
+def test_a_message_that_can_never_be_encoded_fails(tmp_path: Path) -> None:
+    path = tmp_path / "never.yaml"
+    path.write_text(NEVER, encoding="utf-8")
+    done = run("fuzz", str(path), "--examples", "20")
+    assert done.exit_code == 1
+    assert "note through construct: no sample can be encoded: payload: a decoder" in done.stdout
+    assert "all came back" not in done.stdout

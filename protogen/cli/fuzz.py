@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -93,19 +94,26 @@ def _fuzz(codec: Codec, engine: Engine, run: Run, first: Engine) -> bool:
     reference = None if engine is first else first
     total = case_count(protocol, run.examples, run.message)
     failures: dict[str, Outcome] = {}
-    tried = refused = 0
+    tried, refused = Counter[str](), Counter[str]()
+    reasons: dict[str, str] = {}
     with progress(f"{protocol.name} through {engine.name}", total) as advance:
         for case in cases(protocol, run.examples, run.seed, run.message):
             outcome = try_case(engine, protocol, case, reference)
             if outcome.problem and case.message not in failures:
                 failures[case.message] = smallest(engine, protocol, outcome, reference)
-            tried += 1
-            refused += bool(outcome.refused)
+            tried[case.message] += 1
+            if outcome.refused:
+                refused[case.message] += 1
+                reasons[case.message] = outcome.refused
             advance(1)
     for failure in failures.values():
         _print_failure(failure, engine, run.seed)
-    _print_summary(engine, tried, refused, len(failures), run.seed)
-    return bool(failures)
+    never = [name for name, count in refused.items() if count == tried[name]]
+    for name in never:
+        typer.echo(f"{name} through {engine.name}: no sample can be encoded: {reasons[name]}")
+    count = len(failures.keys() | never)
+    _print_summary(engine, tried.total(), refused.total(), count, run.seed)
+    return bool(count)
 
 
 def _print_failure(failure: Outcome, engine: Engine, seed: int) -> None:

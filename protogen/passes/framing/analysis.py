@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from protogen.model.frame import Cobs, Frame
+from protogen.model.frame import Cobs, Frame, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -169,12 +169,23 @@ class _Analysis:
                 hint = "give the frame an identity or another part, or the message a field"
                 self._context.error_at_key("PG146", ("messages", message.name), text, hint)
 
+    def _payload_index(self) -> int:
+        parts = enumerate(self.frame.parts)
+        return next(index for index, part in parts if isinstance(part, PayloadPart))
+
     def _region_unclear(self) -> bool:
-        """Raw parts between a stuffed region and the end need a length to be found."""
+        """A length is needed to find where stuffed parts begin, or raw ones behind them."""
         transparency = self.frame.transparency
         if transparency is None or self.frame.length is not None:
             return False
         names = [part.name for part in self.frame.parts]
+        behind = names.index(transparency.first) > self._payload_index()
+        if behind and any(message.sizes.fixed is None for message in self._messages):
+            words = f"nothing tells where the payload ends and the stuffed `{transparency.first}`"
+            hint = "give the frame a length, stuff the payload, too, or send it unstuffed"
+            place = ("frame", self._key, transparency.first)
+            self._context.error_at_key("PG149", place, f"{words} begins", hint)
+            return True
         rest = names[names.index(transparency.last) + 1 :]
         tail = self.delimiters.tail
         ends = {part.name for part in tail.parts} if tail is not None else set()

@@ -174,7 +174,7 @@ receiver would refuse it. Correct the `range` of the length part (it counts all 
         """\
 Parts that are not stuffed follow on the stuffed ones, and no length tells where the change is.
 Bytes behind it would be unstuffed by mistake, or the other way round. Stuff these parts as well, or
-give the frame a length.
+give the frame a length. The same holds for stuffed parts behind a payload of no fixed size.
 """,
         with_frame(
             """
