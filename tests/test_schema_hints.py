@@ -111,6 +111,14 @@ def test_parts_in_a_list_get_a_hint(tmp_path: Path) -> None:
     assert any((hint or "").startswith("leave out the `-`: `frame:`") for hint in hints)
 
 
+@pytest.mark.parametrize("endpoints", ["{board: [a, b]}", "{board: {title: {a: b}}}", "[board]"])
+def test_a_sender_gets_a_hint_whatever_the_endpoints_are(endpoints: str, tmp_path: Path) -> None:
+    text = SCHEMA.replace("{board: Sensor board}", endpoints).replace("from: board", "from: Board")
+    path = tmp_path / "schema.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert "PG103" in {problem.code for problem in compile_file(path).errors}
+
+
 def test_an_unknown_type_is_the_only_thing_that_is_said_of_it(tmp_path: Path) -> None:
     path = tmp_path / "schema.yaml"
     path.write_text(SCHEMA.replace(VALUE, "{type: snit16, range: [-500, 500]}"), encoding="utf-8")

@@ -109,12 +109,10 @@ def endpoint_hint(detail: Any, data: Any) -> str | None:
         return None
     if not isinstance(written, str):
         return None
-    titles = {
-        (item.get("title") if isinstance(item, dict) else item): name
-        for name, item in endpoints.items()
-    }
-    if written in titles:
-        return f"that is a title; write the endpoint's name: `{titles[written]}`"
+    for name, item in endpoints.items():
+        title = item.get("title") if isinstance(item, dict) else item
+        if title == written:
+            return f"that is a title; write the endpoint's name: `{name}`"
     names = [str(name) for name in endpoints]
     return hint_for(written, names) or f"endpoints are {', '.join(names)}"
 
