@@ -232,6 +232,37 @@ def test_an_end_is_not_looked_for_behind_the_longest_frame(path: Path, sender: s
         assert looked[1] < 10 * looked[0] + 50e-6
 
 
+class Watched(bytes):
+    """Bytes that note how large the pieces are that are taken of them."""
+
+    def __new__(cls, data: bytes, taken: list[int]) -> Watched:
+        watched = super().__new__(cls, data)
+        watched.taken = taken
+        return watched
+
+    taken: list[int]
+
+    def __getitem__(self, place: Any) -> Any:
+        piece = super().__getitem__(place)
+        if isinstance(piece, bytes):
+            self.taken.append(len(piece))
+        return piece
+
+
+@EVERY_SENDER
+def test_a_beginning_is_not_judged_by_more_than_the_longest_frame(path: Path, sender: str) -> None:
+    """Else damaged frames in one portion take time that grows with its square."""
+    spec = module_at(path).PROTOCOL.sender(sender)
+    prefix = prefix_of(spec)
+    if prefix is None:
+        return
+    for frame in islice(known_frames(path, protocol_of(path).sender(sender)), 0, None, 8):
+        taken: list[int] = []
+        behind = b"0" * (10 * spec.frame.greatest)
+        assert prefix.wanted(Watched(frame + behind, taken), 0) == 0
+        assert max(taken, default=0) <= spec.frame.greatest
+
+
 def seconds_to_cut(cut: Cutter, data: bytes) -> float:
     """The time in which a cutter sees that no whole frame stands in front."""
     best = 1.0

@@ -115,6 +115,8 @@ class Prefix:
         A verdict on what stands from `at` on, that is; 0 if there may be one as yet. That it stands
         behind an end has been seen.
         """
+        if len(data) - at >= self._greatest:
+            return 0  # Else each damaged frame would be given all that came behind it.
         wire = content = data[at:]
         is_begun = is_in_code = False
         if wire[self._start_size :].translate(None, self.plain):
