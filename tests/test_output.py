@@ -366,6 +366,14 @@ def test_a_checkout_with_crlf_is_current_and_keeps_its_line_ends(tmp_path):
     assert (tmp_path / "b.json").read_bytes() == b"[]\r\n"
 
 
+def test_diff_of_a_checkout_with_crlf_shows_what_changes_alone(tmp_path):
+    write_files([file("a.py", "x\ny\n")], tmp_path)
+    path = tmp_path / "a.py"
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    shown = diff_files([file("a.py", "x\nz\n")], tmp_path).splitlines(keepends=True)
+    assert shown[3:] == [f" {BANNER}\r\n", " x\r\n", "-y\r\n", "+z\r\n"]
+
+
 CONFLICT = "<<<<<<< HEAD\n{}=======\n{}>>>>>>> other\n"
 DIFF3 = "<<<<<<< HEAD\n{}||||||| base\n{}=======\n{}>>>>>>> other\n"
 

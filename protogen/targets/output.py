@@ -126,7 +126,10 @@ def check_files(
 
 def diff_files(files: Sequence[File], folder: Path, *, prune: bool = True) -> str:
     """Return what `write_files` would change, as a unified diff; empty: the folder is current."""
-    contents = {file.path: file.content for file in _wanted(files, folder, prune)}
+    contents = {
+        file.path: _as_before(folder / file.path, file.bytes).decode("utf-8")
+        for file in _wanted(files, folder, prune)
+    }
     found = check_files(files, folder, prune=prune)
     return "".join(
         diff_text(folder / item.path, _read_text(folder / item.path), contents.get(item.path))
