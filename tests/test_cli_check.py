@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,18 @@ def test_a_file_that_is_named_twice_is_checked_once(tmp_path: Path) -> None:
     schema = tmp_path / "a.yaml"
     schema.write_text(SINK)
     assert "1 schema, no problems" in run("check", str(schema), str(tmp_path)).stdout
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+@pytest.mark.parametrize("schemas", [".", "*.yaml"])
+def test_a_pipe_in_a_folder_is_no_schema_to_wait_for(
+    schemas: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "protogen.toml").write_text(f'schemas = ["{schemas}"]\n')
+    (tmp_path / "a.yaml").write_text(SINK)
+    os.mkfifo(tmp_path / "pipe.yaml")
+    assert "1 schema, no problems" in run("check").stdout
 
 
 @pytest.mark.parametrize("command", ["check", "generate"])

@@ -195,6 +195,15 @@ def test_folders_and_files_in_the_way_are_refused(tmp_path):
     assert reasons == ["a folder is in its place", "b is not a folder", "no such file or directory"]
 
 
+def test_a_pipe_in_the_way_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "a.py")
+    os.mkfifo(tmp_path / "manifest.json")
+    files = [file("a.py"), file("b.json", line=None)]
+    reasons = [item.reason for item in write_files(files, tmp_path).refused]
+    assert reasons == ["what is in its place is no regular file"] * 2
+    assert not is_current(expected_files(files, tmp_path), tmp_path)
+
+
 def test_output_folder_that_is_a_file_is_refused(tmp_path):
     (tmp_path / "out").write_text("mine")
     assert states(write_files([file("a.py")], tmp_path / "out").refused) == {"a.py": State.REFUSED}

@@ -35,7 +35,8 @@ def matches(folder: Path, pattern: str) -> Iterator[Path]:
     elif _GLOB.intersection(pattern):
         # Unlike that of pathlib, this one passes hidden files over and takes any path.
         names = glob.glob(pattern, root_dir=folder, recursive=True)  # noqa: PTH207
-        yield from (folder / name for name in sorted(names))
+        paths = (folder / name for name in sorted(names))
+        yield from (path for path in paths if not path.is_fifo())
 
 
 def schemas_below(folder: Path, patterns: Iterable[str]) -> tuple[Path, ...]:

@@ -17,8 +17,8 @@ class NoSchemaError(UserError, ValueError):
 def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:
     """Return the files among `paths`, and the schemas in the folders among them, each once.
 
-    Hidden files and folders are passed over. Raises NoSchemaError if a path is not there, or a
-    folder holds no schema.
+    Hidden files and folders are passed over, and pipes in folders. Raises NoSchemaError if a path
+    is not there, or a folder holds no schema.
     """
     found: dict[Path, None] = {}
     for path in paths:
@@ -31,7 +31,8 @@ def _files_at(path: Path) -> Sequence[Path]:
         raise NoSchemaError(f"there is no file or folder `{path}`")
     if not path.is_dir():
         return (path,)
-    files = sorted(file for file in path.rglob(f"*{SUFFIX}") if not _is_hidden(file, path))
+    named = (file for file in path.rglob(f"*{SUFFIX}") if not _is_hidden(file, path))
+    files = sorted(file for file in named if not file.is_fifo())
     if not files:
         raise NoSchemaError(f"the folder `{path}` holds no {SUFFIX} file")
     return files

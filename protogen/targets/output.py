@@ -187,9 +187,12 @@ def _bad_path(path: PurePosixPath) -> str:
 
 
 def _blocked(path: PurePosixPath, folder: Path) -> str:
-    """Say why no file can be at `path`: a folder is there, or a file where a folder has to be."""
-    if (folder / path).is_dir():
+    """Say why no file can be at `path`: no file is there, or a file where a folder has to be."""
+    place = folder / path
+    if place.is_dir():
         return "a folder is in its place"
+    if place.exists() and not place.is_file():  # Reading a pipe could take for ever.
+        return "what is in its place is no regular file"
     for parent in (folder, *(folder / parent for parent in path.parents)):
         if (parent.exists() or parent.is_symlink()) and not parent.is_dir():
             return f"{parent.name} is not a folder"
@@ -260,8 +263,10 @@ def _is_regular(path: Path) -> bool:
 
 
 def _read(path: Path, size: int = -1) -> bytes | None:
-    """Read a file, or the start of it; None if it can't be read."""
+    """Read a file, or the start of it; None if it can't be read, as a pipe, which may never end."""
     try:
+        if not path.is_file():
+            return None
         with path.open("rb") as stream:
             return stream.read(size)
     except OSError:
