@@ -119,6 +119,18 @@ def test_events_are_values(protocol: int) -> None:
     assert len({*events(), *events()}) == 3
 
 
+def test_parts_of_an_event_are_built_once() -> None:
+    stops = b"".join(matty.encode(matty.Stop(), counter=place % 256) for place in range(600))
+    in_bulk = matty.Decoder("pc").feed(stops)
+    by_reference = matty.Decoder("pc", engine="construct").feed(stops[:5])
+    assert len(in_bulk) == 600
+    for event in (in_bulk[0], in_bulk[-1], *by_reference):
+        assert isinstance(event, MessageEvent)
+        assert event.parts is event.parts
+        other = replace(event, numbers=(7, 0x53))
+        assert (other.parts.counter, other.parts.command) == (7, 0x53)
+
+
 def test_events_can_be_matched() -> None:
     message, unknown, invalid = events()
     match message:

@@ -274,6 +274,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.raw = raw
             event.numbers = numbers
             event.codec = HOST_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
@@ -344,6 +345,7 @@ def _cut_robot(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.raw = raw
             event.numbers = numbers
             event.codec = ROBOT_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.

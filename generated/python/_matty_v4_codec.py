@@ -265,6 +265,7 @@ def _cut_pc(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             event.raw = raw
             event.numbers = numbers
             event.codec = PC_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
@@ -346,6 +347,7 @@ def _cut_esp(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int:
             event.raw = raw
             event.numbers = numbers
             event.codec = ESP_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.

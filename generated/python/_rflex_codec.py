@@ -387,6 +387,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.raw = raw
             event.numbers = numbers
             event.codec = LINUX_SENDER
+            event.kept_parts = None
             add(event)
             at = end
             if are_many:
@@ -498,6 +499,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.raw = raw
             event.numbers = numbers
             event.codec = FLEX_SENDER
+            event.kept_parts = None
             add(event)
             at = end
             if are_many:

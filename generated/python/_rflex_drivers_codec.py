@@ -440,6 +440,7 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.raw = raw
             event.numbers = numbers
             event.codec = LINUX_SENDER
+            event.kept_parts = None
             add(event)
             at = end
             if are_many:
@@ -544,6 +545,7 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.raw = raw
             event.numbers = numbers
             event.codec = FLEX_SENDER
+            event.kept_parts = None
             add(event)
             at = end
             if are_many:

@@ -318,6 +318,7 @@ def _cut_host(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.raw = raw
             event.numbers = numbers
             event.codec = HOST_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
@@ -367,6 +368,7 @@ def _cut_brain(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.raw = raw
             event.numbers = numbers
             event.codec = BRAIN_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.

@@ -110,6 +110,7 @@ def _cut_daemon(data: bytes, at: int, base: int, events: list[_typing.Any]) -> i
             event.raw = raw
             event.numbers = numbers
             event.codec = DAEMON_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.
@@ -164,6 +165,7 @@ def _cut_board(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.raw = raw
             event.numbers = numbers
             event.codec = BOARD_SENDER
+            event.kept_parts = None
             add(event)
             at = end
     except _fast.ANYTHING:  # The reference looks at what is here.

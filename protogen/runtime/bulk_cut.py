@@ -122,6 +122,7 @@ class BulkCutter:
             event.numbers = number
             event.message = message
             event.codec = codec
+            event.kept_parts = None
             found.append(event)
         return found, places[-1]
 

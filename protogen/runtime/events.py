@@ -19,7 +19,7 @@ from protogen.runtime.values import Frozen, Value
 class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     """A valid frame of a known message."""
 
-    __slots__ = ("codec", "message", "numbers", "offset", "raw")
+    __slots__ = ("codec", "kept_parts", "message", "numbers", "offset", "raw")
     __fields__ = ("offset", "raw", "numbers", "message", "codec")
 
     kind: ClassVar[Literal["message"]] = "message"
@@ -32,12 +32,15 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     """The values of `parts`, in their order."""
     message: MessageT_co
     codec: SenderSpec[Any, Any]
+    kept_parts: PartsT_co | None
+    """The `parts`, from when they are first asked for; None before."""
 
     # Not frozen, without a constructor, and what the raw bytes tell worked out when it is asked
     # for: of some streams a second holds millions.
 
     def __replace__(self, /, **changes: Any) -> Self:
         event = type(self)()
+        event.kept_parts = None
         for name in self.__fields__:
             setattr(event, name, changes.pop(name) if name in changes else getattr(self, name))
         if changes:
@@ -55,7 +58,9 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     @property
     def parts(self) -> PartsT_co:
         """The frame's identity, counters and values."""
-        parts: PartsT_co = self.codec.parts(*self.numbers)
+        parts = self.kept_parts
+        if parts is None:
+            parts = self.kept_parts = self.codec.parts(*self.numbers)
         return parts
 
     @property
@@ -170,7 +175,7 @@ def frame_event(
         return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
     event: MessageEvent[MessageT_co, PartsT_co] = MessageEvent()
     event.offset, event.raw, event.numbers = offset, raw, numbers
-    event.message, event.codec = message, sender
+    event.message, event.codec, event.kept_parts = message, sender, None
     return event
 
 

@@ -420,6 +420,7 @@ class _Cutter(ChecksumFunction):
         for name in ("raw", "numbers"):
             self.lines.add(f"event.{name} = {name}")
         self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
+        self.lines.add("event.kept_parts = None")
         self.lines.add("add(event)")
         self._taken()
 
