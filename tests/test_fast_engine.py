@@ -551,6 +551,22 @@ def test_messages_are_sent_without_the_reference(
         assert module.encode(message, sender, **parts) == frame
 
 
+def test_an_encoder_goes_the_shortest_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    matty = module_at(MATTY)
+    encoder = matty.Encoder("pc")
+    with pytest.raises(EncodeError, match="pc does not send Ack"):
+        encoder.encode(matty.Ack())
+    with pytest.raises(EncodeError, match="speed"):
+        encoder.encode(matty.Go(speed=1 << 15, steer=0))
+    monkeypatch.setattr(matty.Encoder, "encode_next", None)
+    # Start, size (counter and "S"), counter, "S", and what makes the sum 0.
+    assert encoder.encode(matty.Stop()) == bytes.fromhex("55 02 00 53 AB")
+    assert encoder.encode(matty.Stop()) == bytes.fromhex("55 02 01 53 AA")
+    for _ in range(2, 256):
+        encoder.encode(matty.Stop())
+    assert encoder.encode(matty.Stop()) == bytes.fromhex("55 02 00 53 AB")
+
+
 LIKE_BYTES = [
     bytes,
     bytearray,

@@ -706,6 +706,12 @@ class Encoder(_rt.Encoder):
         strict: bool = True,
     ) -> bytes:
         """The next frame."""
+        if strict:
+            try:
+                wire = message.__encode__(_ENCODERS, self._name)
+            except _fast.ANYTHING:  # The other way says what is wrong.
+                return self.encode_next(message)
+            return wire
         return self.encode_next(message, strict)
 
 

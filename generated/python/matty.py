@@ -594,6 +594,13 @@ class Encoder(_rt.Encoder):
         counter: int | None = None,
     ) -> bytes:
         """The next frame. A given counter is used once and does not change the count."""
+        if strict and counter is None:
+            try:
+                wire = message.__encode__(_ENCODERS, self._name, self._next.get("counter"))
+            except _fast.ANYTHING:  # The other way says what is wrong.
+                return self.encode_next(message)
+            self._count(self._next)
+            return wire
         return self.encode_next(message, strict, counter=counter)
 
 

@@ -1352,6 +1352,12 @@ class Encoder(_rt.Encoder):
         number: int | None = None,
     ) -> bytes:
         """The next frame."""
+        if strict and number is None:
+            try:
+                wire = message.__encode__(_ENCODERS, self._name, self._next.get("number"))
+            except _fast.ANYTHING:  # The other way says what is wrong.
+                return self.encode_next(message)
+            return wire
         return self.encode_next(message, strict, number=number)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Generic
 
 from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
@@ -130,6 +130,7 @@ class Encoder:
     ) -> None:
         """`encode` is the function of the generated module; else the reference encodes."""
         self._sender = sender
+        self._name = sender.name
         self._encode = encode or self._encode_by_reference
         self._counters = {
             part.name: part for part in sender.layout.values if isinstance(part, CounterPart)
@@ -150,15 +151,15 @@ class Encoder:
         counted = [name for name in self._counters if parts.get(name) is None]
         given = {**parts, **{name: self._next[name] for name in counted}}
         wire = self._encode(message, self._sender.name, strict, **given)
-        for name in counted:
-            self._next[name] = _following(self._counters[name], self._next[name])
+        self._count(counted)
         return wire
+
+    def _count(self, counters: Iterable[str]) -> None:
+        for name in counters:
+            part, value = self._counters[name], self._next[name]
+            self._next[name] = part.least if value >= part.greatest else value + 1
 
     def _encode_by_reference(
         self, message: Message, sender: str, strict: bool, **parts: int | None
     ) -> bytes:
         return _encode(self._sender, message, parts, strict)
-
-
-def _following(part: CounterPart, value: int) -> int:
-    return part.least if value >= part.greatest else value + 1
