@@ -1,18 +1,23 @@
 """The decoder on every kind of framing: whatever the bytes, and however they arrive."""
 
+import gc
 import random
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import handwritten_framings
 import handwritten_reference
 import handwritten_streams as streams
 import pytest
+from compiled import DOCUMENTS, module_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from protogen.runtime import api as rt
 
 SENDERS = {name: make() for name, make in handwritten_framings.FRAMINGS.items()}
+MATTY = next(path for path in DOCUMENTS if path.stem == "matty")
 fewer = settings(max_examples=20)
 every_framing = pytest.mark.parametrize("sender", SENDERS.values(), ids=SENDERS.keys())
 
@@ -196,3 +201,54 @@ def is_recovered(sender: Any, offset: int, frame: bytes, recovered: dict[int, by
         return True
     start = len(sender.frame.start.value) if has_same_ends(sender) else 0
     return start > 0 and recovered.get(offset + start) == frame[start:]
+
+
+# --- garbage ------------------------------------------------------------------------------------
+
+
+@contextmanager
+def collections() -> Iterator[list[str]]:
+    """Beginnings of the garbage collector's runs."""
+    seen: list[str] = []
+
+    def note(phase: str, _: dict[str, int]) -> None:
+        if phase == "start":
+            seen.append(phase)
+
+    gc.callbacks.append(note)
+    try:
+        yield seen
+    finally:
+        gc.callbacks.remove(note)
+
+
+def test_garbage_is_collected_between_pieces_of_a_large_portion() -> None:
+    # A "stop" of matty's: start, size, counter, "S", and what makes the sum 0.
+    stream = bytes.fromhex("55 02 00 53 AB") * 50_000
+    assert gc.isenabled()
+    decoder = module_at(MATTY).Decoder("pc")
+    with collections() as seen:
+        events = decoder.feed(stream)
+    assert b"".join(event.raw for event in events) == stream
+    assert len(events) == 50_000
+    assert 4 < len(seen) < 10  # One for each piece; without pauses, for some hundreds of events.
+    assert gc.isenabled()
+
+
+def test_a_collector_that_is_off_stays_off() -> None:
+    gc.disable()
+    try:
+        rt.Decoder(SENDERS["matty pc"]).feed(bytes(3 << 15))
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
+def test_the_collector_is_on_again_after_an_error() -> None:
+    class Odd(rt.Decoder[Any, Any]):
+        def _run(self, final: bool) -> None:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Odd(SENDERS["matty pc"]).feed(bytes(3 << 15))
+    assert gc.isenabled()

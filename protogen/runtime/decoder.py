@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
@@ -22,6 +23,18 @@ BytesLike = bytes | bytearray | memoryview
 
 _LOOKED = 4096
 """So many bytes are looked through in the time that a candidate takes to be given one."""
+
+_PIECE = 1 << 15
+"""Bytes of a large portion that are taken at once, without a collection of garbage."""
+
+
+class _Pause:
+    """Pause of the garbage collector. To make one lets the collector run if that is due."""
+
+    __slots__ = ("is_needed",)  # Without attributes it would be nothing for the collector.
+
+    def __init__(self) -> None:
+        self.is_needed = gc.isenabled()
 
 
 def check_engine(engine: str) -> None:
@@ -88,6 +101,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """
         if type(data) is not bytes:
             data = octets(data)  # Of what is like bytes, some have a sum of their own with them.
+        if len(data) > _PIECE:
+            return self._feed_large(data)
         lane = self._lane
         whole = data
         if self._data:
@@ -113,6 +128,24 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
                 self._events = events
                 self._run(final=False)
                 return self._deliver()
+        return events
+
+    def _feed_large(self, data: bytes) -> list[Event[MessageT_co, PartsT_co]]:
+        """The same of a large portion, piece by piece.
+
+        The garbage collector looks through all new events again and again, which takes longer than
+        to make them, and none of them is garbage. So it pauses for each piece, and may run in
+        between, for what damaged frames and other threads leave.
+        """
+        events: list[Event[MessageT_co, PartsT_co]] = []
+        for at in range(0, len(data), _PIECE):
+            pause = _Pause()
+            try:
+                gc.disable()
+                events += Decoder.feed(self, data[at : at + _PIECE])
+            finally:
+                if pause.is_needed:
+                    gc.enable()
         return events
 
     @property
