@@ -18,11 +18,15 @@ from capture_support import assert_same_tables, described, expected_of
 from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from corpus import material_of, stream_of
 
+from protogen import SchemaError
 from protogen.capture import CaptureError, InvalidReason, batches, columns
 from protogen.capture.arrays import numpy
 from protogen.capture.gather import gathered
 from protogen.capture.layout import capture_schema
 from protogen.capture.schema import Number, TableSchema
+from protogen.model.protocol import Protocol
+from protogen.passes.context import Context
+from protogen.passes.resolve import resolve
 
 RN1 = ROOT / "schemas" / "rn1.yaml"
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -151,6 +155,50 @@ def test_a_protocol_is_a_name_a_path_or_a_model(
     (tmp_path / "schemas").mkdir()
     with pytest.raises(CaptureError, match="give the path"):
         columns(capture, "rn1", "brain")
+
+
+def test_a_path_is_compiled_again_only_once_a_file_of_it_holds_something_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    base, dialect = tmp_path / "base.yaml", tmp_path / "dialect.yaml"
+    base.write_text(
+        """
+protocol: base
+endpoints: {one: One side}
+byte_order: little
+frame:
+  length: {type: uint8, counts: payload}
+  id: {type: uint8, id: true}
+  payload: {}
+  crc: {type: uint8, algorithm: sum-8, covers: length..payload}
+messages:
+  point: {id: 1, from: one, fields: {x: uint8}}
+"""
+    )
+    dialect.write_text("extends: base.yaml\nprotocol: dialect\n")
+    compiled: list[Any] = []
+
+    def counted(context: Context) -> Protocol | None:
+        compiled.append(context)
+        return resolve(context)
+
+    monkeypatch.setattr("protogen.compiler.resolve", counted)
+    frame = bytes.fromhex("01 01 05 07")  # length, id, x, their sum
+
+    def fields() -> tuple[str, ...]:
+        schema = columns(frame, dialect, "one", engine="python").schema.messages["point"]
+        return tuple(column.name for column in schema.fields)
+
+    assert (fields(), fields()) == (("x",), ("x",))
+    assert len(compiled) == 1
+    before = base.stat()
+    base.write_text(base.read_text().replace("{x: uint8}", "{y: uint8}"))
+    os.utime(base, ns=(before.st_atime_ns, before.st_mtime_ns))  # As a fast editor leaves it.
+    assert (fields(), fields()) == (("y",), ("y",))
+    assert len(compiled) == 2
+    base.unlink()
+    with pytest.raises(SchemaError, match="the base can't be read"):
+        fields()
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,27 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import msgspec
+
 from protogen.capture.errors import CaptureError
 from protogen.model.protocol import Protocol, Sender
+
+
+class _Kept(msgspec.Struct, frozen=True):
+    """A protocol, and the text of each file that it was compiled from."""
+
+    protocol: Protocol
+    texts: dict[str, str]
+
+    @property
+    def is_current(self) -> bool:
+        """True if the files hold the same as then."""
+        return all(_holds(file, text) for file, text in self.texts.items())
+
+
+_KEPT: dict[tuple[str, str], _Kept] = {}
+"""By working directory, from which files are named, and path; the oldest ones in front."""
+_MOST = 16
 
 
 def protocol_of(protocol: Protocol | str | os.PathLike[str]) -> Protocol:
@@ -18,9 +37,16 @@ def protocol_of(protocol: Protocol | str | os.PathLike[str]) -> Protocol:
     """
     if isinstance(protocol, Protocol):
         return protocol
-    from protogen.api import load
-
-    return load(_found(Path(protocol)))
+    path = _found(Path(protocol))
+    key = str(Path.cwd()), str(path)
+    kept = _KEPT.get(key)
+    if kept is None or not kept.is_current:
+        kept = _compiled(path)
+        _KEPT.pop(key, None)
+        _KEPT[key] = kept
+        for oldest in list(_KEPT)[:-_MOST]:
+            _KEPT.pop(oldest, None)  # Another thread may have done so.
+    return kept.protocol
 
 
 def sender_of(protocol: Protocol, name: str) -> Sender:
@@ -30,6 +56,24 @@ def sender_of(protocol: Protocol, name: str) -> Sender:
     except KeyError:
         names = " and ".join(item.name for item in protocol.senders)
         raise CaptureError(f"{name!r} sends nothing in {protocol.name}; {names} do") from None
+
+
+def _compiled(path: Path) -> _Kept:
+    from protogen.api import SchemaError
+    from protogen.compiler import compile_file
+
+    done = compile_file(path)
+    if done.protocol is None:
+        raise SchemaError(done.problems, done.sources)
+    texts = {file: done.sources.text(file) or "" for file in done.sources.files}
+    return _Kept(done.protocol, texts)
+
+
+def _holds(file: str, text: str) -> bool:
+    try:
+        return Path(file).is_file() and Path(file).read_bytes().decode("utf-8-sig") == text
+    except (OSError, ValueError):
+        return False
 
 
 def _found(path: Path) -> Path:
