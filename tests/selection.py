@@ -66,6 +66,7 @@ WITHOUT = {
     "test_packaging.py": "TestWheel",
     "test_passes_robust.py": "of_a_base",
     "test_project_record.py": "hundred",
+    "test_python_corners.py": "thousands",
     "test_python_target.py": "strangers",
     "test_runtime_decoder.py": "whatever_the_bytes.*length",
     "test_schema_fuzzing.py": "codec_works|nearly_every",

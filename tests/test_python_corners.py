@@ -187,3 +187,18 @@ def test_a_sender_of_thousands_of_messages_can_be_imported(tmp_path: Path) -> No
     frame = bytes.fromhex("55 B8 0B 05 AA")  # 0x0BB8 is 3000.
     assert module.encode(module.M3000(x=5)) == frame
     assert module.decode(frame, "a") == module.M3000(x=5)
+
+
+def test_a_switch_of_thousands_of_cases_can_be_imported(tmp_path: Path) -> None:
+    """Python compiles only so many levels of `elif`, and of `A | B | C`."""
+    cases = ", ".join(f"{i}: {{fields: {{x: uint8}}}}" for i in range(3000))
+    schema = tmp_path / "corner.yaml"
+    schema.write_text(
+        f"{HEAD}messages: {{m: {{id: 1, from: a, fields: {{kind: uint16, body: "
+        f"{{switch: kind, cases: {{{cases}}}}}}}}}}}\n"
+    )
+    module = protogen.module_of(protogen.load(schema))
+    frame = bytes.fromhex("55 01 B7 0B 05 AA")  # 0x0BB7 is 2999.
+    message = module.M(kind=2999, body=module.MBodyCase2999(x=5))
+    assert module.encode(message) == frame
+    assert module.decode(frame, "a") == message

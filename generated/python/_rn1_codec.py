@@ -184,23 +184,24 @@ def _read_maintenance(data: bytes) -> Maintenance:
     item.operation = _MEMBERS_0[v3]
     at = 4
     case4: _typing.Any = None
-    if item.operation in (81, 82):
-        pass
-    elif item.operation == 65:
-        s5 = _read_maintenance_argument_reconfig_uart(data, at)
-        case4 = s5
-        at = at + 3
-    elif item.operation == 83:
-        s6 = _read_maintenance_argument_run_motor_controller_flasher(data, at)
-        case4 = s6
-        at = at + 1
-    else:
-        case4 = data[at :]
-        if len(case4) > 3:
-            raise _fast.NeedsReference
-        if not case4.isascii():
-            raise _fast.NeedsReference
-        at = len(data)
+    match item.operation:
+        case 81 | 82:
+            pass
+        case 65:
+            s5 = _read_maintenance_argument_reconfig_uart(data, at)
+            case4 = s5
+            at = at + 3
+        case 83:
+            s6 = _read_maintenance_argument_run_motor_controller_flasher(data, at)
+            case4 = s6
+            at = at + 1
+        case _:
+            case4 = data[at :]
+            if len(case4) > 3:
+                raise _fast.NeedsReference
+            if not case4.isascii():
+                raise _fast.NeedsReference
+            at = len(data)
     item.argument = case4
     if at != len(data):
         raise _fast.NeedsReference
@@ -444,34 +445,35 @@ def _encode_maintenance(item: Maintenance, module: object, sender: str | None) -
     if v4 < 0:
         raise _fast.NeedsReference
     v5 = item.argument
-    if v4 in (81, 82):
-        if v5 is not None:
-            raise _fast.NeedsReference
-        case6 = b""
-    elif v4 == 65:
-        if type(v5) is not MaintenanceArgumentReconfigUart:
-            raise _fast.NeedsReference
-        v7 = v5.baud_rate_register
-        if type(v7) is not int:
-            raise _fast.NeedsReference
-        case6 = _PACK_0(_NUMBER_0.encode(v7))
-    elif v4 == 83:
-        if type(v5) is not MaintenanceArgumentRunMotorControllerFlasher:
-            raise _fast.NeedsReference
-        v8 = v5.motor_controller
-        if not 1 <= v8 <= 4:
-            raise _fast.NeedsReference
-        if v8 < 0:
-            raise _fast.NeedsReference
-        case6 = _PACK_1(v8)
-    else:
-        if type(v5) is not bytes:
-            raise _fast.NeedsReference
-        if len(v5) > 3:
-            raise _fast.NeedsReference
-        if not v5.isascii():
-            raise _fast.NeedsReference
-        case6 = v5
+    match v4:
+        case 81 | 82:
+            if v5 is not None:
+                raise _fast.NeedsReference
+            case6 = b""
+        case 65:
+            if type(v5) is not MaintenanceArgumentReconfigUart:
+                raise _fast.NeedsReference
+            v7 = v5.baud_rate_register
+            if type(v7) is not int:
+                raise _fast.NeedsReference
+            case6 = _PACK_0(_NUMBER_0.encode(v7))
+        case 83:
+            if type(v5) is not MaintenanceArgumentRunMotorControllerFlasher:
+                raise _fast.NeedsReference
+            v8 = v5.motor_controller
+            if not 1 <= v8 <= 4:
+                raise _fast.NeedsReference
+            if v8 < 0:
+                raise _fast.NeedsReference
+            case6 = _PACK_1(v8)
+        case _:
+            if type(v5) is not bytes:
+                raise _fast.NeedsReference
+            if len(v5) > 3:
+                raise _fast.NeedsReference
+            if not v5.isascii():
+                raise _fast.NeedsReference
+            case6 = v5
     payload = b"".join((b"".join(v2), _PACK_1(v4), case6))
     if not 4 <= len(payload) <= 7:
         raise _fast.NeedsReference

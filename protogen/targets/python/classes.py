@@ -18,7 +18,15 @@ from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import class_name, member_name
-from protogen.targets.python.wrapping import WIDTH, docstring, method, remark, union, wrapped
+from protogen.targets.python.wrapping import (
+    WIDTH,
+    docstring,
+    method,
+    one_of,
+    remark,
+    union,
+    wrapped,
+)
 
 _INDENT = 4
 
@@ -241,7 +249,7 @@ def _switch_annotation(type_: Switch, taken: frozenset[str]) -> str:
         choices.append(_builtin("bytes", taken))
     distinct = dict.fromkeys(choices)
     ordered = [choice for choice in distinct if choice != "None"]
-    return " | ".join([*ordered, *(["None"] if "None" in distinct else [])])
+    return one_of([*ordered, *(["None"] if "None" in distinct else [])])
 
 
 def _default(field: Field) -> str | list[int | str] | None:

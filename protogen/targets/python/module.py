@@ -14,7 +14,7 @@ from protogen.targets.python.classes import Attribute, Constructor, EnumClass, R
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
 from protogen.targets.python.spelling import class_name
-from protogen.targets.python.wrapping import docstring, method, remark, union, wrapped
+from protogen.targets.python.wrapping import docstring, method, one_of, remark, union, wrapped
 
 _INDENT = 4
 _ENGINE = 'engine: _rt.Engine = "fast"'
@@ -83,8 +83,8 @@ def view(protocol: Protocol) -> Module:
     """The module of a protocol."""
     parts = _parts_classes(protocol)
     senders = _senders(protocol, parts)
-    any_message = " | ".join(dict.fromkeys(sender.union for sender in senders))
-    any_parts = " | ".join(dict.fromkeys(sender.parts for sender in senders))
+    any_message = one_of(sender.union for sender in senders)
+    any_parts = one_of(sender.parts for sender in senders)
     arguments = _arguments(protocol)
     structs = tuple(map(classes.struct_class, classes_of(protocol)))
     return Module(
@@ -206,7 +206,7 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
         new = [message for message in sender.messages if message.name not in printed]
         printed.update(message.name for message in new)
         union_name = f"{class_name(sender.name)}Message"
-        union_text = " | ".join(class_name(message.name) for message in sender.messages)
+        union_text = one_of(class_name(message.name) for message in sender.messages)
         views.append(
             SenderView(
                 name=sender.name,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterable
 
 WIDTH = 100
 _INDENT = 4
@@ -73,21 +74,33 @@ def _signs(expression: str) -> list[tuple[int, str]]:
 
 _LONGEST_CHAIN = 200
 """Python nests each `|` in the next, and compiles only so many levels."""
+_UNION = "_typing.Union["
+
+
+def one_of(members: Iterable[str]) -> str:
+    """The union of these types."""
+    listed = list(dict.fromkeys(members))
+    long = len(listed) > _LONGEST_CHAIN
+    return f"{_UNION}{', '.join(listed)}]" if long else " | ".join(listed)
 
 
 def union(start: str, members: str, indent: int) -> str:
     """`start` and a union of types, in brackets where it does not fit one line."""
     if indent + len(start) + len(members) <= WIDTH:
         return start + members
+    if _UNION in members:
+        return start + _long_union(members, indent)
     margin, inner = " " * indent, " " * (indent + _INDENT)
     if len(inner) + len(members) <= WIDTH:
         return f"{start}(\n{inner}{members}\n{margin})"
     first, *others = members.split(" | ")
-    if len(others) >= _LONGEST_CHAIN:
-        lines = [f"{inner}{member}," for member in (first, *others)]
-        return "\n".join([f"{start}_typing.Union[  # noqa: UP007", *lines, f"{margin}]"])
     lines = [f"{inner}{first}", *(f"{inner}| {other}" for other in others)]
     return "\n".join([f"{start}(", *lines, f"{margin})"])
+
+
+def _long_union(members: str, indent: int) -> str:
+    text = wrapped(members, WIDTH, indent)
+    return text.replace(f"{_UNION}\n", f"{_UNION}  # noqa: UP007\n")
 
 
 def method(start: str, parameters: str, end: str, indent: int, after: int = 0) -> str:
@@ -109,6 +122,9 @@ def _parameter(text: str, margin: str) -> str:
     """One parameter; the members of a union stand below each other where they do not fit."""
     if len(margin) + len(text) + 1 <= WIDTH:
         return margin + text
+    head, found, default = text.partition(" = ")
+    if _UNION in head:
+        return margin + _long_union(head, len(margin)) + found + default
     return margin + f"\n{margin}| ".join(text.split(" | "))
 
 

@@ -290,20 +290,18 @@ class _Reader(Converter):
         selector = self.raw[step.selector_name]
         self._move_to(self.place.text)
         self.lines.add(f"{value}: _typing.Any = None")
-        word = "if"
-        empty = [str(case.value) for case in step.cases if case.is_empty]
-        if empty:
-            with self.lines.block(f"{word} {selector} in {tuple_of(empty)}:"):
-                self.lines.add("pass")
-            word = "elif"
-        for case in step.cases:
-            if case.is_empty:
-                continue
-            with self.lines.block(f"{word} {selector} == {case.value}:"):
-                self._case(value, case.step)
-            word = "elif"
-        with self.lines.block("else:"):
-            self._rest(value, step.rest)
+        # Python compiles only so many levels of `elif`; a `match` of any length is one level.
+        with self.lines.block(f"match {selector}:"):
+            empty = [str(case.value) for case in step.cases if case.is_empty]
+            if empty:
+                with self.lines.block(f"case {' | '.join(empty)}:"):
+                    self.lines.add("pass")
+            for case in step.cases:
+                if not case.is_empty:
+                    with self.lines.block(f"case {case.value}:"):
+                        self._case(value, case.step)
+            with self.lines.block("case _:"):
+                self._rest(value, step.rest)
         return value
 
     def _case(self, target: str, step: AnyStep) -> None:

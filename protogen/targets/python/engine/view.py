@@ -19,7 +19,7 @@ from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, mapping, text, tuple_of
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.spelling import class_name
-from protogen.targets.python.wrapping import method, wrapped
+from protogen.targets.python.wrapping import method, one_of, wrapped
 
 
 class Function(msgspec.Struct, frozen=True):
@@ -220,7 +220,7 @@ def _overloads(frame: EngineFrame) -> list[Function]:
 
 
 def _overload(frame: EngineFrame, group: IdentityGroup) -> Function:
-    given = " | ".join(class_name(message.name) for message in group.messages)
+    given = one_of(class_name(message.name) for message in group.messages)
     body: list[str] = []
     around = sum(frame.around or ()) if frame.gives_content else 0
     size = f"len(data) - {around}" if around else "len(data)"

@@ -361,25 +361,22 @@ class _Writer:
         self._bytes.flush()
         data = self.lines.local("case")
         selector = self.raw[step.selector_name]
-        word = "if"
-        empty = [str(case.value) for case in step.cases if case.is_empty]
-        if empty:
-            with self.lines.block(f"{word} {selector} in {tuple_of(empty)}:"):
-                self.lines.refuse_if(f"{value} is not None")
-                self.lines.add(f'{data} = b""')
-            word = "elif"
-        for case in step.cases:
-            if case.is_empty:
-                continue
-            with self.lines.block(f"{word} {selector} == {case.value}:"):
-                self.lines.add(f"{data} = {self._apart(value, case.step, None)}")
-            word = "elif"
-        with self.lines.block("else:"):
-            if step.rest is None:
-                self.lines.add("raise _fast.NeedsReference")
-            else:
-                self._rest(value, step.rest)
-                self.lines.add(f"{data} = {value}")
+        with self.lines.block(f"match {selector}:"):
+            empty = [str(case.value) for case in step.cases if case.is_empty]
+            if empty:
+                with self.lines.block(f"case {' | '.join(empty)}:"):
+                    self.lines.refuse_if(f"{value} is not None")
+                    self.lines.add(f'{data} = b""')
+            for case in step.cases:
+                if not case.is_empty:
+                    with self.lines.block(f"case {case.value}:"):
+                        self.lines.add(f"{data} = {self._apart(value, case.step, None)}")
+            with self.lines.block("case _:"):
+                if step.rest is None:
+                    self.lines.add("raise _fast.NeedsReference")
+                else:
+                    self._rest(value, step.rest)
+                    self.lines.add(f"{data} = {value}")
         self._bytes.piece(data)
 
     # --- arrays -----------------------------------------------------------------------------------
