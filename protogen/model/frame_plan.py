@@ -7,6 +7,7 @@ The *head* is the parts in front of the payload, the *tail* those behind it, wit
 from __future__ import annotations
 
 from enum import Enum, auto
+from functools import cached_property
 
 import msgspec
 
@@ -232,7 +233,7 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
         return max(message.sizes.greatest for message in self.messages)
 
 
-class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
+class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """A sender's frame, worked out once. Sizes are in bytes."""
 
     frame: Frame
@@ -393,7 +394,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True):
         """True if the size of some payload follows from its first bytes alone."""
         return self.length is None and not self.end_bytes and self.has_open_groups
 
-    @property
+    @cached_property
     def has_open_groups(self) -> bool:
         """True if the payloads of some identity vary in size."""
         return any(group.fixed is None for group in self.groups)

@@ -28,15 +28,6 @@ _PIECE = 1 << 15
 """Bytes of a large portion that are taken at once, without a collection of garbage."""
 
 
-class _Pause:
-    """Pause of the garbage collector. To make one lets the collector run if that is due."""
-
-    __slots__ = ("is_needed",)  # Without attributes it would be nothing for the collector.
-
-    def __init__(self) -> None:
-        self.is_needed = gc.isenabled()
-
-
 def check_engine(engine: str) -> None:
     """Raise ValueError unless there is such an engine."""
     if engine not in ("fast", "construct"):
@@ -134,18 +125,20 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """The same of a large portion, piece by piece.
 
         The garbage collector looks through all new events again and again, which takes longer than
-        to make them, and none of them is garbage. So it pauses for each piece, and may run in
-        between, for what damaged frames and other threads leave.
+        to make them, and none of them is garbage. So it pauses for each piece, and looks at the
+        youngest objects behind it, for what damaged frames and other threads leave.
         """
         events: list[Event[MessageT_co, PartsT_co]] = []
         for at in range(0, len(data), _PIECE):
-            pause = _Pause()
+            was_on = gc.isenabled()
+            gc.disable()
             try:
-                gc.disable()
                 events += Decoder.feed(self, data[at : at + _PIECE])
             finally:
-                if pause.is_needed:
+                if was_on:
                     gc.enable()
+            if was_on:
+                gc.collect(0)
         return events
 
     @property

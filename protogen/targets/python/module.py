@@ -288,14 +288,14 @@ def _unless(expression: str, default: str) -> str | None:
 
 def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
     name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{union}, {parts}] = "
-    shown = [class_name(m.name) for m in sender.received]
-    encode_only = [class_name(m.name) for m in sender.messages if m not in sender.received]
+    shown = {m.name: class_name(m.name) for m in sender.received}
+    encode_only = [class_name(m.name) for m in sender.messages if m.name not in shown]
     expression = call(
         "_rt.SenderSpec",
         text(sender.name),
         frame,
         parts,
-        messages=tuple_of(shown),
+        messages=tuple_of(shown.values()),
         encode_only=tuple_of(encode_only) if encode_only else None,
     )
     return name + wrapped(expression, len(name), 0, after=0)

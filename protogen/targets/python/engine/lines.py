@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -16,12 +17,13 @@ class Constants:
 
     def __init__(self) -> None:
         self._names: dict[str, str] = {}
+        self._counts: Counter[str] = Counter()
 
     def named(self, kind: str, expression: str) -> str:
         """The name of an expression's value; `kind` begins it."""
         if expression not in self._names:
-            count = sum(name.startswith(f"_{kind}_") for name in self._names.values())
-            self._names[expression] = f"_{kind}_{count}"
+            self._names[expression] = f"_{kind}_{self._counts[kind]}"
+            self._counts[kind] += 1
         return self._names[expression]
 
     def number(self, type_: NumberType) -> str:
