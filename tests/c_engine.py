@@ -152,7 +152,9 @@ def python_events(module: Any, sender: str, steps: Iterable[Step]) -> list[list[
     decoder = module.Decoder(sender)
     found = []
     for step in steps:
-        events = decoder.flush() if step[0] == "flush" else decoder.feed(step[1])
+        if step[0] == "clear":
+            decoder = module.Decoder(sender)
+        events = decoder.feed(step[1]) if len(step) == 2 else decoder.flush()
         found.append([_event(event) for event in events])
     return found
 

@@ -119,6 +119,27 @@ def drawn_steps(draw: st.DrawFn, data: bytes) -> list[Step]:
     return [*((kind, part) for part in parts), ("flush",)]
 
 
+@EVERY_SENDER
+@pytest.mark.parametrize("options", [ALL, MESSAGES], ids=["all", "messages"])
+def test_a_decoder_in_memory_of_zeros_is_like_one_that_was_initialised(
+    options: COptions, path: Path, sender: str
+) -> None:
+    """Delimiters and frames where the input begins, which is when the two could differ."""
+    marks = sorted(set(marks_of(path, sender)))
+    dice = Random(f"{path.stem} {sender}")
+    starts = [
+        bytes((one, other)) for one in marks for other in dice.sample(marks, min(4, len(marks)))
+    ]
+    starts += [bytes((value,)) for value in range(256)]
+    frames = dice.choices(material_of(path, sender).frames, k=20)
+    starts += [*frames, *(frame[1:] + frame for frame in frames)]
+    steps: list[Step] = []
+    for start in starts:
+        kind = "feed" if dice.random() < 0.5 else "push"
+        steps += [("clear",), (kind, start), ("flush",)]
+    check_events(process_of(path, options), module_at(path), sender, steps)
+
+
 def test_offsets_count_on_beyond_the_end_of_an_input() -> None:
     path, sender = DOCUMENTS[0], protocol_of(DOCUMENTS[0]).senders[0].name
     frame = material_of(path, sender).frames[0]

@@ -821,7 +821,8 @@ enum dagny_result dagny_command_decode(struct dagny_command *message, const uint
 enum {
     DAGNY_SEEKING,
     DAGNY_TAKING,
-    DAGNY_FAILED
+    DAGNY_FAILED,
+    DAGNY_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -1599,7 +1600,7 @@ static void dagny_host_open(struct dagny_host_decoder *decoder) {
 
 /* Look for the next start. */
 static void dagny_host_seek_on(struct dagny_host_decoder *decoder) {
-    decoder->state = DAGNY_SEEKING;
+    decoder->state = DAGNY_LOST;
     if (decoder->match == 1U) {
         dagny_host_open(decoder);
     }
@@ -1679,13 +1680,17 @@ static void dagny_host_run(struct dagny_host_decoder *decoder, bool is_end) {
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
             decoder->next++;
-            if (decoder->state == DAGNY_SEEKING) {
+            if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
+                dagny_host_open(decoder);
+            }
+            uint8_t reason = DAGNY_NO_REASON;
+            if (decoder->state == DAGNY_LOST) {
                 dagny_host_seek(decoder, byte);
             } else {
-                const uint8_t reason = dagny_host_take(decoder, byte);
-                if (reason != DAGNY_NO_REASON) {
-                    dagny_host_judge(decoder, reason);
-                }
+                reason = dagny_host_take(decoder, byte);
+            }
+            if (reason != DAGNY_NO_REASON) {
+                dagny_host_judge(decoder, reason);
             }
         }
     }
@@ -1707,17 +1712,21 @@ void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *
 }
 
 static void dagny_host_reset(struct dagny_host_decoder *decoder) {
+    decoder->state = DAGNY_SEEKING;
     decoder->noise = 0;
     decoder->count = 0;
     decoder->next = 0;
     decoder->match = 0;
-    dagny_host_open(decoder);
 }
 
 void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
                              void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 0;
     decoder->offset = 0;
     dagny_host_reset(decoder);
 }
@@ -2077,7 +2086,7 @@ static void dagny_robot_open(struct dagny_robot_decoder *decoder) {
 
 /* Look for the next start. */
 static void dagny_robot_seek_on(struct dagny_robot_decoder *decoder) {
-    decoder->state = DAGNY_SEEKING;
+    decoder->state = DAGNY_LOST;
     if (decoder->match == 1U) {
         dagny_robot_open(decoder);
     }
@@ -2157,13 +2166,17 @@ static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool is_end) {
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
             decoder->next++;
-            if (decoder->state == DAGNY_SEEKING) {
+            if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
+                dagny_robot_open(decoder);
+            }
+            uint8_t reason = DAGNY_NO_REASON;
+            if (decoder->state == DAGNY_LOST) {
                 dagny_robot_seek(decoder, byte);
             } else {
-                const uint8_t reason = dagny_robot_take(decoder, byte);
-                if (reason != DAGNY_NO_REASON) {
-                    dagny_robot_judge(decoder, reason);
-                }
+                reason = dagny_robot_take(decoder, byte);
+            }
+            if (reason != DAGNY_NO_REASON) {
+                dagny_robot_judge(decoder, reason);
             }
         }
     }
@@ -2186,17 +2199,21 @@ void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t
 }
 
 static void dagny_robot_reset(struct dagny_robot_decoder *decoder) {
+    decoder->state = DAGNY_SEEKING;
     decoder->noise = 0;
     decoder->count = 0;
     decoder->next = 0;
     decoder->match = 0;
-    dagny_robot_open(decoder);
 }
 
 void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,
                               void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 0;
     decoder->offset = 0;
     dagny_robot_reset(decoder);
 }

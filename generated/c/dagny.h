@@ -666,7 +666,7 @@ struct dagny_host_decoder {
     uint16_t next;
     /** Bytes of the candidate that failed. */
     uint16_t failed;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Why the candidate failed. */
     uint8_t reason;
@@ -682,7 +682,10 @@ struct dagny_host_decoder {
     uint8_t buffer[515];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
                              void *user);
 
@@ -750,7 +753,7 @@ struct dagny_robot_decoder {
     uint16_t next;
     /** Bytes of the candidate that failed. */
     uint16_t failed;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Why the candidate failed. */
     uint8_t reason;
@@ -766,7 +769,10 @@ struct dagny_robot_decoder {
     uint8_t buffer[515];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,
                               void *user);
 

@@ -539,7 +539,8 @@ enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shu
 enum {
     DAGNY_LIBRARY_SEEKING,
     DAGNY_LIBRARY_TAKING,
-    DAGNY_LIBRARY_FAILED
+    DAGNY_LIBRARY_FAILED,
+    DAGNY_LIBRARY_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -1387,7 +1388,7 @@ static void dagny_library_host_open(struct dagny_library_host_decoder *decoder) 
 
 /* Look for the next start. */
 static void dagny_library_host_seek_on(struct dagny_library_host_decoder *decoder) {
-    decoder->state = DAGNY_LIBRARY_SEEKING;
+    decoder->state = DAGNY_LIBRARY_LOST;
     if (decoder->match == 1U) {
         dagny_library_host_open(decoder);
     }
@@ -1411,6 +1412,9 @@ static void dagny_library_host_seek(struct dagny_library_host_decoder *decoder, 
 }
 
 void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder, uint8_t byte) {
+    if (decoder->state == DAGNY_LIBRARY_SEEKING) { /* At the beginning of the input. */
+        dagny_library_host_open(decoder);
+    }
     if (decoder->state == DAGNY_LIBRARY_TAKING) {
         const uint8_t reason = dagny_library_host_take(decoder, byte);
         if (reason != DAGNY_LIBRARY_NO_REASON) {
@@ -1430,15 +1434,19 @@ void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
 }
 
 static void dagny_library_host_reset(struct dagny_library_host_decoder *decoder) {
+    decoder->state = DAGNY_LIBRARY_SEEKING;
     decoder->noise = 0;
     decoder->match = 0;
-    dagny_library_host_open(decoder);
 }
 
 void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
                                      dagny_library_host_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 0;
     decoder->offset = 0;
     dagny_library_host_reset(decoder);
 }
@@ -1771,7 +1779,7 @@ static void dagny_library_robot_open(struct dagny_library_robot_decoder *decoder
 
 /* Look for the next start. */
 static void dagny_library_robot_seek_on(struct dagny_library_robot_decoder *decoder) {
-    decoder->state = DAGNY_LIBRARY_SEEKING;
+    decoder->state = DAGNY_LIBRARY_LOST;
     if (decoder->match == 1U) {
         dagny_library_robot_open(decoder);
     }
@@ -1795,6 +1803,9 @@ static void dagny_library_robot_seek(struct dagny_library_robot_decoder *decoder
 }
 
 void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decoder, uint8_t byte) {
+    if (decoder->state == DAGNY_LIBRARY_SEEKING) { /* At the beginning of the input. */
+        dagny_library_robot_open(decoder);
+    }
     if (decoder->state == DAGNY_LIBRARY_TAKING) {
         const uint8_t reason = dagny_library_robot_take(decoder, byte);
         if (reason != DAGNY_LIBRARY_NO_REASON) {
@@ -1814,15 +1825,19 @@ void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decode
 }
 
 static void dagny_library_robot_reset(struct dagny_library_robot_decoder *decoder) {
+    decoder->state = DAGNY_LIBRARY_SEEKING;
     decoder->noise = 0;
     decoder->match = 0;
-    dagny_library_robot_open(decoder);
 }
 
 void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
                                       dagny_library_robot_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
+    /* So that what bounds places in the buffer is never anything else. */
+    decoder->content = 0;
+    decoder->payload = 0;
+    decoder->limit = 0;
     decoder->offset = 0;
     dagny_library_robot_reset(decoder);
 }

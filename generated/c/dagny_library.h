@@ -672,7 +672,7 @@ struct dagny_library_host_decoder {
     uint16_t payload;
     /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -686,7 +686,10 @@ struct dagny_library_host_decoder {
     uint8_t buffer[1027];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
                                      dagny_library_host_handler handler, void *user);
 
@@ -750,7 +753,7 @@ struct dagny_library_robot_decoder {
     uint16_t payload;
     /** Bytes of content that the frame has, or can have. */
     uint16_t limit;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -764,7 +767,10 @@ struct dagny_library_robot_decoder {
     uint8_t buffer[1027];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
                                       dagny_library_robot_handler handler, void *user);
 

@@ -425,7 +425,8 @@ enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *pay
 enum {
     MATTY_SEEKING,
     MATTY_TAKING,
-    MATTY_FAILED
+    MATTY_FAILED,
+    MATTY_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -1511,15 +1512,16 @@ void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data
 }
 
 static void matty_pc_reset(struct matty_pc_decoder *decoder) {
+    decoder->state = MATTY_SEEKING;
     decoder->noise = 0;
-    matty_pc_seek_on(decoder);
 }
 
 void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 121U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     matty_pc_reset(decoder);
 }
@@ -2024,8 +2026,8 @@ void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *da
 }
 
 static void matty_esp_reset(struct matty_esp_decoder *decoder) {
+    decoder->state = MATTY_SEEKING;
     decoder->noise = 0;
-    matty_esp_seek_on(decoder);
 }
 
 void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
@@ -2033,7 +2035,8 @@ void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 121U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     matty_esp_reset(decoder);
 }

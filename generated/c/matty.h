@@ -540,7 +540,7 @@ struct matty_pc_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -550,7 +550,10 @@ struct matty_pc_decoder {
     uint8_t buffer[126];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
@@ -610,7 +613,7 @@ struct matty_esp_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -620,7 +623,10 @@ struct matty_esp_decoder {
     uint8_t buffer[126];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
                             void *user);
 

@@ -548,7 +548,8 @@ enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
 enum {
     MATTY_V4_SEEKING,
     MATTY_V4_TAKING,
-    MATTY_V4_FAILED
+    MATTY_V4_FAILED,
+    MATTY_V4_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -1758,8 +1759,8 @@ void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t
 }
 
 static void matty_v4_pc_reset(struct matty_v4_pc_decoder *decoder) {
+    decoder->state = MATTY_V4_SEEKING;
     decoder->noise = 0;
-    matty_v4_pc_seek_on(decoder);
 }
 
 void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
@@ -1767,7 +1768,8 @@ void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_h
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 122U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     matty_v4_pc_reset(decoder);
 }
@@ -2277,8 +2279,8 @@ void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8
 }
 
 static void matty_v4_esp_reset(struct matty_v4_esp_decoder *decoder) {
+    decoder->state = MATTY_V4_SEEKING;
     decoder->noise = 0;
-    matty_v4_esp_seek_on(decoder);
 }
 
 void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,
@@ -2286,7 +2288,8 @@ void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_es
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 122U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     matty_v4_esp_reset(decoder);
 }

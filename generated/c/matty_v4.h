@@ -670,7 +670,7 @@ struct matty_v4_pc_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -680,7 +680,10 @@ struct matty_v4_pc_decoder {
     uint8_t buffer[127];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
                               void *user);
 
@@ -742,7 +745,7 @@ struct matty_v4_esp_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -752,7 +755,10 @@ struct matty_v4_esp_decoder {
     uint8_t buffer[127];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,
                                void *user);
 

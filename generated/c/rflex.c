@@ -829,7 +829,8 @@ enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
 enum {
     RFLEX_SEEKING,
     RFLEX_TAKING,
-    RFLEX_FAILED
+    RFLEX_FAILED,
+    RFLEX_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -2508,8 +2509,9 @@ void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t
 }
 
 static void rflex_linux_reset(struct rflex_linux_decoder *decoder) {
+    decoder->state = RFLEX_SEEKING;
     decoder->noise = 0;
-    rflex_linux_seek_on(decoder);
+    decoder->match = 0;
 }
 
 void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler,
@@ -2517,7 +2519,8 @@ void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_h
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 255U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     rflex_linux_reset(decoder);
 }
@@ -3212,8 +3215,9 @@ void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *
 }
 
 static void rflex_flex_reset(struct rflex_flex_decoder *decoder) {
+    decoder->state = RFLEX_SEEKING;
     decoder->noise = 0;
-    rflex_flex_seek_on(decoder);
+    decoder->match = 0;
 }
 
 void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler,
@@ -3221,7 +3225,8 @@ void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_hand
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 255U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     rflex_flex_reset(decoder);
 }

@@ -1094,7 +1094,8 @@ enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir
 enum {
     RFLEX_DRIVERS_SEEKING,
     RFLEX_DRIVERS_TAKING,
-    RFLEX_DRIVERS_FAILED
+    RFLEX_DRIVERS_FAILED,
+    RFLEX_DRIVERS_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -2996,8 +2997,9 @@ void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decode
 }
 
 static void rflex_drivers_linux_reset(struct rflex_drivers_linux_decoder *decoder) {
+    decoder->state = RFLEX_DRIVERS_SEEKING;
     decoder->noise = 0;
-    rflex_drivers_linux_seek_on(decoder);
+    decoder->match = 0;
 }
 
 void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
@@ -3005,7 +3007,8 @@ void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decode
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 255U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     rflex_drivers_linux_reset(decoder);
 }
@@ -3726,8 +3729,9 @@ void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
 }
 
 static void rflex_drivers_flex_reset(struct rflex_drivers_flex_decoder *decoder) {
+    decoder->state = RFLEX_DRIVERS_SEEKING;
     decoder->noise = 0;
-    rflex_drivers_flex_seek_on(decoder);
+    decoder->match = 0;
 }
 
 void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
@@ -3735,7 +3739,8 @@ void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 255U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     rflex_drivers_flex_reset(decoder);
 }

@@ -1267,7 +1267,7 @@ struct rflex_drivers_linux_decoder {
     uint16_t failed;
     /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Why the candidate failed. */
     uint8_t reason;
@@ -1283,7 +1283,10 @@ struct rflex_drivers_linux_decoder {
     uint8_t buffer[262];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
                                       rflex_drivers_linux_handler handler, void *user);
 
@@ -1351,7 +1354,7 @@ struct rflex_drivers_flex_decoder {
     uint16_t failed;
     /** Bytes behind a failed candidate that may belong to a start. */
     uint16_t extra;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Why the candidate failed. */
     uint8_t reason;
@@ -1367,7 +1370,10 @@ struct rflex_drivers_flex_decoder {
     uint8_t buffer[262];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
                                      rflex_drivers_flex_handler handler, void *user);
 

@@ -908,7 +908,8 @@ enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *pay
 enum {
     RN1_SEEKING,
     RN1_TAKING,
-    RN1_FAILED
+    RN1_FAILED,
+    RN1_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -1741,8 +1742,8 @@ void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data
 }
 
 static void rn1_host_reset(struct rn1_host_decoder *decoder) {
+    decoder->state = RN1_SEEKING;
     decoder->noise = 0;
-    rn1_host_seek_on(decoder);
 }
 
 void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler, void *user) {
@@ -1751,7 +1752,7 @@ void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler ha
     /* So that what bounds places in the buffer is never anything else. */
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = 9U;
+    decoder->limit = 0;
     decoder->offset = 0;
     rn1_host_reset(decoder);
 }
@@ -2204,8 +2205,8 @@ void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *da
 }
 
 static void rn1_brain_reset(struct rn1_brain_decoder *decoder) {
+    decoder->state = RN1_SEEKING;
     decoder->noise = 0;
-    rn1_brain_seek_on(decoder);
 }
 
 void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
@@ -2215,7 +2216,7 @@ void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler
     /* So that what bounds places in the buffer is never anything else. */
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = 722U;
+    decoder->limit = 0;
     decoder->offset = 0;
     rn1_brain_reset(decoder);
 }

@@ -594,7 +594,7 @@ struct rn1_host_decoder {
     uint8_t payload;
     /** Bytes of content that the frame has, or can have. */
     uint8_t limit;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -604,7 +604,10 @@ struct rn1_host_decoder {
     uint8_t buffer[9];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
@@ -667,7 +670,7 @@ struct rn1_brain_decoder {
     uint16_t limit;
     /** Bytes on the wire in front of the first that may be a start. */
     uint16_t open_from;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -677,7 +680,10 @@ struct rn1_brain_decoder {
     uint8_t buffer[722];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
                             void *user);
 

@@ -1125,7 +1125,8 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
 enum {
     RN1_FIRMWARE_SEEKING,
     RN1_FIRMWARE_TAKING,
-    RN1_FIRMWARE_FAILED
+    RN1_FIRMWARE_FAILED,
+    RN1_FIRMWARE_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -2090,8 +2091,8 @@ void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, c
 }
 
 static void rn1_firmware_host_reset(struct rn1_firmware_host_decoder *decoder) {
+    decoder->state = RN1_FIRMWARE_SEEKING;
     decoder->noise = 0;
-    rn1_firmware_host_seek_on(decoder);
 }
 
 void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
@@ -2101,7 +2102,7 @@ void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
     /* So that what bounds places in the buffer is never anything else. */
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = 7U;
+    decoder->limit = 0;
     decoder->offset = 0;
     rn1_firmware_host_reset(decoder);
 }
@@ -2598,8 +2599,8 @@ void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
 }
 
 static void rn1_firmware_brain_reset(struct rn1_firmware_brain_decoder *decoder) {
+    decoder->state = RN1_FIRMWARE_SEEKING;
     decoder->noise = 0;
-    rn1_firmware_brain_seek_on(decoder);
 }
 
 void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
@@ -2609,7 +2610,7 @@ void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
     /* So that what bounds places in the buffer is never anything else. */
     decoder->content = 0;
     decoder->payload = 0;
-    decoder->limit = 722U;
+    decoder->limit = 0;
     decoder->offset = 0;
     rn1_firmware_brain_reset(decoder);
 }

@@ -777,7 +777,7 @@ struct rn1_firmware_host_decoder {
     uint8_t payload;
     /** Bytes of content that the frame has, or can have. */
     uint8_t limit;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -787,7 +787,10 @@ struct rn1_firmware_host_decoder {
     uint8_t buffer[7];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
                                     rn1_firmware_host_handler handler, void *user);
 
@@ -853,7 +856,7 @@ struct rn1_firmware_brain_decoder {
     uint16_t limit;
     /** Bytes on the wire in front of the first that may be a start. */
     uint16_t open_from;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** What is known of the candidate. */
     uint8_t flags;
@@ -863,7 +866,10 @@ struct rn1_firmware_brain_decoder {
     uint8_t buffer[722];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
                                      rn1_firmware_brain_handler handler, void *user);
 

@@ -162,7 +162,8 @@ enum uherobot_result uherobot_status_decode(struct uherobot_status *message, con
 enum {
     UHEROBOT_SEEKING,
     UHEROBOT_TAKING,
-    UHEROBOT_FAILED
+    UHEROBOT_FAILED,
+    UHEROBOT_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -709,8 +710,8 @@ void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const
 }
 
 static void uherobot_daemon_reset(struct uherobot_daemon_decoder *decoder) {
+    decoder->state = UHEROBOT_SEEKING;
     decoder->noise = 0;
-    uherobot_daemon_seek_on(decoder);
 }
 
 void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
@@ -718,7 +719,8 @@ void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 253U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     uherobot_daemon_reset(decoder);
 }
@@ -1017,8 +1019,8 @@ void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const u
 }
 
 static void uherobot_board_reset(struct uherobot_board_decoder *decoder) {
+    decoder->state = UHEROBOT_SEEKING;
     decoder->noise = 0;
-    uherobot_board_seek_on(decoder);
 }
 
 void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
@@ -1026,7 +1028,8 @@ void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 253U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     uherobot_board_reset(decoder);
 }

@@ -305,7 +305,7 @@ struct uherobot_daemon_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -317,7 +317,10 @@ struct uherobot_daemon_decoder {
     uint8_t buffer[256];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
                                   uherobot_daemon_handler handler, void *user);
 
@@ -378,7 +381,7 @@ struct uherobot_board_decoder {
     uint16_t content;
     /** Size of the payload, or the most that there is room for. */
     uint16_t payload;
-    /** Seeking, taking or failed. */
+    /** Seeking, taking, failed or lost. */
     uint8_t state;
     /** Last bytes of the candidate that begin the next one. */
     uint8_t behind;
@@ -390,7 +393,10 @@ struct uherobot_board_decoder {
     uint8_t buffer[256];
 };
 
-/** Start at the beginning of an input. */
+/**
+ * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
+ * needs its handler alone.
+ */
 void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
                                  uherobot_board_handler handler, void *user);
 

@@ -118,7 +118,8 @@ enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon
 enum {
     UHEROBOT_DAEMON_SEEKING,
     UHEROBOT_DAEMON_TAKING,
-    UHEROBOT_DAEMON_FAILED
+    UHEROBOT_DAEMON_FAILED,
+    UHEROBOT_DAEMON_LOST /* An end has to come before the next frame. */
 };
 
 enum {
@@ -709,8 +710,8 @@ void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *
 }
 
 static void uherobot_daemon_daemon_reset(struct uherobot_daemon_daemon_decoder *decoder) {
+    decoder->state = UHEROBOT_DAEMON_SEEKING;
     decoder->noise = 0;
-    uherobot_daemon_daemon_seek_on(decoder);
 }
 
 void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder,
@@ -718,7 +719,8 @@ void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 253U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     uherobot_daemon_daemon_reset(decoder);
 }
@@ -1068,8 +1070,8 @@ void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *de
 }
 
 static void uherobot_daemon_board_reset(struct uherobot_daemon_board_decoder *decoder) {
+    decoder->state = UHEROBOT_DAEMON_SEEKING;
     decoder->noise = 0;
-    uherobot_daemon_board_seek_on(decoder);
 }
 
 void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder,
@@ -1077,7 +1079,8 @@ void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *de
     decoder->handler = handler;
     decoder->user = user;
     /* So that what bounds places in the buffer is never anything else. */
-    decoder->payload = 255U;
+    decoder->content = 0;
+    decoder->payload = 0;
     decoder->offset = 0;
     uherobot_daemon_board_reset(decoder);
 }

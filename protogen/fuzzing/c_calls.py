@@ -75,9 +75,9 @@ class CEvent(msgspec.Struct, frozen=True):
     """Values that the message's handler was given."""
 
 
-Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush"]]
-"""A step that is done with a decoder."""
-_STEPS = {"feed": 1, "push": 2, "flush": 3}
+Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush", "clear"]]
+"""A step that is done with a decoder; `clear` gives it memory of zeros, without initialising it."""
+_STEPS = {"feed": 1, "push": 2, "flush": 3, "clear": 4}
 
 
 class Calls:
@@ -156,10 +156,10 @@ class Calls:
         request = [b"X", number(decoder.index, 1)]
         counts = []
         for step in steps:
-            portions = [b""] if step[0] == "flush" else self._portions(step[1])
+            portions = [b""] if len(step) == 1 else self._portions(step[1])
             for portion in portions:
                 request.append(number(_STEPS[step[0]], 1))
-                if step[0] != "flush":
+                if len(step) == 2:
                     request.append(number(len(portion), 4) + portion)
             counts.append(len(portions))
         request.append(b"\0")

@@ -27,6 +27,7 @@ _DECODE = re.compile(
 _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
 _PUSH = re.compile(r"(?:void|enum \w+) (\w+)_decoder_push\(")
+_LIMIT = re.compile(r"struct (\w+)_decoder \{[^}]* limit;")
 _POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
@@ -49,7 +50,7 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
     Frama_C_make_unknown((char *)&decoder, sizeof decoder);
     {prefix}_decoder_init({init});
     //@ widen_hints global:"all", {bounds};
-    while (any) {{
+{apart}    while (any) {{
         if (any) {{
             {push}
         }} else {{
@@ -78,6 +79,9 @@ _FIRST = """static void prove_{prefix}_first(void) {{
     }}
     {prefix}_decoder_flush(&decoder);
 }}
+"""
+_IDLE = """    /* Until a frame's size is known the limit is nought, which is no size of a frame. */
+    //@ dynamic_split decoder.limit == 0;
 """
 _CALLS = {
     "step": "",
@@ -157,9 +161,18 @@ def push_driver(protocol: Protocol, header: str) -> Driver:
     The handler reads payloads. The decoder's memory holds anything before it is initialised.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
-    upper, bounds = protocol.name.upper(), _bounds(header)
+    limited = polled & set(_LIMIT.findall(header))
+    given = {"bounds": _bounds(header), "reads": _ENDS}
+    upper = protocol.name.upper()
     parts = [
-        _decoder(_ENDLESS, prefix, upper, polls=prefix in polled, bounds=bounds, reads=_ENDS)
+        _decoder(
+            _ENDLESS,
+            prefix,
+            upper,
+            polls=prefix in polled,
+            apart=_IDLE if prefix in limited else "",
+            **given,
+        )
         for prefix in prefixes
     ]
     head = _HEAD.format(name=protocol.name, upper=upper)

@@ -56,15 +56,16 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
 
         A frame that is complete but for its end has no room either, which is the same test.
         """
-        is_bounded = self.only_size is not None and not self.plan.end_bytes
-        is_nothing = is_bounded or self.idle_member == "limit"
+        is_nothing = self.only_size is not None or self.idle_member == "limit"
         return 0 if is_nothing else self.buffer_size + 1
 
     @property
     def has_no_room(self) -> str:
         """The condition that no byte of content is due."""
-        is_nothing = self.idle_member == "content" and self.idle_value == 0
-        return "at == 0U" if is_nothing else f"at >= {self.limit}"
+        if self.only_size is None:
+            return f"at >= {self.limit}"
+        last = self.around + self.only_size - 1
+        return f"({self.counter})(at - 1U) >= {last}U" if self.plan.end_bytes else "at == 0U"
 
     # --- start and end ----------------------------------------------------------------------------
 
@@ -91,8 +92,12 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
 
     @property
     def is_complete(self) -> str:
-        """The condition that all content is there where an end comes."""
-        return f"at == {self.limit}" + (" && decoder->node == 0U" if self.stuffing else "")
+        """The condition that all content is there where an end comes.
+
+        A decoder that was never initialised, in memory of zeros, has a limit of nought, too.
+        """
+        is_begun = " && at != 0U" if self.only_size is None else ""
+        return f"at == {self.limit}{is_begun}"
 
     # --- parts ------------------------------------------------------------------------------------
 

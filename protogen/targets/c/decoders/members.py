@@ -68,7 +68,7 @@ def members_of(view: DecoderView) -> tuple[Member, ...]:
         (push.wire_ends, "passed", "Bytes on the wire that are part of the candidate's content."),
     )
     states = (
-        (is_push, "state", "Seeking, taking or failed."),
+        (is_push, "state", "Seeking, taking, failed or lost."),
         (view.all_events and fails, "reason", "Why the candidate failed."),
         (is_push and push.has_flags, "flags", "What is known of the candidate."),
         (plan.measures, "group", "Number of the identity whose payload is measured."),

@@ -46,6 +46,11 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         return len(self.delimiter) > 1
 
     @property
+    def begins_anywhere(self) -> bool:
+        """True if the first byte of an input may begin a frame, whatever it is."""
+        return self.plan.start in (StartRule.ANYWHERE, StartRule.AFTER_END)
+
+    @property
     def matches(self) -> bytes:
         """The literal that is tracked byte by byte to find starts."""
         return (
