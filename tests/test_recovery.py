@@ -35,6 +35,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recovery_oracle import Fate, fates, is_protected
 
+from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -283,3 +284,35 @@ def test_an_unknown_frame_without_length_and_end_is_found_if_a_frame_follows(
         assert [event.raw for event in events] == [known, frame, known, frame]
         assert [event.kind for event in events] == ["message", "unknown"] * 2
     assert list(unknown_frames(path, protocol_of(path).sender(sender))) == []
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize(
+    ("framing", "start", "reason"),
+    [
+        # The beginning of a ping, which has no payload, and a length of 64.
+        ("sync_length_crc", "B5 62 00 40 00", "size"),
+        ("bounded_head", "55 01 40 00 02 00", "size"),
+        ("bounded_length", "40 00", "size"),
+        ("bounded_head", "55 01 40 03 21", "value"),  # Flags 801.
+        ("bounded_head", "55 00", "value"),  # A counter of 0.
+    ],
+)
+def test_a_wrong_start_is_given_up_with_the_byte_that_shows_it(
+    engine: Any, framing: str, start: str, reason: str
+) -> None:
+    (path,) = (path for path in FRAMINGS if path.stem == framing)
+    data = bytes.fromhex(start)
+    for parts in ([data], [data[at : at + 1] for at in range(len(data))]):
+        decoder = module_at(path).Decoder("station", engine=engine)
+        events = [event for part in parts for event in decoder.feed(part)]
+        assert (events[0].offset, events[0].reason) == (0, reason)
+        assert decoder.pending == len(data) - sum(event.size for event in events)
+
+
+def test_a_frame_that_no_receiver_takes_is_not_made() -> None:
+    (path,) = (path for path in FRAMINGS if path.stem == "bounded_head")
+    module = module_at(path)
+    for number, flags, place in [(0, 2, "number"), (251, 2, "number"), (1, 801, "flags")]:
+        with pytest.raises(EncodeError, match=place):
+            module.encode(module.Ping(), number=number, flags=flags, strict=False)

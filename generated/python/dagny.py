@@ -505,6 +505,7 @@ def _host_frame_spec() -> _rt.FrameSpec:
         least=2,
         greatest=515,
         greatest_payload=512,
+        rescans=True,
         ambiguous_cut=True,
     )
 

@@ -110,8 +110,10 @@ class _Frames:
             yield self._change("frame-part-default", old.name, named(str(before), str(after)))
 
     def _range(self, old: NumberPart, new: NumberPart) -> Change:
-        """Receivers hold a length to its range, and take any other number as it comes."""
+        """Receivers hold a length to its range, and other numbers where that finds starts."""
         words = named(f"{old.least}..{old.greatest}", f"{new.least}..{new.greatest}")
+        if _refuses(self._old, old, new) or _refuses(self._new, new, old):
+            return self._change("frame-value-range", old.name, words)
         if not isinstance(old, LengthPart):
             return self._change("frame-part-range", old.name, words)
         if _fits(self._old, self._new) and _fits(self._new, self._old):
@@ -163,6 +165,12 @@ def _fits(sender: Sender, receiver: Sender) -> bool:
     names = {message.name for message in receiver.messages}
     sizes = [message.sizes for message in sender.messages if message.name in names]
     return taken is None or all(taken.holds(item) for item in sizes)
+
+
+def _refuses(receiver: Sender, part: NumberPart, sent: NumberPart) -> bool:
+    """True if a receiver holds the part to its range, and the other version sends more."""
+    is_bounded = any(item.part is part for item in receiver.plan.bounded)
+    return is_bounded and (sent.least < part.least or sent.greatest > part.greatest)
 
 
 def _is_alike(old: NumberPart, new: NumberPart) -> bool:

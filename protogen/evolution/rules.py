@@ -52,6 +52,12 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "frame-part-range", _S, "senders may use other values of a part", "check what receivers do"
     ),
+    Rule(
+        "frame-value-range",
+        _W,
+        "receivers take other values of a part",
+        "rebuild the receivers first",
+    ),
     Rule("frame-part-default", _S, "a part has another default", "check the senders"),
     Rule("frame-length-rule", _W, "the length counts other parts", _TOGETHER),
     Rule("frame-length-range", _W, "receivers take other lengths", "rebuild the receivers first"),

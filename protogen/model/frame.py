@@ -64,6 +64,11 @@ class NumberPart(TypedPart, frozen=True, kw_only=True):
     greatest: int
     """Bounds of the raw value, both included."""
 
+    @property
+    def is_bounded(self) -> bool:
+        """True if the type has values that are out of bounds."""
+        return (self.least, self.greatest) != (self.type.least, self.type.greatest)
+
 
 class IdentityPart(NumberPart, frozen=True, kw_only=True):
     """Tells, alone or with others, which message the frame carries."""

@@ -348,6 +348,32 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return bool(self.identity) and any(item.part is self.identity[-1] for item in self.head)
 
     @property
+    def bounded(self) -> tuple[PlacedPart, ...]:
+        """The parts in front of the payload whose values a receiver holds to their bounds.
+
+        Where a frame can start inside a failed candidate, the sooner one fails the better.
+        """
+        kinds = CounterPart | ValuePart
+        return tuple(
+            item
+            for item in self.head
+            if self.rescans and isinstance(item.part, kinds) and item.part.is_bounded
+        )
+
+    @property
+    def sizes_told_at(self) -> int | None:
+        """Bytes of content that tell an identity, and the size that a message of it has to have.
+
+        None where a receiver need not look at both before the whole frame is there.
+        """
+        if self.length is None or not self.rescans or not self.groups:
+            return None
+        if self.identity and not self.identity_is_early:
+            return None
+        told = [self.length.part, *self.identity[-1:]]
+        return max(self.part(part.name).end for part in told)
+
+    @property
     def shown(self) -> tuple[PlacedPart, ...]:
         """The parts that events show: identity, counters and values."""
         kinds = IdentityPart | CounterPart | ValuePart

@@ -74,7 +74,10 @@ def _value_parts(layout: Layout, given: Mapping[str, int | None], strict: bool) 
     for name, value in given.items():
         if name not in known and value is not None:
             raise EncodeError(name, f"there is no such part; there are: {_names(known)}")
-    return {name: _part_value(part, given.get(name), strict) for name, part in known.items()}
+    return {
+        name: _part_value(part, given.get(name), strict or part in layout.bounded)
+        for name, part in known.items()
+    }
 
 
 def _names(names: Iterable[str]) -> str:

@@ -15,6 +15,7 @@ from protogen.runtime.framing.frame import (
     NumberPart,
     Part,
     PayloadPart,
+    ValuePart,
 )
 from protogen.runtime.framing.layout import Slice, is_optional
 from protogen.runtime.framing.sender import IdentityGroup, SenderSpec
@@ -129,13 +130,20 @@ class Content:
 
     def _read(self, part: NumberPart, data: bytes) -> None:
         try:
-            self.numbers[part.name] = part.number.decode(data)
+            self.numbers[part.name] = number = part.number.decode(data)
         except ByteError as error:
             raise Rejected(error.reason, f"{part.name}: {error}") from None
+        if isinstance(part, ValuePart) and part in self._layout.bounded:
+            self._check_bounds(part, number)
         if part is self._layout.length:
             self._read_length(self._layout.length)
         elif self._layout.early_identity and part is self._layout.identity[-1]:
             self._identify()
+
+    def _check_bounds(self, part: ValuePart, number: int) -> None:
+        if not part.least <= number <= part.greatest:
+            problem = f"{part.name} is {number}, which is not in {part.least}..{part.greatest}"
+            raise Rejected("value", problem)
 
     # --- how large the payload is ---------------------------------------------------------------
 
@@ -146,6 +154,7 @@ class Content:
         if not part.least <= value <= part.greatest or size is None or size > greatest:
             raise Rejected("length", f"{part.name} is {value}")
         self._set_payload(size)
+        self._compare()
 
     def _identify(self) -> None:
         """Find the messages of the identity, and what they say about the size."""
@@ -156,6 +165,15 @@ class Content:
             and self._group.fixed is not None
         ):
             self._set_payload(self._group.fixed)
+        self._compare()
+
+    def _compare(self) -> None:
+        """Hold the size that the length tells against those of the identity's messages."""
+        group, size = self._group, self.payload_size
+        if group is None or size is None or not self._sender.frame.rescans:
+            return
+        if self._layout.length is not None and not group.holds(size):
+            raise Rejected("size", f"no message of this identity has {size} bytes of payload")
 
     def _set_payload(self, size: int) -> None:
         self.payload_size = size

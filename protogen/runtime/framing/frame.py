@@ -170,5 +170,10 @@ class FrameSpec(NamedTuple):
     stuffed: tuple[str, ...] = ()
     seven_bit: bool = False
     """True if every payload byte has its most significant bit clear."""
+    rescans: bool = False
+    """True if a frame can start inside a failed candidate.
+
+    So a candidate fails as soon as a value in front of the payload is out of bounds, or the length
+    is that of no message with the identity."""
     ambiguous_cut: bool = False
     """True if an encoder has to check that a decoder ends the frame where it ends."""

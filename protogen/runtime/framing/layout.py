@@ -57,6 +57,8 @@ class Layout:
         self.early_identity = bool(self.identity) and self.identity[-1] in self.head
         """True if there is an identity, and all of it in front of the payload."""
         self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
+        self.bounded = tuple(part for part in self.values if spec.rescans and part in self.head)
+        """The values that a receiver holds to their bounds."""
         self.shown = tuple(
             part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
         )

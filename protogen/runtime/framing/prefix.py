@@ -21,6 +21,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartSet,
 )
+from protogen.runtime.framing.layout import Layout
 from protogen.runtime.framing.machine import Candidate
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.framing.starts import starts_of
@@ -56,8 +57,10 @@ def _ends_stuffed(sender: SenderSpec[Any, Any]) -> bool:
     return bool(layout.stuffed) and layout.stuffed[-1] == len(layout.parts) - 1
 
 
-def _is_checked(part: Part) -> bool:
+def _is_checked(part: Part, layout: Layout) -> bool:
     """True if some bytes are no value of the part."""
+    if part in layout.bounded:
+        return True
     if isinstance(part, NumberPart):
         return part.number.bits < 8 * part.size
     return isinstance(part, LiteralPart)
@@ -95,9 +98,12 @@ class Prefix:
     def _telling_bits(self) -> bytes:
         """Bits of a head that tell the payload's size, or may show that it is none."""
         layout = self._sender.layout
-        told = layout.identity if layout.length is None else (layout.length,)
+        told: tuple[Part, ...] = layout.identity
+        if layout.length is not None:
+            told = (layout.length, *(told if layout.spec.rescans else ()))
         parts = (
-            part.size * BYTES[255 * (part in told or _is_checked(part))] for part in layout.head
+            part.size * BYTES[255 * (part in told or _is_checked(part, layout))]
+            for part in layout.head
         )
         mask = BYTES[255] * self._start_size + b"".join(parts)[self._start_size :]
         return mask if layout.length is None else mask.rstrip(b"\0")

@@ -31,6 +31,10 @@ class IdentityGroup(Generic[MessageT_co]):
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
 
+    def holds(self, size: int) -> bool:
+        """True if one of these messages can have a payload of that size."""
+        return any(size in message.SIZES for message in self.messages)
+
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
         from protogen.runtime.constructs import prefix_size  # It takes long to import.

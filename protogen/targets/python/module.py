@@ -277,6 +277,7 @@ def _frame(sender: Sender) -> str:
         transparency=_unless(frames.transparency(sender.frame.transparency), "None"),
         stuffed=_unless(frames.stuffed(sender), "()"),
         seven_bit="True" if framing.seven_bit else None,
+        rescans="True" if sender.plan.rescans else None,
         ambiguous_cut="True" if framing.cut_ambiguous else None,
     )
     return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)

@@ -103,6 +103,10 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         condition = item.fits("size")
         return condition if item.fixed else f"({condition})"
 
+    def fits_some(self, group: GroupView) -> str:
+        """The condition that the size is that of some message of the group."""
+        return " || ".join(map(self.fits, group.messages))
+
     def fits_alone(self, group: GroupView, item: ReceivedMessage) -> str:
         """The condition that the size is the message's, and of none before it in the group."""
         before = group.messages[: group.messages.index(item)]

@@ -24,9 +24,19 @@ class NumberView(msgspec.Struct, frozen=True):
     """Offsets of its bytes, where their most significant bit has to be clear."""
     padding: str
     """Bits that have to be zero; empty where all belong to the number."""
+    bounds: str
+    """The condition that it is out of bounds; empty where nothing bounds it."""
     is_length: bool
     identifies: bool
     """True if it is the identity's last part, and the identity tells the payload's size."""
+    tells_sizes: bool
+    """True if with it both identity and length are there, and are held against each other."""
+
+    @property
+    def is_of_use(self) -> bool:
+        """True if anything is checked or known when it is there."""
+        checks = self.seven_bit or self.padding or self.bounds
+        return bool(checks or self.is_length or self.identifies or self.tells_sizes)
 
     @property
     def high_bits(self) -> str:
@@ -74,7 +84,7 @@ class PartView(msgspec.Struct, frozen=True):
 def numbers_of(plan: FramePlan, items: Iterable[PlacedPart]) -> tuple[NumberView, ...]:
     """Those of the parts that are numbers of which something is checked or known early."""
     views = (_number(plan, item) for item in items if isinstance(item.part, NumberPart))
-    return tuple(v for v in views if v.seven_bit or v.padding or v.is_length or v.identifies)
+    return tuple(view for view in views if view.is_of_use)
 
 
 def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
@@ -90,9 +100,18 @@ def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
         value=value,
         seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
         padding=f"{value} >> {type_.bits}" if spare else "",
+        bounds=_out_of_bounds(part, value) if item in plan.bounded else "",
         is_length=isinstance(part, LengthPart),
         identifies=is_last and plan.identity_is_early and plan.length is None,
+        tells_sizes=item.in_head and item.end == plan.sizes_told_at,
     )
+
+
+def _out_of_bounds(part: NumberPart, value: str) -> str:
+    conditions = [f"{value} < {part.least}U"] if part.least > part.type.least else []
+    if part.greatest < part.type.greatest:
+        conditions.append(f"{value} > {part.greatest}U")
+    return " || ".join(conditions)
 
 
 def literals_of(items: Iterable[PlacedPart]) -> tuple[LiteralView, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import LiteralPart
+from protogen.model.frame import LiteralPart, NumberPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python.engine import identities
@@ -409,6 +409,12 @@ class _Cutter(ChecksumFunction):
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"
                 self.stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
+
+        for item in self.plan.bounded:
+            part = item.part
+            assert isinstance(part, NumberPart)
+            number = self.number(self.content, part)
+            self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
 
     # --- the event --------------------------------------------------------------------------------
 
