@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from protogen.model.checksums import algorithm_names
+from protogen.schema.json_rules import BUILT_IN_FIELD, RULES
 from protogen.schema.syntax.base import NAME_PATTERN
 from protogen.schema.syntax.protocol import ProtocolSyntax
 
@@ -30,18 +31,25 @@ _DIALECT = "Dialect"
 _ROOT = ProtocolSyntax.__name__
 _ROOT_OF_DIALECT = _DIALECT + _ROOT
 
+
+def _in_other_case(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the names in capitals and in small letters, where they are not written so."""
+    own = set(names)
+    return tuple(sorted({other for name in own for other in (name.upper(), name.lower())} - own))
+
+
 _INTEGERS = tuple(f"{sign}int{bits}" for sign in "us" for bits in (8, 16, 24, 32, 64))
 _WORDS: dict[str, tuple[str, ...]] = {
     "FieldTypes": (*_INTEGERS, "byte", "char", "bool", "float32", "float64", "ascii", "bytes"),
-    "PartTypes": (*_INTEGERS, "byte", "char"),
+    "PartTypes": (*(name for name in _INTEGERS if name[0] == "u"), "byte", "char"),
     "Algorithms": algorithm_names(),
+    "AlgorithmsInOtherCase": _in_other_case(algorithm_names()),
 }
 """Lists of texts that an editor offers."""
 
 _OFFERS = (
     ("FieldSyntax", "type", "FieldTypes"),
     ("Part", "type", "PartTypes"),
-    ("Part", "algorithm", "Algorithms"),
 )
 """Keys that the words are offered for; another text may stand there, too."""
 
@@ -51,7 +59,11 @@ def json_schema() -> JsonObject:
     own = _definitions()
     for name, key, words in _OFFERS:
         _offer(own[name]["properties"][key], words)
+    _algorithms(own["Part"]["properties"]["algorithm"])
     changes = {_DIALECT + name: _as_change(schema) for name, schema in own.items()}
+    for name, rules in RULES.items():
+        own[name]["allOf"] = list(rules)
+    own["BuiltInField"] = BUILT_IN_FIELD
     changes[_ROOT_OF_DIALECT]["required"] = ["protocol", "extends"]
     offered = {name: {"enum": list(words)} for name, words in _WORDS.items()}
     return _file(own | changes | offered)
@@ -119,7 +131,15 @@ def _choice(choices: Iterable[JsonObject]) -> JsonObject:
 
 
 def _offer(described: JsonObject, words: str) -> None:
-    described["anyOf"] = [{"$ref": _DEFINITIONS + words}, *described["anyOf"]]
+    inner = {key: described.pop(key) for key in described.keys() - {"description", "anyOf"}}
+    others = described.get("anyOf", [inner])
+    described["anyOf"] = [{"$ref": _DEFINITIONS + words}, *others]
+
+
+def _algorithms(described: JsonObject) -> None:
+    """Let an algorithm be one of those that exist, or given by its parameters."""
+    names = [{"$ref": _DEFINITIONS + words} for words in ("Algorithms", "AlgorithmsInOtherCase")]
+    described["anyOf"] = [*names, *(one for one in described["anyOf"] if "$ref" in one)]
 
 
 # --- a schema that extends another one ----------------------------------------------------------
@@ -154,13 +174,17 @@ _OTHER_NAMES = NAME_PATTERN.replace("^", f"^(?!({'|'.join(_DIRECTIVES)})$)")
 """Names that are no directives."""
 
 
+_OF_WHOLE_MAPPINGS = ("required", "minProperties", "maxProperties")
+"""What is asked of a mapping that no base has a part of."""
+
+
 def _as_change(schema: JsonObject) -> JsonObject:
     """Return the definition that holds where a mapping may meet one of the base."""
     return _map_schemas(schema, _change)
 
 
 def _change(schema: JsonObject) -> JsonObject:
-    changed = {key: value for key, value in schema.items() if key != "required"}
+    changed = {key: value for key, value in schema.items() if key not in _OF_WHOLE_MAPPINGS}
     if "$ref" in changed:
         changed["$ref"] = _reference_of_dialect(changed["$ref"])
     if changed.get("type") == "object":

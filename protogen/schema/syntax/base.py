@@ -19,6 +19,10 @@ from protogen.schema.text.scalars import exact_number
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
 """Names are lower snake case: each target derives its own spelling from that."""
 
+INTEGER_PATTERN = r"[us]int([1-9]|[1-5][0-9]|6[0-4])"
+"""Integers have 1 to 64 bits."""
+
+_TYPE_PATTERN = f"^{INTEGER_PATTERN}$|" + NAME_PATTERN.replace("^", r"^(?![us]int[0-9]+$)")
 _DURATION = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?) ?(us|ms|s)")
 _DURATION_UNITS = {
     "us": Fraction(1, 1_000_000),
@@ -26,12 +30,25 @@ _DURATION_UNITS = {
     "s": Fraction(1),
 }
 _SPAN = re.compile(r"([0-9]{1,4})\.\.([0-9]{1,4})")
+_RATIONAL_PATTERN = (
+    r"^\s*[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)\s*$"
+)
+"""Numbers as `exact_number` reads them, for editors."""
 
 
 class Syntax(BaseModel):
     """Base of all syntax classes: unknown keys are errors, objects are immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+def written_as(form: Any) -> BeforeValidator:
+    """Let editors offer and accept this form of what is read further inside."""
+    return BeforeValidator(_as_is, json_schema_input_type=form)
+
+
+def _as_is(value: object) -> object:
+    return value
 
 
 def _as_written(value: object) -> object:
@@ -93,11 +110,17 @@ def _to_bit_range(value: object) -> object:
     return (int(match[1]), int(match[2]))
 
 
+Character = Annotated[str, Field(min_length=1, max_length=1)]
+"""A text of one character, which stands for its code."""
+
 Text = Annotated[str, BeforeValidator(_as_written, json_schema_input_type=str | float | int)]
 """Prose or a version: taken as written, also when it looks like a number."""
 
 Name = Annotated[str, StringConstraints(pattern=NAME_PATTERN, max_length=64)]
 """A lower snake case name of something that the schema declares."""
+
+TypeForm = Annotated[str, Field(pattern=_TYPE_PATTERN)]
+"""The written form of a type's name, built in or declared."""
 
 Int = Annotated[int, BeforeValidator(_to_int)]
 """An integer, never a boolean or a quoted number."""
@@ -105,22 +128,38 @@ Int = Annotated[int, BeforeValidator(_to_int)]
 Count = Annotated[int, BeforeValidator(_to_int), Field(ge=0)]
 """An integer that is not negative."""
 
-Rational = Annotated[
-    Fraction, BeforeValidator(_to_fraction, json_schema_input_type=int | float | str)
-]
+RationalForm = int | float | Annotated[str, Field(pattern=_RATIONAL_PATTERN)]
+"""The written form of an exact number."""
+
+Rational = Annotated[Fraction, BeforeValidator(_to_fraction, json_schema_input_type=RationalForm)]
 """An exact number: 0.01 is one hundredth and 1/16 one sixteenth."""
 
-Duration = Annotated[Fraction, BeforeValidator(_to_duration, json_schema_input_type=str)]
+Duration = Annotated[
+    Fraction,
+    BeforeValidator(
+        _to_duration,
+        json_schema_input_type=Annotated[str, Field(pattern=f"^{_DURATION.pattern}$")],
+    ),
+]
 """A time in seconds, written with its unit."""
 
-RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | str)]
+RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | Character)]
 """A raw value: an integer, or one character that stands for its code."""
 
-ByteNumber = Annotated[int, BeforeValidator(_to_byte, json_schema_input_type=int | str)]
+ByteForm = Annotated[int, Field(ge=0, le=255)]
+"""The number of one byte."""
+
+ByteNumber = Annotated[int, BeforeValidator(_to_byte, json_schema_input_type=ByteForm | Character)]
 """One byte: a number from 0 to 255, or one character that stands for its code."""
 
+BitNumber = Annotated[int, Field(ge=0, le=63)]
+"""The number of a bit in the widest integer."""
+
+BitRangeForm = BitNumber | Annotated[str, Field(pattern=f"^{_SPAN.pattern}$")]
+"""The written form of a run of bits."""
+
 BitRange = Annotated[
-    tuple[int, int], BeforeValidator(_to_bit_range, json_schema_input_type=int | str)
+    tuple[int, int], BeforeValidator(_to_bit_range, json_schema_input_type=BitRangeForm)
 ]
 """The lowest and the highest bit of a bit range, counted from the least significant bit 0."""
 

@@ -7,15 +7,20 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
+    BitNumber,
     BitRange,
+    BitRangeForm,
+    Character,
     Count,
     Name,
     Rational,
+    RationalForm,
     RawNumber,
     ShortForm,
     SourceRef,
     Syntax,
     Text,
+    TypeForm,
     pair_of,
 )
 from protogen.schema.syntax.names import CaseKey, FieldName, Kind, Ref, TypeName
@@ -41,11 +46,11 @@ class NamedBit(Syntax):
 
 NamedValueRef = Annotated[
     NamedValue,
-    BeforeValidator(ShortForm("value"), json_schema_input_type=int | str | NamedValue),
+    BeforeValidator(ShortForm("value"), json_schema_input_type=int | Character | NamedValue),
 ]
 NamedBitRef = Annotated[
     NamedBit,
-    BeforeValidator(ShortForm("bit"), json_schema_input_type=int | NamedBit),
+    BeforeValidator(ShortForm("bit"), json_schema_input_type=BitNumber | NamedBit),
 ]
 
 
@@ -64,7 +69,7 @@ class NamedBits(Syntax):
 
 NamedBitsRef = Annotated[
     NamedBits,
-    BeforeValidator(ShortForm("bits"), json_schema_input_type=int | str | NamedBits),
+    BeforeValidator(ShortForm("bits"), json_schema_input_type=BitRangeForm | NamedBits),
 ]
 
 
@@ -126,7 +131,8 @@ Constant = Annotated[
 NumberRange = Annotated[
     tuple[Rational, Rational],
     BeforeValidator(
-        pair_of("two numbers: [LEAST, GREATEST]"), json_schema_input_type=list[int | float | str]
+        pair_of("two numbers: [LEAST, GREATEST]"),
+        json_schema_input_type=Annotated[list[RationalForm], Field(min_length=2, max_length=2)],
     ),
 ]
 """Least and greatest raw value, both included (for floats: the value itself)."""
@@ -197,7 +203,7 @@ class FieldSyntax(Syntax):
 
 FieldRef = Annotated[
     FieldSyntax,
-    BeforeValidator(ShortForm("type"), json_schema_input_type=str | FieldSyntax),
+    BeforeValidator(ShortForm("type"), json_schema_input_type=TypeForm | FieldSyntax),
 ]
 """A field; a bare type name stands for a field with nothing to add."""
 

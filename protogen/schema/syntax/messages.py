@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
+    Character,
     Count,
     Name,
     RawNumber,
@@ -84,8 +85,10 @@ def _listed(value: Any) -> Any:
     return listed
 
 
+_Endpoints = Annotated[list[Name], Field(min_length=1, json_schema_extra={"uniqueItems": True})]
+
 Senders = Annotated[
-    tuple[EndpointName, ...], BeforeValidator(_listed, json_schema_input_type=str | list[str])
+    tuple[EndpointName, ...], BeforeValidator(_listed, json_schema_input_type=Name | _Endpoints)
 ]
 """One endpoint or several."""
 
@@ -97,7 +100,9 @@ def _to_identity(value: Any) -> Any:
 
 Identity = Annotated[
     dict[PartName, RawNumber],
-    BeforeValidator(_to_identity, json_schema_input_type=int | str | dict[str, int | str]),
+    BeforeValidator(
+        _to_identity, json_schema_input_type=int | Character | dict[Name, int | Character]
+    ),
 ]
 """Identity: a number or character, or a mapping of part to value."""
 
@@ -165,7 +170,7 @@ class Step(Syntax):
     source: SourceRef | None = Field(None, description="Where it is printed.")
 
 
-StepRef = Annotated[Step, BeforeValidator(ShortForm("message"), json_schema_input_type=str | Step)]
+StepRef = Annotated[Step, BeforeValidator(ShortForm("message"), json_schema_input_type=Name | Step)]
 """A step; a bare text names the message."""
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from protogen.schema.syntax.base import Name, Text
+from protogen.schema.syntax.base import Name, Text, TypeForm, written_as
 
 
 class Kind(Enum):
@@ -60,7 +60,7 @@ SenderKey = Annotated[str, Ref(Kind.ENDPOINT, missing="PG108")]
 PartName = Annotated[str, Ref(Kind.PART)]
 """A part of the frame, or a run `first..last` of them."""
 
-TypeName = Annotated[Text, Ref(Kind.TYPE, missing="PG104")]
+TypeName = Annotated[Text, written_as(TypeForm), Ref(Kind.TYPE, missing="PG104")]
 """A built-in type, or one declared under `types`."""
 
 FieldName = Annotated[Name, Ref(Kind.FIELD)]

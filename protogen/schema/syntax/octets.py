@@ -5,17 +5,25 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
-from protogen.schema.syntax.base import Syntax, Text
+from protogen.schema.syntax.base import ByteForm, Syntax, Text, written_as
 
 _HEX = re.compile(r"(?:[0-9A-Fa-f]{2}\s*)*")
+
+
+HexForm = Annotated[str, Field(pattern=f"^{_HEX.pattern}$")] | int | float
+"""The written form of hexadecimal digits; those without letters read as a number."""
 
 
 class OctetsForm(Syntax):
     """The written form of a byte string, for editors; values are plain `bytes`."""
 
-    hex: Text | None = Field(None, description="Bytes as pairs of hex digits: 1B 02.")
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+
+    hex: Annotated[Text, written_as(HexForm)] | None = Field(
+        None, description="Bytes as pairs of hex digits: 1B 02."
+    )
     text: Text | None = Field(None, description="Bytes as characters (Latin-1), one byte each.")
 
 
@@ -76,6 +84,6 @@ def at_most(size: int) -> AfterValidator:
 
 Octets = Annotated[
     bytes,
-    BeforeValidator(to_octets, json_schema_input_type=OctetsForm | int | list[int]),
+    BeforeValidator(to_octets, json_schema_input_type=OctetsForm | ByteForm | list[ByteForm]),
 ]
 """A byte string in one of its written forms."""

@@ -8,7 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
+    ByteForm,
     ByteNumber,
+    Character,
     Count,
     Int,
     Name,
@@ -18,6 +20,7 @@ from protogen.schema.syntax.base import (
     Syntax,
     Text,
     pair_of,
+    written_as,
 )
 from protogen.schema.syntax.names import Kind, PartName, Ref
 from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
@@ -25,6 +28,9 @@ from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 ByteOrder = Literal["little", "big"]
 
 _RUN = re.compile(r"[a-z0-9_]+(\.\.[a-z0-9_]+)?")
+_RunForm = Annotated[str, Field(pattern=f"^{_RUN.pattern}$")]
+_PartType = Annotated[str, Field(pattern=r"^(uint([1-9]|[1-5][0-9]|6[0-4])|byte|char)$")]
+"""The written form of a part's type: unsigned, as no bits of a frame are a sign."""
 
 
 def _to_run(value: Any) -> Any:
@@ -36,7 +42,11 @@ def _to_run(value: Any) -> Any:
 
 
 PartRun = Annotated[
-    tuple[PartName, ...], BeforeValidator(_to_run, json_schema_input_type=str | list[str])
+    tuple[PartName, ...],
+    BeforeValidator(
+        _to_run,
+        json_schema_input_type=_RunForm | Annotated[list[_RunForm], Field(min_length=1)],
+    ),
 ]
 """Some parts of the frame: one name, a run `first..last`, or a list of names."""
 
@@ -66,7 +76,8 @@ Algorithm = Annotated[
 RawRange = Annotated[
     tuple[RawNumber, RawNumber],
     BeforeValidator(
-        pair_of("two values: [LEAST, GREATEST]"), json_schema_input_type=list[int | str]
+        pair_of("two values: [LEAST, GREATEST]"),
+        json_schema_input_type=Annotated[list[int | Character], Field(min_length=2, max_length=2)],
     ),
 ]
 """The least and the greatest raw value, both included."""
@@ -82,7 +93,7 @@ class Part(Syntax):
         None,
         description="The decision that accepts that this literal can also occur inside a frame.",
     )
-    type: Annotated[Text, Ref(Kind.TYPE)] | None = Field(
+    type: Annotated[Text, written_as(_PartType), Ref(Kind.TYPE)] | None = Field(
         None, description="Type of the part: uint8, uint16, char, byte ..."
     )
     id: Literal[True] | None = Field(None, description="The part tells which message this is.")
@@ -133,7 +144,7 @@ class EscapeSyntax(Syntax):
     byte: ByteNumber = Field(description="The escape byte.")
     of: Annotated[
         tuple[ByteNumber, ...],
-        BeforeValidator(_to_bytes, json_schema_input_type=list[int | str]),
+        BeforeValidator(_to_bytes, json_schema_input_type=list[ByteForm | Character]),
     ] = Field(description="The bytes that have to be escaped; the escape byte is one of them.")
     transform: Annotated[
         Annotated[Literal["invert", "none"], Tag("text")] | Annotated[XorTransform, Tag("mapping")],
@@ -153,9 +164,14 @@ def _table(value: Any) -> Any:
 
 Substitutions = Annotated[
     tuple[tuple[ByteNumber, Annotated[Octets, at_most(16)]], ...],
-    BeforeValidator(_table, json_schema_input_type=dict[str, OctetsForm | list[int] | int]),
+    BeforeValidator(
+        _table, json_schema_input_type=dict[str, OctetsForm | list[ByteForm] | ByteForm]
+    ),
 ]
 """Byte to the bytes that stand for it on the wire."""
+
+
+_Preset = Literal["slip", "hdlc"]
 
 
 class TransparencySyntax(Syntax):
@@ -172,7 +188,7 @@ class TransparencySyntax(Syntax):
     encoding: Literal["base16-upper", "cobs"] | None = Field(
         None, description="The region is encoded as a whole."
     )
-    preset: Literal["slip", "hdlc"] | None = Field(
+    preset: _Preset | None = Field(
         None,
         description="SLIP (RFC 1055) or asynchronous HDLC (RFC 1662) byte stuffing.",
     )
@@ -186,5 +202,5 @@ class TransparencySyntax(Syntax):
 
 TransparencyRef = Annotated[
     TransparencySyntax,
-    BeforeValidator(ShortForm("preset"), json_schema_input_type=str | TransparencySyntax),
+    BeforeValidator(ShortForm("preset"), json_schema_input_type=_Preset | TransparencySyntax),
 ]

@@ -18,6 +18,7 @@ from protogen.schema.syntax.base import (
     SourceRef,
     Syntax,
     Text,
+    written_as,
 )
 from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.forms import Form, keys_of, models_inside
@@ -65,7 +66,7 @@ class Endpoint(Syntax):
 
 EndpointRef = Annotated[
     Endpoint,
-    BeforeValidator(ShortForm("title"), json_schema_input_type=str | Endpoint),
+    BeforeValidator(ShortForm("title"), json_schema_input_type=Text | Endpoint),
 ]
 
 
@@ -108,16 +109,14 @@ class Reserved(Syntax):
 Frame = Annotated[dict[Name, Part], Field(max_length=64)]
 """Parts in wire order."""
 
+_FrameForm = Annotated[Frame, Field(json_schema_extra={"required": ["payload"]})]
+
 ALL_SENDERS = ""
 """Key of what is written once for every sender."""
 
 
 def _for_all(value: Any) -> Any:
     return {ALL_SENDERS: value} if isinstance(value, str) else value
-
-
-def _as_is(value: Any) -> Any:
-    return value
 
 
 _MARKS: dict[str, frozenset[str]] = {
@@ -159,7 +158,7 @@ class ProtocolSyntax(Syntax):
     endpoints: dict[Name, EndpointRef] = Field(description="The named sides of the link.")
     byte_order: Annotated[
         dict[SenderKey, ByteOrder],
-        BeforeValidator(_for_all, json_schema_input_type=ByteOrder | dict[str, ByteOrder]),
+        BeforeValidator(_for_all, json_schema_input_type=ByteOrder | dict[Name, ByteOrder]),
         BySender(),
     ] = Field(
         default_factory=dict,
@@ -170,16 +169,14 @@ class ProtocolSyntax(Syntax):
     )
     frame: Annotated[
         dict[SenderKey, Frame],
-        BeforeValidator(_as_is, json_schema_input_type=Frame | dict[str, Frame]),
+        written_as(_FrameForm | dict[Name, _FrameForm]),
         BySender(),
     ] = Field(
         description="The parts of a frame in wire order; one frame for all, or one per sender."
     )
     transparency: Annotated[
         dict[SenderKey, TransparencyRef],
-        BeforeValidator(
-            _as_is, json_schema_input_type=TransparencyRef | dict[str, TransparencyRef]
-        ),
+        written_as(TransparencyRef | dict[Name, TransparencyRef]),
         BySender(),
     ] = Field(
         default_factory=dict,

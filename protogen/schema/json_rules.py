@@ -1,0 +1,212 @@
+"""Rules of the JSON Schema about keys that stand beside each other.
+
+The passes ask the same, with a message of their own. Here are those that an editor can see within
+one mapping, so that it underlines the mistake while it is typed. None of them holds in a schema
+with `extends`, where a mapping states only what differs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from protogen.schema.syntax.base import INTEGER_PATTERN
+
+JsonObject = dict[str, Any]
+
+_BUILT_IN_PATTERN = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|ascii|bytes)$"
+"""Names of types where none are declared."""
+
+_FORMS = ("fields", "switch")
+_NUMERIC = ("scale", "offset", "unit", "special", "range")
+_NAMED = ("values", "flags", "bits")
+_PART_ROLES = ("literal", "id", "counts", "counter", "algorithm")
+
+
+def _with(*keys: str) -> JsonObject:
+    return {"required": list(keys)}
+
+
+def _any_of(keys: Iterable[str]) -> JsonObject:
+    return {"anyOf": [_with(key) for key in keys]}
+
+
+def _none_of(keys: Iterable[str]) -> JsonObject:
+    return {"not": _any_of(keys)}
+
+
+def _one_of(words: str, keys: Iterable[str]) -> JsonObject:
+    return {"$comment": words, "oneOf": [_with(key) for key in keys]}
+
+
+def _at_most_one_of(words: str, keys: Iterable[str]) -> JsonObject:
+    alone = [_with(key) for key in keys]
+    return {"$comment": words, "oneOf": [*alone, _none_of(keys)]}
+
+
+def _where(condition: JsonObject, words: str, rule: JsonObject) -> JsonObject:
+    return {"$comment": words, "if": condition, "then": rule}
+
+
+def _together(words: str, needed: Mapping[str, list[str]]) -> JsonObject:
+    """Rule that a key stands only beside others."""
+    return {"$comment": words, "dependencies": dict(needed)}
+
+
+def _type_like(pattern: str) -> JsonObject:
+    """Condition that the field names a built-in type of this pattern."""
+    return {"required": ["type"], "properties": {"type": {"pattern": f"^({pattern})$"}}}
+
+
+def _bounded(type_: str, least: int, greatest: int) -> JsonObject:
+    """Rule that the numbers of a field are values of its type."""
+    bounds = {"minimum": least, "maximum": greatest}
+    keys = dict.fromkeys(("const", "default"), bounds)
+    lists = {"range": {"items": bounds}}
+    names = dict.fromkeys(("values", "special"), _each(bounds))
+    text = f"A {type_} holds {least} to {greatest}."
+    return _where(_type_like(type_), text, {"properties": {**keys, **lists, **names}})
+
+
+def _integers_bounded() -> Iterable[JsonObject]:
+    for bits in (8, 16, 32):
+        yield _bounded(f"uint{bits}", 0, 2**bits - 1)
+        yield _bounded(f"sint{bits}", -(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+        flags = {"flags": _each({"maximum": bits - 1})}
+        text = f"The bits of a uint{bits} are 0 to {bits - 1}."
+        yield _where(_type_like(f"uint{bits}"), text, {"properties": flags})
+
+
+def _each(inner: JsonObject) -> JsonObject:
+    return {"additionalProperties": inner}
+
+
+_FIELD_RULES = (
+    _one_of("A field has a type, or is a struct of fields, or a switch.", ("type", *_FORMS)),
+    _together("A switch has cases.", {"cases": ["switch"], "switch": ["cases"]}),
+    _at_most_one_of("An integer has only one of these.", _NAMED),
+    _where(
+        _any_of(_FORMS),
+        "These are for numbers.",
+        _none_of((*_NUMERIC, *_NAMED, "size", "const", "default", "closed")),
+    ),
+    _where(
+        _type_like("ascii|bytes"),
+        "These are for numbers; the length is the `size`.",
+        _none_of((*_NUMERIC, *_NAMED, "count", "closed")),
+    ),
+    _where(_type_like("bool"), "A bool is no number.", _none_of((*_NUMERIC, *_NAMED, "closed"))),
+    _where(_type_like("float32|float64"), "These are for integers.", _none_of((*_NAMED, "closed"))),
+    _where(
+        _type_like("sint[0-9]+"),
+        "These name bits of an unsigned integer.",
+        _none_of(("flags", "bits")),
+    ),
+    _where(
+        _type_like(f"{INTEGER_PATTERN}|byte|char|bool|float32|float64"),
+        "Elements are counted by `count`; `size` is for ascii and bytes.",
+        _none_of(("size",)),
+    ),
+    _where(
+        _type_like(f"{INTEGER_PATTERN}|byte|char"),
+        "A range is one of raw values, which are integers.",
+        {"properties": {"range": {"items": {"type": ["integer", "string"]}}}},
+    ),
+    {"$comment": "Zero leaves nothing.", "properties": {"scale": {"not": {"const": 0}}}},
+    *_integers_bounded(),
+)
+
+_PART_RULES = (
+    _at_most_one_of("A part does one of these.", _PART_ROLES),
+    _where(_any_of(_PART_ROLES[1:]), "A part that is a number has a type.", _with("type")),
+    _where(
+        _with("literal"),
+        "A literal is all that its part is.",
+        {"propertyNames": {"enum": ["literal", "unprotected", "doc", "source"]}},
+    ),
+    _where(_with("algorithm"), "A checksum says what it covers.", _with("covers")),
+    _where(
+        _with("algorithm"),
+        "A checksum's value follows from what it covers.",
+        _none_of(("range", "default")),
+    ),
+    *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
+    _together(
+        "These are for a literal or a checksum.",
+        {"unprotected": ["literal"], **{key: ["algorithm"] for key in ("covers", "over", "when")}},
+    ),
+)
+
+_MESSAGE_RULES = (
+    _where(
+        _any_of(("min_size", "max_size")),
+        "The size is stated where the fields are unspecified.",
+        {"required": ["fields"], "properties": {"fields": {"const": "unspecified"}}},
+    ),
+)
+
+_EXAMPLE_RULES = (
+    _one_of("An example has either all bytes or the content.", ("frame", "content")),
+    _together("The parts are those of the content.", {"covers": ["content"]}),
+)
+
+_OVERLOAD_RULES = (
+    _where(
+        {"properties": {"by": {"const": "undecidable"}}},
+        "Where nothing tells them apart, a decoder yields one of them.",
+        _with("yields"),
+    ),
+    _where({"properties": {"by": {"const": "size"}}}, "Nothing is chosen.", _none_of(("yields",))),
+)
+
+_TRANSPARENCY_RULES = (
+    _one_of("A transparency is one of these.", ("substitute", "escape", "encoding", "preset")),
+)
+
+
+_BUILT_IN = "#/definitions/BuiltInField"
+_BUILT_IN_FIELDS = _each({"$ref": _BUILT_IN})
+
+_ROOT_RULES = (
+    _where(
+        _with("types"),
+        "A type of one's own is not called as a built-in one.",
+        {"properties": {"types": {"propertyNames": {"not": {"pattern": _BUILT_IN_PATTERN}}}}},
+    ),
+    {
+        "$comment": "A protocol has messages, and somebody who sends them.",
+        "properties": {key: {"minProperties": 1} for key in ("messages", "endpoints")},
+    },
+    _where(
+        _none_of(("types",)),
+        "Where no types are declared, a field has a built-in one.",
+        {"properties": {"messages": _each({"properties": {"fields": _BUILT_IN_FIELDS}})}},
+    ),
+)
+
+RULES: Mapping[str, tuple[JsonObject, ...]] = {
+    "FieldSyntax": _FIELD_RULES,
+    "Part": _PART_RULES,
+    "MessageSyntax": _MESSAGE_RULES,
+    "Example": _EXAMPLE_RULES,
+    "Overload": _OVERLOAD_RULES,
+    "TransparencySyntax": _TRANSPARENCY_RULES,
+    "ProtocolSyntax": _ROOT_RULES,
+}
+"""Rules of the definitions, by the names of their classes."""
+
+BUILT_IN_FIELD: JsonObject = {
+    "title": "Field of a built-in type",
+    "description": "A field where no types are declared.",
+    "if": {"type": "string"},
+    "then": {"pattern": _BUILT_IN_PATTERN, "not": {"enum": ["ascii", "bytes"]}},
+    "else": {
+        "properties": {
+            "type": {"pattern": _BUILT_IN_PATTERN},
+            "fields": _BUILT_IN_FIELDS,
+            "cases": _BUILT_IN_FIELDS,
+        },
+        **_where(_type_like("ascii|bytes"), "Its length is its `size`.", _with("size")),
+    },
+}
+"""A field that names no declared type, and whose text has its size beside it."""
