@@ -29,6 +29,9 @@ The window doubles after each run, so wasted work stays proportional to useful w
 _MAX_HEADS = 32
 """Heads whose numbers are remembered: a wire must not fill the memory."""
 
+_MAX_MISSES = 15
+"""Calls that go by where run after run is damaged: it takes as long to find that as to cut them."""
+
 MIN_RUN = 8
 """Shorter runs are cut one frame at a time."""
 
@@ -78,6 +81,7 @@ class BulkCutter:
         self.counter = counter
         self.xor_from = xor_from
         self.numbers = {}
+        self._misses = self._left = 0  # What was tried in vain of late, and is not tried again yet.
 
     def take(
         self, data: bytes, at: int, base: int, events: list[Any], cut: Cutter, heads: Any
@@ -86,7 +90,10 @@ class BulkCutter:
 
         `cut` takes frames one by one; `heads` has the numbers and the reader for a content's head.
         """
-        window = _FIRST_WINDOW
+        if self._left:
+            self._left -= 1
+            return at
+        window, begun = _FIRST_WINDOW, at
         try:
             while len(data) - at > MIN_DATA:
                 found, end = self._run(data[at : at + window], base + at, cut, heads)
@@ -94,7 +101,8 @@ class BulkCutter:
                 at += end
                 window = min(2 * window, _MAX_WINDOW)
         except ANYTHING:  # The cutter comes to what is not in order.
-            return at
+            self._misses = min(2 * self._misses + 1, _MAX_MISSES) if at == begun else 0
+            self._left = self._misses
         return at
 
     def _run(self, data: bytes, base: int, cut: Cutter, heads: Any) -> tuple[list[Any], int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from protogen.runtime.framing.frame import (
@@ -23,6 +23,10 @@ from protogen.runtime.framing.frame import (
 def is_optional(part: Part) -> bool:
     """True if the part is absent where the payload is empty."""
     return isinstance(part, ChecksumPart) and part.when_payload
+
+
+Place = tuple[int, int]
+"""The first byte of a part, and the one behind it."""
 
 
 class Slice(NamedTuple):
@@ -53,6 +57,12 @@ class Layout:
         self.tail = self.parts[self.payload_index + 1 :]
         self.head_size = sum(part.size for part in self.head)
         self.length = next((part for part in self.head if isinstance(part, LengthPart)), None)
+        self._counted_around = {
+            (part.name, has_payload): _counted_around(spec.parts, part, has_payload)
+            for part in spec.parts
+            if isinstance(part, LengthPart)
+            for has_payload in (False, True)
+        }
         self.identity = tuple(part for part in self.parts if isinstance(part, IdentityPart))
         self.early_identity = bool(self.identity) and self.identity[-1] in self.head
         """True if there is an identity, and all of it in front of the payload."""
@@ -111,13 +121,17 @@ class Layout:
         size = extra - self.tail_size(1)
         return size if size > 0 else None
 
+    def covered(self, part: ChecksumPart, places: Mapping[str, Place], data: bytes) -> bytes:
+        """The bytes that a checksum runs over, out of those of a frame without its end."""
+        pieces = [
+            data[slice(*places[name])] if name in places else self.end_literals.get(name, b"")
+            for name in part.covers
+        ]
+        return b"".join(pieces)
+
     def counted(self, part: LengthPart, payload: int) -> int:
         """The value of a length part for a payload of that size."""
-        return payload + sum(
-            other.size
-            for other in self.spec.parts
-            if other.name in part.counts and (payload or not is_optional(other))
-        )
+        return payload + self._counted_around[part.name, payload > 0]
 
     def counted_payload(self, part: LengthPart, value: int) -> int | None:
         """The payload's size for a value of a length part; None if there is none."""
@@ -125,6 +139,15 @@ class Layout:
             return 0
         size = value - (self.counted(part, 1) - 1)
         return size if size > 0 else None
+
+
+def _counted_around(parts: Iterable[Part], length: LengthPart, has_payload: bool) -> int:
+    """Bytes that a length counts besides the payload."""
+    return sum(
+        part.size
+        for part in parts
+        if part.name in length.counts and (has_payload or not is_optional(part))
+    )
 
 
 def _without_end(spec: FrameSpec) -> tuple[Part, ...]:

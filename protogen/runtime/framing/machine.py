@@ -287,18 +287,13 @@ class Candidate:
         self._cut = Cut(self._own_size(), content.numbers, payload)
 
     def _check(self, part: ChecksumPart, slices: dict[str, Slice]) -> None:
-        data = self._wire if part.over_wire else self._content.bytes
-        covered = bytearray()
-        for name in part.covers:
-            if name in slices:
-                start, end = self._span(slices[name], part.over_wire)
-                covered += data[start:end]
-            else:
-                covered += self._layout.end_literals.get(name, b"")
-        due = part.number.encode(part.algorithm.compute(bytes(covered)))
-        found = self._content.bytes[slices[part.name].start : slices[part.name].end]
-        if found != due:
-            raise Rejected("checksum", f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}")
+        data = bytes(self._wire if part.over_wire else self._content.bytes)
+        places = {name: self._span(item, part.over_wire) for name, item in slices.items()}
+        item = slices[part.name]
+        found = bytes(self._content.bytes[item.start : item.end])
+        problem = wrong_sum(part, self._layout.covered(part, places, data), found)
+        if problem is not None:
+            raise Rejected("checksum", problem)
 
     def _span(self, item: Slice, over_wire: bool) -> tuple[int, int]:
         """Place of a part in the content, or on the wire."""
@@ -306,6 +301,12 @@ class Candidate:
             return item.start, item.end
         start = self._wire_ends[item.start - 1] if item.start else 0
         return start, self._wire_ends[item.end - 1]
+
+
+def wrong_sum(part: ChecksumPart, covered: bytes, found: bytes) -> str | None:
+    """Description of a checksum that is not that of the covered bytes; None if it is."""
+    due = part.number.encode(part.algorithm.compute(covered))
+    return None if found == due else f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}"
 
 
 def verdict_on(
