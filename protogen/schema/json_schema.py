@@ -131,7 +131,7 @@ def _choice(choices: Iterable[JsonObject]) -> JsonObject:
 
 
 def _offer(described: JsonObject, words: str) -> None:
-    inner = {key: described.pop(key) for key in described.keys() - {"description", "anyOf"}}
+    inner = {key: described.pop(key) for key in ("type", "pattern") if key in described}
     others = described.get("anyOf", [inner])
     described["anyOf"] = [{"$ref": _DEFINITIONS + words}, *others]
 
