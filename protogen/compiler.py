@@ -11,6 +11,7 @@ from protogen.passes.context import Context
 from protogen.passes.resolve import resolve
 from protogen.problems import Problem, Problems, Severity, SourceMap
 from protogen.schema.load import load_syntax
+from protogen.targets.emitted import check_emitted_names
 
 
 class Compilation(msgspec.Struct, frozen=True):
@@ -64,4 +65,7 @@ def _protocol(
         lost=loaded.shape.lost,
         spoilt=loaded.spoilt,
     )
-    return resolve(context)
+    protocol = resolve(context)
+    if protocol is not None:
+        check_emitted_names(context, protocol)
+    return None if context.failed else protocol

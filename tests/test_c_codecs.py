@@ -37,7 +37,6 @@ from protogen.runtime.errors import EncodeError
 from protogen.targets.c import options
 from protogen.targets.c.emit import emit
 from protogen.targets.c.options import COptions
-from protogen.targets.c.spelling import Names
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 
@@ -664,14 +663,6 @@ def test_names_of_values_are_no_words_of_a_language(tmp_path: Path) -> None:
     (tmp_path / "main.c").write_text(text, encoding="utf-8")
     run([require_tool("cc"), *FLAGS, "main.c", "-o", "main"], tmp_path)
     run([tmp_path / "main"], tmp_path)
-
-
-def test_no_name_stands_for_two_things() -> None:
-    names = Names("robot")
-    assert names.claim("status", "encode") == "robot_status_encode"
-    assert names.claim("status_encode") == "robot_status_encode_2"
-    assert names.claim_macro("mode", "idle") == "ROBOT_MODE_IDLE"
-    assert names.claim_macro("mode_idle") == "ROBOT_MODE_IDLE_2"
 
 
 def written(path: Path, folder: Path) -> Path:

@@ -57,6 +57,8 @@ class Context(msgspec.Struct, frozen=True):
     """Names of which is not known what they mean; a key of the root stands for all its names."""
     spoilt: bool = False
     """True if more than some examples could not be read."""
+    places: dict[str, Loc] = msgspec.field(default_factory=dict)
+    """Where messages and named types are, those inside of fields by their first use."""
     tally: Tally = msgspec.field(default_factory=Tally)
 
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:

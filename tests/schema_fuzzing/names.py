@@ -28,10 +28,12 @@ FIELDS = (
 )  # fmt: skip
 TYPES = ("color", "axis", "vector", "words", "gain_table", "leds", "entry", "sample", "protocol_id")
 VALUES = (
-    "ok", "off", "on", "yes", "no", "null_value", "red", "idle", "mask", "items", "mro",
+    "ok", "off", "on", "yes", "no", "null_value", "red", "idle", "items", "mro",
     "bit_length", "from_bytes", "real", "conjugate", "low_power", "unknown_value", "number",
     "title",
 )  # fmt: skip
+SPECIAL = ("mask", "missing", "too_far", "not_ready")
+"""Names of values without a meaning, which stand beside those of the same field's enum."""
 PARTS = (
     "start", "sync", "begin", "ident", "subclass", "command", "number", "length", "counter",
     "flavor", "crc", "checksum", "end", "stop", "tail", "marker", "timestamp", "reserved_part",

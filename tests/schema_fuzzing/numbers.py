@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from schema_fuzzing import forms
-from schema_fuzzing.names import VALUES, several
+from schema_fuzzing.names import SPECIAL, VALUES, several
 from schema_fuzzing.setting import Built, Setting, Size
 
 ORDERS = st.sampled_from(["little", "big"])
@@ -245,7 +245,7 @@ def _constants(
     draw: st.DrawFn, data: dict[str, Any], kind: Kind, least: int, greatest: int
 ) -> None:
     if draw(forms.one_in(6)):
-        names = draw(several(VALUES, 1, 2))
+        names = draw(several(SPECIAL, 1, 2))
         raw = draw(st.lists(kind.value(), min_size=1, max_size=len(names), unique=True))
         data["special"] = dict(zip(names, raw, strict=False))
     key = draw(st.sampled_from(["", "", "", "const", "default"]))

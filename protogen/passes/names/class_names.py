@@ -27,7 +27,7 @@ _RENAME = "rename one of them; types inside of fields are called after message a
 def check_class_names(context: Context, draft: Draft) -> None:
     """Every message and named type has a class of its own."""
     messages: dict[str, Loc] = {name: ("messages", name) for name in context.syntax.messages}
-    types = draft.named.places | {name: ("types", name) for name in context.syntax.types}
+    types = context.places | {name: ("types", name) for name in context.syntax.types}
     for name, loc in messages.items():
         if name in types:
             context.error_at_key("PG107", loc, f"a type is called `{name}` too", _RENAME)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import keyword
 
-_C = """
+C = """
 auto break case char const continue default do double else enum extern float for goto if inline int
 long register restrict return short signed sizeof static struct switch typedef union unsigned void
 volatile while bool true false nullptr alignas alignof thread_local static_assert typeof constexpr
 errno asm main stdin stdout stderr assert null offsetof
 """
 
-_CPP = """
+CPP = """
 alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await
 co_return co_yield compl concept consteval constexpr constinit const_cast decltype delete
 dynamic_cast explicit export false friend mutable namespace new noexcept not not_eq nullptr operator
@@ -41,8 +41,8 @@ AS_CLASSES = frozenset({"none"})
 """Words that are reserved only as classes are written."""
 
 _LANGUAGES: dict[str, frozenset[str]] = {
-    "C": frozenset(_C.split()),
-    "C++": frozenset(_CPP.split()),
+    "C": frozenset(C.split()),
+    "C++": frozenset(CPP.split()),
     "Python": frozenset(word for word in keyword.kwlist if word.islower()) | {"self"} | AS_CLASSES,
     "JavaScript": frozenset(_JAVASCRIPT.split()),
     "protogen": DIRECTIVES,

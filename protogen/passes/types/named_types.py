@@ -38,8 +38,7 @@ class NamedTypes:
         self._context = context
         self._types: dict[str, Named] = {}
         self._settled: dict[str, Struct] = {}
-        self.places: dict[str, Loc] = {}
-        """First use of each name."""
+        self.places = context.places
 
     @property
     def enums(self) -> tuple[Enum, ...]:

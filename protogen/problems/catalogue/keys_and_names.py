@@ -83,10 +83,12 @@ there must be one form to start from. The name in the document can stand under `
         "reserved-word",
         "A name is a reserved word",
         """\
-The name is taken in C, C++, Python or JavaScript, or by the code that protogen generates, or it is
-a directive of `extends`. No target changes a name, so that a field has one name in every language
-and in the document. Add a word that says more: `class` becomes `class_id`. Names of an enum's
-values stand behind that of their enum, so that they may be words of a language.
+The name is taken in C, C++, Python or JavaScript, or by the code that protogen generates (a message
+`result` of `rn1` would be the struct `rn1_result`, beside the enum of that name), or it is a
+directive of `extends`. No target changes a name, so that a field has one name in every language and
+in the document. Add a word that says more: `class` becomes `class_id`. Names of an enum's values
+stand behind that of their enum, so that they may be words of a language, unless a case of a union
+is called after them.
 """,
         with_fields("default: uint16"),
         with_fields("default_speed: uint16"),
@@ -100,7 +102,9 @@ Messages and types share one set of names, because generated code has one class 
 `gyro_1` and `gyro1` would both be `Gyro1`. What is written inside a field is called after its
 message and field: `gyro_status`. A type can't be called like a built-in one. Nor is a declared type
 one type if its uses differ: in byte order, or because a switch in it ends the payload in one place
-and not in another. Rename one of the two, or declare a type for each use.
+and not in another. In C, the names of two things, joined with others, can come to the same: the
+frames of a message `board` and those of an endpoint `board` are both at most `RN1_BOARD_FRAME_MAX`
+long. Rename one of the two, or declare a type for each use.
 """,
         with_messages(
             "gyro: {id: 1, from: robot, fields: {state: {type: gyro}}}",

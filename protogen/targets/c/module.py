@@ -18,6 +18,7 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.messages import MessagePrinter, MessageView
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.protocol_names import names_of
+from protogen.targets.naming import named_type
 
 
 class Module(msgspec.Struct, frozen=True):
@@ -60,7 +61,7 @@ def view(protocol: Protocol, options: COptions) -> Module:
     enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used)
     flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used)
     structs = [item for item in protocol.structs if item.name in used and item.holds_values]
-    tags = {item.name: names.claim(item.name) for item in structs}
+    tags = {item.name: names.claim_tag(named_type(item.name), item.name) for item in structs}
     records = Records(tags, names, helpers)
     printer = MessagePrinter(protocol, names, helpers, sinks, records)
     struct_views = tuple(

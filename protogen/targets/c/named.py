@@ -10,7 +10,7 @@ import msgspec
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
 from protogen.model.types import Field, Float
-from protogen.targets import descriptions
+from protogen.targets import descriptions, naming
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT
 from protogen.targets.c.spelling import (
@@ -22,6 +22,7 @@ from protogen.targets.c.spelling import (
     unsigned_type,
 )
 from protogen.targets.escape import one_line, paragraphs
+from protogen.targets.naming import Thing, inside, named_type
 
 _LEAST_INT, _GREATEST_INT = -0x8000, 0x7FFF
 
@@ -49,7 +50,8 @@ def enum_view(item: Enum, names: Names) -> EnumView:
     unsigned_ones = all(entry.value >= 0 for entry in item.values)
     write = unsigned if unsigned_ones and not fits else number
     values = tuple(_named(item, entry, write(entry.value), names, INDENT) for entry in item.values)
-    return EnumView(names.claim(item.name), _doc_of(item), values, not fits)
+    tag = names.claim_tag(named_type(item.name), item.name)
+    return EnumView(tag, _doc_of(item), values, not fits)
 
 
 def flags_view(item: Flags, names: Names) -> EnumView:
@@ -61,7 +63,8 @@ def flags_view(item: Flags, names: Names) -> EnumView:
 def _named(
     item: Enum | Flags, entry: NamedValue | NamedBit, value: str, names: Names, indent: int = 0
 ) -> Macro:
-    name = names.claim_macro(item.name, entry.name)
+    of = naming.value if isinstance(item, Enum) else naming.flag
+    name = names.claim_macro(of(item.name, entry.name), item.name, entry.name)
     return Macro(name, value, _remark(entry.about, indent))
 
 
@@ -96,15 +99,16 @@ def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
 
 def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) -> BitsView:
     words = (record, field.name, item.name)
+    thing = inside(record, "run of bits", field.name, "bits", item.name)
     first = next(iter(paragraphs(item.about.doc)), descriptions.words(item.name))
     run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
     return BitsView(
         comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
-        Macro(names.claim_macro(*words, "mask"), hexadecimal(item.mask)),
-        Macro(names.claim_macro(*words, "shift"), f"{item.low}U"),
+        Macro(names.claim_macro(thing, *words, "mask"), hexadecimal(item.mask)),
+        Macro(names.claim_macro(thing, *words, "shift"), f"{item.low}U"),
         kind,
-        names.claim(*words, "get"),
-        names.claim(*words, "set"),
+        names.claim(thing, *words, "get"),
+        names.claim(thing, *words, "set"),
     )
 
 
@@ -116,9 +120,18 @@ def meaning(record: str, fields: Sequence[Field], names: Names) -> tuple[Macro, 
     return tuple(macro for field in fields for macro in _meaning(record, field, names))
 
 
+def claim_fields(names: Names, record: str, fields: Sequence[Field]) -> None:
+    """The names that come of a record's fields: macros, and functions of runs of bits."""
+    meaning(record, fields, names)
+    for field in fields:
+        bits_views(record, field, names)
+
+
 def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
-    def macro(word: str, value: str, doc: tuple[str, ...] = ()) -> Macro:
-        return Macro(names.claim_macro(record, field.name, word), value, doc)
+    own = inside(record, "field", field.name)
+
+    def macro(word: str, value: str, doc: tuple[str, ...] = (), thing: Thing = own) -> Macro:
+        return Macro(names.claim_macro(thing, record, field.name, word), value, doc)
 
     if field.scale != 1:
         yield from _fraction(macro, "scale", field.scale)
@@ -128,7 +141,9 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield macro("unit", string(field.unit))
     if field.integer is not None:
         for item in field.special:
-            yield macro(item.name, constant(item.value, field.integer), _remark(item.about))
+            thing = inside(record, "special value", field.name, "special", item.name)
+            value = constant(item.value, field.integer)
+            yield macro(item.name, value, _remark(item.about), thing)
         if isinstance(field.default, int):
             yield macro("default", constant(int(field.default), field.integer))
     elif isinstance(field.element, Float) and isinstance(field.default, int | float):

@@ -5,41 +5,103 @@ A writer takes payloads byte by byte, where a frame is sent without a buffer.
 
 from __future__ import annotations
 
-from protogen.model.protocol import Protocol
+from collections.abc import Iterator
+
+from protogen.model.messages import Message
+from protogen.model.protocol import Protocol, Sender
+from protogen.model.types import Struct, Switch
+from protogen.targets.c.frame.checksums import checksum_name
+from protogen.targets.c.named import claim_fields, enum_view, flags_view
+from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
+from protogen.targets.c.words import foreign_words
+from protogen.targets.naming import OWN, Thing, endpoint, inside, named_type, part
 
 _MACROS = """
 ok error_size error_value error_encoding error_range error_space spec_hash version h implementation
-message unknown invalid no_message no_reason size value encoding noise checksum length stuffing
-truncated seeking taking failed known open searching measuring empty needless before inside after
-frame stuffed
+implemented message unknown invalid no_message no_reason size value encoding noise checksum length
+stuffing truncated seeking taking failed lost known open searching measuring empty needless before
+inside after frame stuffed fast_feed sse2 expect each has no_handlers
 """
-_FUNCTIONS_AND_TAGS = """
-result message event_kind reason writer write put follow float64
-"""
-_OF_A_SENDER = """
-accept add_noise begins close close_at_flush close_open complete cross decide decoder decoder_feed
-decoder_flush decoder_init decoder_push drop end end_noise ends_early enter_payload event find_size
-finish_region handler identify invalid judge measure open parts pass payload read_length release
-reopen reset resume room search seek seek_on send_head send_tail set_payload start stuff surplus
-take take_head take_tail unstuff wire_end wrap write
+_TAGS = "result message event_kind reason writer"
+_TYPES = "put float64"
+_FUNCTIONS = "write first is_high mask sum_of xor_of"
+_TAGS_OF_A_SENDER = "parts event decoder"
+_TYPES_OF_A_SENDER = "handler"
+_FUNCTIONS_OF_A_SENDER = """
+accept add_noise begins close close_at_flush close_open complete cross decide decoder_feed
+decoder_flush decoder_init decoder_push dispatch drop end_noise ends_early enter_payload
+find_size finish_region follow_end follow_start give_up hand_over has_special identify invalid
+is_idle is_plain judge looks_idle measure measure_head open pass payload read_length release reopen
+reset resume room run search seek seek_on send_head send_tail set_payload specials stuff
+surplus take take_head take_tail take_whole unstuff unstuff_to wire_end wrap write
 """
 _MACROS_OF_A_SENDER = "frame_max"
 
 
 def names_of(protocol: Protocol) -> Names:
-    """The names of a protocol; nothing of its schema may come to those that templates use."""
+    """The names of a protocol, whatever is chosen to be printed of it."""
     names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
-    for word in _MACROS.split():
-        names.claim_macro(word)
-    for word in _FUNCTIONS_AND_TAGS.split():
-        names.claim(word)
+    _claim_own(names)
     for sender in protocol.senders:
-        for word in _OF_A_SENDER.split():
-            names.claim(sender.name, word)
-        for word in _MACROS_OF_A_SENDER.split():
-            names.claim_macro(sender.name, word)
+        _claim_sender(names, sender)
+    for enum in protocol.enums:
+        enum_view(enum, names)
+    for flags in protocol.flags:
+        flags_view(flags, names)
+    for struct in protocol.structs:
+        if struct.holds_values:
+            names.claim_tag(named_type(struct.name), struct.name)
+            claim_fields(names, struct.name, struct.fields)
+    for message in protocol.messages:
+        claim_all(names, message, [s for s in protocol.senders if s.name in message.senders])
+    hidden = names.others.things | dict(foreign_words())
+    for name, thing in _members(protocol):
+        names.members.enter(name, thing, hidden)
     return names
+
+
+def _members(protocol: Protocol) -> Iterator[tuple[str, Thing]]:
+    """Members of structs and unions, and parameters. Local variables are called after them."""
+    records: tuple[Struct | Message, ...] = (*protocol.structs, *protocol.messages)
+    for record in records:
+        for field in record.fields:
+            yield field.name, inside(record.name, "field", field.name)
+            if isinstance(field.element, Switch):
+                for case in field.element.cases:
+                    what = inside(record.name, "case", field.name, "cases", case.name)
+                    yield case.name, what
+    for sender in protocol.senders:
+        for item in sender.frame.parts:
+            yield item.name, part(sender.name, item.name)
+
+
+def _claim_own(names: Names) -> None:
+    for word in _MACROS.split():
+        names.claim_macro(OWN, word)
+    for word in _TAGS.split():
+        names.claim_tag(OWN, word)
+    for word in _TYPES.split():
+        names.claim_type(OWN, word)
+    for word in _FUNCTIONS.split():
+        names.claim(OWN, word)
+
+
+def _claim_sender(names: Names, sender: Sender) -> None:
+    thing = endpoint(sender.name)
+    for word in _TAGS_OF_A_SENDER.split():
+        names.claim_tag(thing, sender.name, word)
+    for word in _TYPES_OF_A_SENDER.split():
+        names.claim_type(thing, sender.name, word)
+    for word in _FUNCTIONS_OF_A_SENDER.split():
+        names.claim(thing, sender.name, word)
+    for word in _MACROS_OF_A_SENDER.split():
+        names.claim_macro(thing, sender.name, word)
+    for item in sender.frame.checksums:
+        function = checksum_name(names.prefix, item.algorithm)
+        for word in ("reversed", "step", "run", "final"):
+            names.others.add(f"{function}_{word}")
+        names.claim(thing, sender.name, item.name, "run")
 
 
 def is_stateless(protocol: Protocol) -> bool:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
+
 from protogen.model.names import free_name
 from protogen.model.types import Float, NumberType, counting_bits, storage_bits
+from protogen.targets.naming import NameTable, Thing
 
 _INT_MAX = 0x7FFF
 """The greatest `int` that every target has."""
 
 
 class Names:
-    """File-scope names, each of which stands for one thing.
+    """File-scope names, and what each of them stands for.
 
     The schema's names are words that C does not reserve, but two of them, joined with others, can
-    come to the same (`robot` with `mode_idle`, `robot_mode` with `idle`). The later one gets a
-    number.
+    come to the same (`robot` with `mode_idle`, `robot_mode` with `idle`). Such a schema is refused.
     """
 
     def __init__(self, prefix: str, writer: str = "", writing: str = "") -> None:
@@ -23,20 +25,46 @@ class Names:
         """The parameters of functions that send byte by byte."""
         self.writing = writing
         """Arguments with which these hand the writer on."""
-        self._taken: set[str] = set()
+        self.tags = NameTable()
+        """Structs, enums and unions, which C knows by these words."""
+        self.others = NameTable()
+        """Functions, variables, typedefs, macros and named values."""
+        self.members = NameTable()
+        """Members and parameters, none of which may hide one of the others."""
 
-    def claim(self, *words: str) -> str:
-        """A function, type or tag: `rn1_gyro_encode`."""
-        return self._claim("_".join((self.prefix, *words)))
+    def claim_tag(self, thing: Thing, *words: str) -> str:
+        """A struct or an enum: `rn1_gyro`."""
+        return self.tags.add(self._joined(words), thing)
 
-    def claim_macro(self, *words: str) -> str:
+    def claim(self, thing: Thing, *words: str) -> str:
+        """A function: `rn1_gyro_encode`."""
+        return self.others.add(self._joined(words), thing)
+
+    def claim_macro(self, thing: Thing, *words: str) -> str:
         """A macro or a named value: `RN1_GYRO_PAYLOAD_SIZE`."""
-        return self._claim("_".join((self.prefix, *words)).upper())
+        return self.others.add(self._joined(words).upper(), thing)
 
-    def _claim(self, name: str) -> str:
-        free = free_name(name, self._taken)
-        self._taken.add(free)
-        return free
+    def claim_type(self, thing: Thing, *words: str) -> str:
+        """A typedef, which in C++ no struct may be called like."""
+        return self.others.add(self.tags.add(self._joined(words), thing), thing)
+
+    def claim_helper(self, *words: str) -> str:
+        """A function of the source, which gets a number where its name is taken."""
+        taken = ChainMap(self.others.things, self.members.things)
+        return self.others.add(free_name(self._joined(words), taken))
+
+    def _joined(self, words: tuple[str, ...]) -> str:
+        return "_".join((self.prefix, *words))
+
+
+def from_sender(name: str) -> str:
+    """The suffix that tells the functions for a sender from those for others of the message."""
+    return f"_from_{name}"
+
+
+def handler_name(message: str) -> str:
+    """What a message's handler is called behind the protocol's name."""
+    return f"on_{message}"
 
 
 # --- types --------------------------------------------------------------------------------------

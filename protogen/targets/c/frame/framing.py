@@ -15,6 +15,7 @@ from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.protocol_names import is_stateless
+from protogen.targets.c.spelling import from_sender
 
 
 class FramingView(msgspec.Struct, frozen=True):
@@ -146,7 +147,7 @@ def _message_frames(
     for message in protocol.messages:
         own = {frames[name].decoder.name: name for name in message.senders if name in frames}
         for frame_name, name in own.items() if message.name in views else ():
-            suffix = f"_from_{frame_name}" if len(own) > 1 else ""
+            suffix = from_sender(frame_name) if len(own) > 1 else ""
             yield of_sender[name].view(message, views[message.name], suffix)
 
 

@@ -8,6 +8,7 @@ import msgspec
 
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.spelling import from_sender, handler_name
 
 
 class Handler(msgspec.Struct, frozen=True):
@@ -56,4 +57,4 @@ def dispatches(
 
 def _function(prefix: str, message: str, sender: str, names: dict[str, set[str]]) -> str:
     is_shared = sum(message in received for received in names.values()) > 1
-    return f"{prefix}_on_{message}" + (f"_from_{sender}" if is_shared else "")
+    return f"{prefix}_{handler_name(message)}" + (from_sender(sender) if is_shared else "")

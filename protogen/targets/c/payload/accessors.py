@@ -18,6 +18,7 @@ from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, join
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
+from protogen.targets.naming import inside
 
 
 def is_readable(step: AnyStep) -> bool:
@@ -29,6 +30,11 @@ def is_readable(step: AnyStep) -> bool:
         # Nothing outside of it may say what is in it.
         return bool(element.sizes.fixed and element.holds_values) and not element.type.needs
     return isinstance(element, NumberStep)
+
+
+def claim_accessor(names: Names, record: str, field: str) -> str:
+    """The name of the function that reads an element of a field."""
+    return names.claim(inside(record, "field", field), record, field, "at")
 
 
 def accessor(
@@ -61,7 +67,7 @@ def accessor(
     body.drop_unused_places()
     if place not in map(str.strip, body.lines):
         return None
-    name = names.claim(record, field.name, "at")
+    name = claim_accessor(names, record, field.name)
     doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
     return "\n".join([*doc, function(f"static inline {type_} {name}", arguments, body)])
 

@@ -148,7 +148,7 @@ class Helpers:
         if key not in self._helpers:
             lines = Lines()
             lines.add(*(body.splitlines() if isinstance(body, str) else body))
-            self._helpers[key] = _Helper(self._names.claim(key), result, arguments, lines)
+            self._helpers[key] = _Helper(self._names.claim_helper(key), result, arguments, lines)
         found = self._helpers[key]
         found.is_public |= self._is_public
         return found.name

@@ -11,29 +11,25 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
 from protogen.targets.c.lines import Lines, function, mentions, prototype
-from protogen.targets.c.named import Macro
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
+from protogen.targets.c.payload.message_names import claim_message, constants_of
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.payload.storing import Put, Store
 from protogen.targets.c.payload.validating import Validate, can_be_refused
 from protogen.targets.c.payload.walk import out_of_bounds
-from protogen.targets.c.spelling import Names, hexadecimal
+from protogen.targets.c.spelling import Names
 
 _PARAMETERS = ("message", "payload", "size", "need", "writer", "put", "user")
 """Parameters that a function may have without using them."""
-_FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
-_OTHERS = ("frame", "send")
-"""Other functions that are called after a message."""
 
 
 class MessageView(msgspec.Struct, frozen=True):
@@ -97,14 +93,9 @@ class MessagePrinter(msgspec.Struct, frozen=True):
     def view(self, item: Message) -> MessageView:
         """The view of one message."""
         names = self.names
-        tag = names.claim(item.name)
-        called = {word: names.claim(item.name, word) for word in _FUNCTIONS}
-        for word in _OTHERS:
-            names.claim(item.name, word)
-        for word in ("frame_max", "frame_room"):
-            names.claim_macro(item.name, word)
-        constant = names.claim_macro("message", item.name)
-        macros = (*self._identity(item), *self._sizes(item), self._spec_hash(item))
+        called = claim_message(names, item)
+        tag, constant = called.pop("tag"), called.pop("constant")
+        macros = constants_of(item, self.senders_of(item)[0], names)
         doc = descriptions.of_message(item)
         record = self.records.view(item.name, tag, doc, item.fields, item.plan.steps, macros)
         read = (
@@ -132,32 +123,9 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             **called,
         )
 
-    def _identity(self, item: Message) -> Iterator[Macro]:
-        parts = self.senders_of(item)[0].frame.identity
-        for part, value in zip(parts, item.identity, strict=True):
-            words = ("id",) if len(parts) == 1 else ("id", part.name)
-            yield Macro(self.names.claim_macro(item.name, *words), _identity_value(part, value))
-
-    def _sizes(self, item: Message) -> Iterator[Macro]:
-        sizes = item.sizes
-        bounds = {"payload_min": sizes.least, "payload_max": sizes.greatest}
-        if sizes.fixed is not None:
-            bounds = {"payload_size": sizes.fixed, **bounds}
-        for word, size in bounds.items():
-            yield Macro(self.names.claim_macro(item.name, word), f"{size}U")
-
-    def _spec_hash(self, item: Message) -> Macro:
-        return Macro(self.names.claim_macro(item.name, "spec_hash"), f'"{item.spec_hash}"')
-
     def senders_of(self, item: Message) -> list[Sender]:
         """Those of the message's senders that are printed."""
         return [sender for sender in self.protocol.senders if sender.name in item.senders]
-
-
-def _identity_value(part: IdentityPart, value: int) -> str:
-    """The number, or the character that it is."""
-    is_text = part.type.role == "char" and 0x20 < value < 0x7F and chr(value) not in "'\\?"
-    return f"'{chr(value)}'" if is_text else hexadecimal(value)
 
 
 class _Codec:

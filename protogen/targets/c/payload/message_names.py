@@ -1,0 +1,64 @@
+"""Names of what is printed of a message, and its macros."""
+
+from __future__ import annotations
+
+from protogen.model.frame import IdentityPart
+from protogen.model.messages import Message
+from protogen.model.protocol import Sender
+from protogen.targets import naming
+from protogen.targets.c.named import Macro, claim_fields
+from protogen.targets.c.payload.accessors import claim_accessor, is_readable
+from protogen.targets.c.spelling import Names, from_sender, handler_name, hexadecimal
+
+_FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
+
+
+def claim_message(names: Names, item: Message) -> dict[str, str]:
+    """The names of its struct, of its value among the messages, and of its payload's functions."""
+    thing = naming.message(item.name)
+    called = {word: names.claim(thing, item.name, word) for word in _FUNCTIONS}
+    called["tag"] = names.claim_tag(thing, item.name)
+    called["constant"] = names.claim_macro(thing, "message", item.name)
+    return called
+
+
+def claim_all(names: Names, item: Message, senders: list[Sender]) -> None:
+    """Every name that comes of a message, whatever is chosen to be printed."""
+    thing = naming.message(item.name)
+    others = [from_sender(sender.name) for sender in senders] if len(senders) > 1 else []
+    for suffix in ("", *others):
+        names.claim(thing, f"{handler_name(item.name)}{suffix}")
+        for word in ("frame", "send"):
+            names.claim(thing, item.name, f"{word}{suffix}")
+        for word in ("frame_max", "frame_room"):
+            names.claim_macro(thing, f"{item.name}{suffix}", word)
+    claim_message(names, item)
+    constants_of(item, senders[0], names)
+    claim_fields(names, item.name, item.fields)
+    for step in item.plan.steps:
+        if is_readable(step):
+            claim_accessor(names, item.name, step.name)
+
+
+def constants_of(item: Message, sender: Sender, names: Names) -> tuple[Macro, ...]:
+    """The macros of a message itself: identity, sizes and hash."""
+    sizes, parts = item.sizes, sender.frame.identity
+    values = {
+        ("id",) if len(parts) == 1 else ("id", part.name): _identity_value(part, value)
+        for part, value in zip(parts, item.identity, strict=True)
+    }
+    if sizes.fixed is not None:
+        values["payload_size",] = f"{sizes.fixed}U"
+    values["payload_min",] = f"{sizes.least}U"
+    values["payload_max",] = f"{sizes.greatest}U"
+    values["spec_hash",] = f'"{item.spec_hash}"'
+    thing = naming.message(item.name)
+    return tuple(
+        Macro(names.claim_macro(thing, item.name, *words), value) for words, value in values.items()
+    )
+
+
+def _identity_value(part: IdentityPart, value: int) -> str:
+    """The number, or the character that it is."""
+    is_text = part.type.role == "char" and 0x20 < value < 0x7F and chr(value) not in "'\\?"
+    return f"'{chr(value)}'" if is_text else hexadecimal(value)

@@ -1,0 +1,89 @@
+"""Names that a target emits: what each stands for, and which of them would stand for two things."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+Place = tuple[str | int, ...]
+"""Keys of the schema, from the root; `records` stands for messages and for named types."""
+
+
+class Thing(msgspec.Struct, frozen=True):
+    """What a name stands for.
+
+    What is not of the schema has no place; `what` says of its name what it is.
+    """
+
+    what: str
+    place: Place = ()
+
+
+OWN = Thing("generated code uses itself")
+
+
+class Clash(msgspec.Struct, frozen=True):
+    """A name that would stand for two things."""
+
+    name: str
+    first: Thing
+    second: Thing
+
+
+class NameTable:
+    """Names of one scope. The same thing may be named again."""
+
+    def __init__(self) -> None:
+        self.things: dict[str, Thing] = {}
+        """The first thing of each name."""
+        self.clashes: list[Clash] = []
+
+    def add(self, name: str, thing: Thing = OWN) -> str:
+        """The name, which stands for this."""
+        first = self.things.setdefault(name, thing)
+        if first is not thing and first != thing:
+            self.clashes.append(Clash(name, first, thing))
+        return name
+
+    def enter(self, name: str, thing: Thing, hidden: Mapping[str, Thing]) -> None:
+        """The name of something in a scope inside of this, which may hide none of these."""
+        self.things.setdefault(name, thing)
+        if name in hidden:
+            self.clashes.append(Clash(name, hidden[name], thing))
+
+
+def message(name: str) -> Thing:
+    """A message."""
+    return Thing(f"message `{name}`", ("records", name))
+
+
+def named_type(name: str) -> Thing:
+    """An enum, flags or a struct, declared or written in a field."""
+    return Thing(f"type `{name}`", ("records", name))
+
+
+def endpoint(name: str) -> Thing:
+    """A side of the link."""
+    return Thing(f"endpoint `{name}`", ("endpoints", name))
+
+
+def part(sender: str, name: str) -> Thing:
+    """A part of a frame."""
+    return Thing(f"part `{name}`", ("frame", sender, name))
+
+
+def value(type_: str, name: str) -> Thing:
+    """A value of an enum."""
+    return Thing(f"value `{type_}.{name}`", ("records", type_, "values", name))
+
+
+def flag(type_: str, name: str) -> Thing:
+    """A flag of a set."""
+    return Thing(f"flag `{type_}.{name}`", ("records", type_, "flags", name))
+
+
+def inside(record: str, kind: str, field: str, *rest: str) -> Thing:
+    """A field of a record, or something of it: `special value`, `state`, `special`, `none`."""
+    path = ".".join((record, field, *rest[1:]))
+    return Thing(f"{kind} `{path}`", ("records", record, "fields", field, *rest))

@@ -1,0 +1,66 @@
+"""The table of names that generated C has, held against what is printed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from compiled import ROOT, SCHEMAS, protocol_of
+
+from protogen.model.protocol import Protocol
+from protogen.targets.c import module
+from protogen.targets.c.emit import emit
+from protogen.targets.c.options import COptions
+from protogen.targets.c.protocol_names import names_of
+from protogen.targets.c.spelling import Names
+from protogen.targets.naming import Clash, message
+
+PATHS = sorted({*SCHEMAS, *ROOT.glob("tests/c_schemas/*.yaml")})
+NO_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"', re.DOTALL)
+AT_FILE_SCOPE = re.compile(r"^(?:#define |(?!extern |enum \{)[a-z]).*$", re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+def test_every_name_of_generated_c_is_in_the_table(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    protocol = protocol_of(path)
+    names = names_of(protocol)
+    table = names.others.things.keys() | names.tags.things.keys()
+    assert not [*names.others.clashes, *names.tags.clashes, *names.members.clashes]
+    made: list[Names] = []
+
+    def noted(chosen: Protocol) -> Names:
+        made.append(names_of(chosen))
+        return made[-1]
+
+    monkeypatch.setattr(module, "names_of", noted)
+    prefixed = re.compile(rf"\b(?:{protocol.name}|{protocol.name.upper()})_\w+")
+    chosen = [COptions(events="all", stubs=True), COptions(events="messages", style="single")]
+    chosen += [COptions(senders=(sender.name,)) for sender in protocol.senders]
+    for options in chosen:
+        files = [file for file in emit([protocol], options) if file.path.suffix in (".c", ".h")]
+        helpers = {*made[-1].others.things} - table
+        for text in (NO_CODE.sub("", file.text) for file in files):
+            assert set(prefixed.findall(text)) <= table | helpers
+            for line in AT_FILE_SCOPE.findall(text):
+                assert prefixed.search(line), line
+        # Helpers are the only ones that are named later; each is the source's own function.
+        printed = "\n".join(file.text for file in files)
+        for name in helpers.intersection(prefixed.findall(printed)):
+            assert re.search(rf"^static .*\b{name}\(", printed, re.MULTILINE)
+
+
+def test_no_name_stands_for_two_things() -> None:
+    names = Names("robot")
+    first, second = message("status"), message("status_x")
+    assert names.claim(first, "status", "x", "encode") == "robot_status_x_encode"
+    assert names.claim(first, "status", "x", "encode") == "robot_status_x_encode"
+    assert not names.others.clashes
+    assert names.claim_tag(second, "status_x_encode") == "robot_status_x_encode"
+    assert not [*names.others.clashes, *names.tags.clashes]  # A tag is no function.
+    assert names.claim(second, "status_x", "encode") == "robot_status_x_encode"
+    assert names.others.clashes == [Clash("robot_status_x_encode", first, second)]
+    assert names.claim_macro(first, "ok") == "ROBOT_OK"
+    assert names.claim_helper("status_x_encode") == "robot_status_x_encode_2"
