@@ -65,6 +65,7 @@ WITHOUT = {
     "test_lock.py": "against_a_lock",
     "test_native.py": "two_processes|builds_ahead|odd_frames|random_schemas|many_shapes|cut_off",
     "test_packaging.py": "TestWheel",
+    "test_passes_hostile.py": "work_grows",
     "test_passes_robust.py": "of_a_base",
     "test_project_record.py": "hundred",
     "test_python_corners.py": "thousands",

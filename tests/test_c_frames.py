@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from functools import cache
 from itertools import islice
 from pathlib import Path
 from random import Random
-from types import FrameType
 from typing import Any
 
 import pytest
 from c_engine import Process, process_of
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
-from passes_support import protocol_of as protocol_from
 
 from protogen.compiler import compile_file
 from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
@@ -22,8 +19,6 @@ from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.model.protocol import Protocol
 from protogen.runtime.errors import EncodeError
-from protogen.targets.c.emit import emit
-from protogen.targets.c.options import COptions
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 SENT = [
@@ -259,38 +254,3 @@ def test_a_checksum_of_the_wire_may_cover_nothing_that_is_stuffed(tmp_path: Path
     # CRC-16/KERMIT of "k" (0x6B) alone is 0xDDD5: by another implementation. 0x55 goes as 56 AA.
     assert (made.result, made.data) == (OK, bytes.fromhex("55 6B D5 DD 02 56 AA"))
     process.close()
-
-
-def test_the_work_grows_with_the_number_of_messages() -> None:
-    """Lines that the target runs: twice as many for twice the messages, not four times."""
-    small, middle, large = (_lines_run_for(count) for count in (40, 80, 160))
-    assert large - middle < 2.2 * (middle - small)
-
-
-def _lines_run_for(messages: int) -> int:
-    text = (
-        "protocol: many\nendpoints: {board: Board}\n"
-        "frame: {start: {literal: 0x55, unprotected: resync}, id: {type: uint16, id: true},"
-        " length: {type: uint8, counts: payload}, payload: {}}\n"
-        "decisions: {resync: {question: In?, document: No., choice: Yes., because: Size.}}\n"
-        "byte_order: little\nmessages:\n"
-    )
-    text += "".join(
-        f"  message{number}: {{id: {number}, from: board, fields: {{value: {{type: uint8}}}}}}\n"
-        for number in range(messages)
-    )
-    protocol = protocol_from(text)
-    lines = 0
-
-    def trace(_frame: FrameType, event: str, _argument: object) -> Any:
-        nonlocal lines
-        lines += event == "line"
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        emit([protocol], COptions())
-    finally:
-        sys.settrace(before)
-    return lines

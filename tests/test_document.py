@@ -447,14 +447,15 @@ class TestBounds:
         lines = ["a0: &a0 [" + "x, " * 10 + "]"]
         lines += [f"a{n}: &a{n} [" + f"*a{n - 1}, " * 10 + "]" for n in range(1, 9)]
         ((place, code),) = found("\n".join(lines), loader)
-        # a0 holds 11 values, a1 10 x 11 + 1 = 111, a2 1111, a3 11111 and a4 would be 111111;
-        # the bound of 200000 is passed within a5.
+        # a0 holds 11 values, a1 10 x 11 + 1 = 111, a2 1111, a3 11111, a4 111111 and a5 would
+        # be 1111111; the bound of 1000000 is passed within a5.
         assert (place.split(":")[0], code) == ("6", "PG007")
 
     def test_as_many_values_as_allowed(self) -> None:
-        # The list is a value, too.
-        assert found("[" + "1," * 199_999 + "]") == []
-        assert found("[" + "1," * 200_000 + "]") == [("1:400000", "PG007")]
+        # The lists are values, too: 1 + 999 * (1 + 1000).
+        full = "[&a [" + "1," * 998 + "]," + "*a," * 1000
+        assert found(full + "]") == []
+        assert found(full + "1]") == [(f"1:{len(full) + 1}", "PG007")]
 
     def test_an_anchor_can_be_given_again(self, loader: Loader) -> None:
         assert to_data(parsed("[&a 1, *a, &a 2, *a]", loader).root) == [1, 1, 2, 2]
@@ -518,14 +519,14 @@ class TestFiles:
         (problem,) = problems
         assert problem.hint == "this looks like UTF-16; save the file as UTF-8"
 
-    def test_four_mebibytes_and_not_a_byte_more(self, tmp_path: Path) -> None:
+    def test_eight_mebibytes_and_not_a_byte_more(self, tmp_path: Path) -> None:
         comment = b"#" * (GREATEST_SIZE - 4) + b"\na: "
         document, problems, _ = self.read(self.write(tmp_path, comment))
         assert problems == []
         assert document is not None
         document, problems, _ = self.read(self.write(tmp_path, comment + b"1"))
         assert document is None
-        assert problems == [(f"{tmp_path}/schema.yaml:1:1", "PG003 the file is larger than 4 MiB")]
+        assert problems == [(f"{tmp_path}/schema.yaml:1:1", "PG003 the file is larger than 8 MiB")]
 
 
 PIECES = st.sampled_from(

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import FrameType
+from types import CodeType, FrameType
+from typing import Any
 
 import pytest
-from passes_support import HEAD, compile_text
+from passes_support import HEAD, compile_text, protocol_of
+
+from protogen.targets import TARGETS
 
 SLIP = "frame: {id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}\n"
 FRAMED = HEAD + SLIP + "transparency: slip\n"
@@ -142,3 +147,50 @@ def test_a_transparency_by_sender_holds_for_a_frame_of_all() -> None:
     messages = "messages: {a: {id: 1, from: robot}, b: {id: 1, from: host}}\n"
     by_sender = "transparency: {robot: slip, host: slip}\n"
     assert compile_text(HEAD + SLIP + by_sender + messages).problems == ()
+
+
+@pytest.mark.parametrize("step", ["compile", *TARGETS])
+def test_the_work_grows_with_the_messages_and_types(step: str) -> None:
+    """In every function: twice the lines run for twice as many, not four times."""
+    small, middle, large = (_lines_run(_work(step, count)) for count in (10, 20, 40))
+    grown = {code: (middle[code] - small[code], large[code] - middle[code]) for code in large}
+    slow = [code for code, (before, then) in grown.items() if then > 2.5 * before + 40]
+    assert slow == []
+
+
+def _work(step: str, count: int) -> Callable[[], object]:
+    numbers = range(count)
+    text = with_frame(
+        "id: {type: uint16, id: true}, length: {type: uint8, counts: payload}, payload: {}, "
+        "crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}",
+        "".join(["types:\n", *(f"  e{n}: {{type: uint8, values: {{a: 0}}}}\n" for n in numbers)]),
+        "".join(["messages:\n", *(_message(n) for n in numbers)]),
+    )
+    if step == "compile":
+        return lambda: compile_text(text)
+    protocol = protocol_of(text)
+    return lambda: TARGETS[step].emit([protocol])
+
+
+def _message(n: int) -> str:
+    fields = (
+        f"mode: e{n}, a: {{type: uint8, count: {n + 1}}}, b: uint8, text: {{type: ascii, size: b}}"
+    )
+    return f"  m{n}: {{id: {n}, from: robot, fields: {{{fields}}}}}\n"
+
+
+def _lines_run(work: Callable[[], object]) -> Counter[CodeType]:
+    lines: Counter[CodeType] = Counter()
+
+    def trace(frame: FrameType, event: str, _argument: object) -> Any:
+        lines[frame.f_code] += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    work()  # fills caches
+    sys.settrace(trace)
+    try:
+        work()
+    finally:
+        sys.settrace(before)
+    return lines

@@ -24,12 +24,12 @@ def check_references(context: Context) -> None:
 
 def _check(context: Context, found: Reference, code: str) -> None:
     scope, name = found.scopes[0], getattr(found.name, "text", str(found.name))
+    if found.kind is Kind.TYPE and is_builtin(name) and has_width(name):
+        return
     declared = [str(key) for key in keys_at(context.data, scope)]
     text, hint = f"there is no {found.kind.value} `{name}`", hint_for(name, declared)
     match found.kind:
         case Kind.TYPE if is_builtin(name):
-            if has_width(name):
-                return
             text = f"integers are 1 to 64 bits wide, not {integer_width(name)}"
             code, hint = "PG105", None
         case Kind.TYPE:

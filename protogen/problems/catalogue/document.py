@@ -40,16 +40,16 @@ unit: "°C"          # the degree sign as the two bytes C2 B0
     Code(
         "PG003",
         "file-too-large",
-        "A file is larger than 4 MiB",
+        "A file is larger than 8 MiB",
         """\
-A schema of a thousand messages takes about a tenth of that. A larger file is most likely
+A schema of a thousand messages takes about a fifteenth of that. A larger file is most likely
 not a schema; if it is one, split it along its protocols.
 """,
         """\
-# 4194305 bytes or more
+# 8388609 bytes or more
 """,
         """\
-# 4194304 bytes or fewer
+# 8388608 bytes or fewer
 """,
         compiles=False,
     ),
@@ -107,7 +107,7 @@ link: {baud: 115200, parity: none}
         "too-many-values",
         "A file holds too many values",
         """\
-With its aliases written out, a file may hold 200000 values, and an alias may not stand
+With its aliases written out, a file may hold 1000000 values, and an alias may not stand
 inside of what it repeats. A few lines of aliases of aliases (an *alias bomb*) would
 otherwise fill any memory.
 """,

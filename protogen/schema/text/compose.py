@@ -24,7 +24,7 @@ from protogen.schema.text.scalars import resolve
 
 GREATEST_DEPTH = 64
 """Greatest depth of mappings and lists inside each other, aliases written out."""
-GREATEST_COUNT = 200_000
+GREATEST_COUNT = 1_000_000
 """Greatest number of keys and values in a file, aliases written out."""
 
 Loader = Callable[[str], Any]

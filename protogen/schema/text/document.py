@@ -14,7 +14,7 @@ from protogen.problems.sources import end_of, split_lines
 from protogen.schema.text.compose import FAST_LOADER, Loader, compose
 from protogen.schema.text.nodes import Loc, Node, find
 
-GREATEST_SIZE = 4 * 1024 * 1024
+GREATEST_SIZE = 8 * 1024 * 1024
 """The most bytes that a file may have."""
 
 # What YAML calls printable, without the breaks that only YAML 1.1 counts as line breaks and
@@ -77,7 +77,7 @@ def decode_document(
 ) -> Document | None:
     """Return the document in the bytes of ``file``, and give its text to ``sources``."""
     if len(data) > GREATEST_SIZE:
-        problems.add("PG003", Span.of_file(file), "the file is larger than 4 MiB")
+        problems.add("PG003", Span.of_file(file), "the file is larger than 8 MiB")
         return None
     try:
         text = data.decode("utf-8")
