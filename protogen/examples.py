@@ -25,6 +25,10 @@ from protogen.runtime.framing.assembly import join_parts
 from protogen.schema.syntax.octets import to_octets
 
 
+_GREATEST_SHOWN = 512
+"""Bytes of the longest frame that a hint shows."""
+
+
 def verify_examples(protocol: Protocol, problems: Problems) -> None:
     """Report every example that does not hold."""
     if not any(message.examples for message in protocol.messages):
@@ -63,13 +67,15 @@ class _Verification:
         self._message = message
         self._example = example
         self._problems = problems
+        self._chosen = [part.name for part in self._frame.caller_parts]
+        self._reading = _Reading("")
 
     def run(self) -> None:
         """Decode it and encode it again."""
         wire = self._wire()
         if wire is None:
             return
-        reading = self._read(wire)
+        reading = self._reading = self._read(wire)
         if self._example.contradicts is not None:
             self._contradicts(reading)
             return
@@ -82,7 +88,24 @@ class _Verification:
 
     def _report(self, code: str, text: str) -> None:
         where = f"`{self._example.name}` of `{self._message.name}`"
-        self._problems.add(code, self._example.span, f"{where}: {text}")
+        self._problems.add(code, self._example.span, f"{where}: {text}", self._made_hint())
+
+    def _made_hint(self) -> str | None:
+        """The frame that the values make, to be copied; None where they make none."""
+        values, parts = self._example.values or {}, self._numbers()
+        if self._reading.message is not None and self._received_as == self._reading.message.NAME:
+            values = {**self._reading.message.to_dict(), **values}
+            parts |= {name: getattr(self._reading.parts, name) for name in self._chosen}
+        stated = self._example.parts
+        parts = {name: stated.get(name, parts[name]) for name in self._chosen}
+        try:
+            message = self._class.from_dict(_hex_digits(values))
+            made = self._module.PROTOCOL.encode(message, self._example.sender, **parts)
+        except EncodeError:
+            return None
+        if len(made) > _GREATEST_SHOWN or self._example.contradicts is not None:
+            return None
+        return f"the encoder makes of its values: `frame: {{hex: {_hex(made)}}}`"
 
     def _wrong_end(self, wire: bytes) -> str:
         """Say what the last bytes should be; a decoder only knows that the end did not come."""
@@ -149,7 +172,7 @@ class _Verification:
 
     def _encodes(self, reading: _Reading, wire: bytes) -> None:
         """The values, encoded, are the example's bytes."""
-        parts = {p.name: getattr(reading.parts, p.name) for p in self._frame.caller_parts}
+        parts = {name: getattr(reading.parts, name) for name in self._chosen}
         try:
             message = self._class.from_payload(reading.message.to_payload(strict=False))
             made = self._module.PROTOCOL.encode(
