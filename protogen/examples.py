@@ -24,7 +24,6 @@ from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
 from protogen.runtime.framing.assembly import join_parts
 from protogen.schema.syntax.octets import to_octets
 
-
 _GREATEST_SHOWN = 512
 """Bytes of the longest frame that a hint shows."""
 
