@@ -7,11 +7,11 @@ from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.framing.damage import Judge, judge_of
 from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.framing.slices import SliceJudge, slice_judge
 from protogen.runtime.framing.starts import starts_of
 
 Engine = Literal["fast", "construct"]
@@ -78,8 +78,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._wanted = 0  # Before so many bytes come in, what stands at `_scan` is not judged.
         self._judges = self._cut is not None  # Whether beginnings of frames can be judged.
         self._prefix: Prefix | None = None  # Judge of them, made when first needed.
-        self._judges_slices = self._judges  # Whether what stands between two starts can be judged.
-        self._slices: SliceJudge | None = None  # Judge of it, made when first needed.
+        self._has_judge = self._judges  # Whether damaged frames can be judged as a whole.
+        self._damage: Judge | None = None  # Judge of them, made when first needed.
         self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
 
@@ -265,7 +265,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._scan = self._pushed = start
         if self._cut_frames():
             return True
-        self._failure = self._damaged(start)
+        self._failure = self._damaged(start, final)
         if self._failure is not None:
             return True
         self._wanted = 0 if final else self._wanted_at(start)
@@ -273,17 +273,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             self._candidate = Candidate(self._sender)
         return not self._wanted
 
-    def _damaged(self, start: int) -> Failure | None:
-        """The verdict on what begins there, where all up to the next start plainly is no frame."""
-        if not self._judges_slices:
-            return None
-        if self._slices is None:
-            self._slices = slice_judge(self._sender)
-            if self._slices is None:
-                self._judges_slices = False
-                return None
-        end = self._starts.find(self._data, start + 1, len(self._data) + 1)
-        return None if end < 0 else self._slices.failure(self._data[start:end])
+    def _damaged(self, start: int, final: bool) -> Failure | None:
+        """The verdict on what begins there, where it plainly is no frame."""
+        if self._has_judge and self._damage is None:
+            self._damage = judge_of(self._sender)
+            self._has_judge = self._damage is not None
+        return (
+            None if self._damage is None else self._damage.failure(self._data, start, is_all=final)
+        )
 
     def _wanted_at(self, start: int) -> int:
         """Bytes that may come before what begins there is judged; 0: a candidate takes it."""

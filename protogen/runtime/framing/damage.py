@@ -1,0 +1,251 @@
+"""Verdicts on damaged frames that stand in the input as a whole.
+
+A judge spares the reference from taking such a frame byte by byte, and says what a `Candidate`
+would say. What is not plain is left to a candidate.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from protogen.runtime.errors import ByteError, Reason
+from protogen.runtime.framing.frame import (
+    ChecksumPart,
+    LiteralPart,
+    NumberPart,
+    Part,
+    StartLiteral,
+    StartSet,
+)
+from protogen.runtime.framing.layout import Place
+from protogen.runtime.framing.machine import Failure, wrong_sum
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.framing.starts import starts_of
+from protogen.runtime.transparency import Escape, Substitution, TransparencyError
+
+_KEPT = 32
+"""Sizes of payloads whose places are remembered: what a wire gives must not fill the memory."""
+
+
+def judge_of(sender: SenderSpec[Any, Any]) -> Judge | None:
+    """The judge of a sender's damaged frames; None where only the reference can judge them."""
+    frame, layout = sender.frame, sender.layout
+    sums_alone = all(isinstance(p, ChecksumPart) and not p.when_payload for p in layout.tail)
+    is_told = layout.length is not None or layout.early_identity
+    if not (sums_alone and is_told) or layout.has_wire_checksum or layout.shares_delimiter:
+        return None
+    if not isinstance(frame.start, StartLiteral | StartSet):
+        return None
+    if not frame.start.protected:
+        return None if layout.stuffed or layout.end else SizeJudge(sender)
+    is_plain = frame.end is None or frame.end.protected
+    return SliceJudge(sender) if is_plain and _is_stuffed_plainly(sender) else None
+
+
+def _is_stuffed_plainly(sender: SenderSpec[Any, Any]) -> bool:
+    """True if nothing is stuffed, or all between start and end, in one way only."""
+    layout, stuffing = sender.layout, sender.frame.transparency
+    if stuffing is None or not layout.stuffed:
+        return True
+    before = sum(part.size for part in layout.parts[: layout.stuffed[0]])
+    is_whole = before == len(layout.start) > 0 and layout.stuffed[-1] == len(layout.parts) - 1
+    return is_whole and isinstance(stuffing, Substitution | Escape) and not stuffing.lenient
+
+
+class Judge:
+    """Judge of one sender's damaged frames."""
+
+    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+        self._sender = sender
+        self._layout = layout = sender.layout
+        self._greatest = sender.frame.greatest
+        self._places: dict[int, dict[str, Place]] = {}
+        checked: tuple[Part | None, ...] = (*layout.identity, layout.length, *layout.bounded)
+        head = [item for item in layout.slices(1) if item.part in layout.head]
+        self._literals = [
+            (item.part.value, slice(item.start, item.end))
+            for item in head
+            if isinstance(item.part, LiteralPart) and item.start >= len(layout.start)
+        ]
+        self._checked = [
+            (item.part, slice(item.start, item.end))
+            for item in head
+            if isinstance(item.part, NumberPart)
+            and (item.part in checked or item.part.number.bits < 8 * item.part.size)
+        ]
+
+    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
+        """The verdict on the candidate that starts there; None where it is not plain.
+
+        `is_all`: the input ends behind the data.
+        """
+        raise NotImplementedError
+
+    def _of_whole(self, content: bytes, size: int, own: int) -> Failure | None:
+        """The verdict on a content of the right size: a wrong checksum, or nothing plain."""
+        places = self._places.get(size) or self._placed(size)
+        for part in self._layout.checksums:
+            covered = self._layout.covered(part, places, content)
+            problem = wrong_sum(part, covered, content[slice(*places[part.name])])
+            if problem is not None:
+                return Failure(own, "checksum", problem)
+        return None
+
+    def _placed(self, size: int) -> dict[str, Place]:
+        if len(self._places) >= _KEPT:
+            self._places.clear()
+        slices = self._layout.slices(size)
+        self._places[size] = places = {part.name: (start, end) for part, start, end in slices}
+        return places
+
+    def _may_hold(self, content: bytes, size: int) -> bool:
+        """True if no byte of the payload has a bit that it must not have."""
+        head_size = self._layout.head_size
+        return not self._sender.frame.seven_bit or content[head_size : head_size + size].isascii()
+
+    def _numbers(self, content: bytes) -> dict[str, int] | None:
+        """The numbers that tell something; None where not all of the head is there, or right."""
+        if len(content) < self._layout.head_size:
+            return None
+        if any(content[place] != value for value, place in self._literals):
+            return None
+        numbers = {part.name: part.number.decode(content[place]) for part, place in self._checked}
+        bounded = self._layout.bounded
+        is_right = all(part.least <= numbers[part.name] <= part.greatest for part in bounded)
+        return numbers if is_right else None
+
+    def _payload_size(self, content: bytes, numbers: dict[str, int] | None) -> int | Failure | None:
+        """The payload's size, or the verdict on a length that can't be; None: nothing plain."""
+        layout, part = self._layout, self._layout.length
+        if numbers is None:
+            return None
+        if part is None:
+            group = self._sender.group(self._sender.identity(numbers))
+            return None if group is None else group.fixed
+        value = numbers[part.name]
+        size = layout.counted_payload(part, value)
+        greatest = self._sender.frame.greatest_payload
+        if size is not None and size <= greatest and part.least <= value <= part.greatest:
+            return size if self._fits(size, numbers) else None
+        end = next(place.stop for checked, place in self._checked if checked is part)
+        return self._of_length(content[:end], f"{part.name} is {value}")
+
+    def _fits(self, size: int, numbers: dict[str, int]) -> bool:
+        """True unless the identity shows at once that the size can't be."""
+        layout = self._layout
+        is_late = bool(layout.identity) and not layout.early_identity
+        if is_late or not layout.spec.rescans:
+            return True
+        group = self._sender.group(self._sender.identity(numbers))
+        return group is None or group.holds(size)
+
+    def _of_length(self, content: bytes, problem: str) -> Failure | None:
+        """The verdict on a length that can't be, with which a content ends."""
+        return Failure(len(content), "length", problem)
+
+
+class SizeJudge(Judge):
+    """Judge of frames whose size is told by their first bytes; a start may occur inside of them."""
+
+    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
+        """The verdict on the candidate that starts there; None where it is not plain."""
+        head = data[start : start + self._layout.head_size]
+        try:
+            numbers = self._numbers(head)
+            size = self._payload_size(head, numbers)
+        except ByteError:
+            return None
+        if isinstance(size, Failure) or size is None:
+            return size
+        limit = self._layout.head_size + size + self._layout.tail_size(size)
+        content = data[start : start + limit]
+        if limit > self._greatest or not self._may_hold(content, size):
+            return None
+        if len(content) == limit:
+            return self._of_whole(content, size, limit)
+        problem = "the input ends inside the frame"
+        return Failure(len(content), "truncated", problem) if is_all else None
+
+
+class SliceJudge(Judge):
+    """Judge of what stands between two starts, which can't occur inside of a frame."""
+
+    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+        super().__init__(sender)
+        layout = sender.layout
+        self._starts = starts_of(sender.frame)
+        self._front = len(layout.start) or 1
+        self._end = layout.end
+        self._stuffing = sender.frame.transparency if layout.stuffed else None
+        self._announced: Reason = "size" if layout.length is None else "length"
+
+    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
+        """The verdict on the candidate that starts there; None where it is not plain."""
+        end = self._starts.find(data, start + 1, len(data) + 1)
+        return None if end < 0 else self._of_slice(data[start:end])
+
+    def _of_slice(self, wire: bytes) -> Failure | None:
+        if len(wire) >= self._greatest:
+            return None
+        behind = wire.find(self._end, self._front) if self._end else -1
+        try:
+            content = self._content(wire if behind < 0 else wire[:behind])
+            numbers = self._numbers(content)
+            size = self._payload_size(content, numbers)
+        except (ByteError, TransparencyError):
+            return None
+        if isinstance(size, Failure) or size is None:
+            return size
+        limit = self._layout.head_size + size + self._layout.tail_size(size)
+        if not self._may_hold(content, size):
+            return None
+        if self._end:
+            return self._of_ended(wire, behind, content, limit, size)
+        if len(content) < limit:
+            return _truncated(wire)
+        if len(content) == limit:
+            return self._of_whole(content, size, len(wire))
+        return self._of_whole(content[:limit], size, self._wire_size(content[:limit]))
+
+    def _of_ended(
+        self, wire: bytes, behind: int, content: bytes, limit: int, size: int
+    ) -> Failure | None:
+        """The verdict where an end literal ends the frame, which stands at `behind` if at all."""
+        if len(content) > limit:
+            problem = f"there are more than {limit} bytes, or no end"
+            return self._at(content[: limit + 1], self._announced, problem)
+        if behind < 0:
+            return _truncated(wire)
+        own = behind + len(self._end)
+        if len(content) < limit:
+            problem = f"the frame ends behind {len(content)} of {limit} bytes"
+            return Failure(own, self._announced, problem)
+        return self._of_whole(content, size, own)
+
+    def _content(self, wire: bytes) -> bytes:
+        if self._stuffing is None:
+            return wire
+        return wire[: self._front] + self._stuffing.decode(wire[self._front :])
+
+    def _at(self, content: bytes, reason: Reason, problem: str) -> Failure | None:
+        """The verdict that falls with the last byte of a content."""
+        if self._end and self._may_be_held(content[-1:]):
+            return None
+        return Failure(self._wire_size(content), reason, problem)
+
+    def _may_be_held(self, byte: bytes) -> bool:
+        """True if a candidate may take the byte only when it has seen what follows."""
+        is_stuffed = self._stuffing is not None and self._stuffing.encode(byte) != byte
+        return byte in self._end or is_stuffed
+
+    def _wire_size(self, content: bytes) -> int:
+        if self._stuffing is None:
+            return len(content)
+        return self._front + len(self._stuffing.encode(content[self._front :]))
+
+    def _of_length(self, content: bytes, problem: str) -> Failure | None:
+        return self._at(content, "length", problem)
+
+
+def _truncated(wire: bytes) -> Failure:
+    return Failure(len(wire), "truncated", "another frame starts inside")

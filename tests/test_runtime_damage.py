@@ -1,0 +1,80 @@
+"""What a judge says of a damaged frame is what a candidate says, byte by byte."""
+
+from pathlib import Path
+from random import Random
+
+import pytest
+from compiled import SCHEMAS, module_at, name_of, protocol_of
+from corpus import DAMAGES, damaged, material_of
+
+from protogen.runtime.framing.damage import Judge, judge_of
+from protogen.runtime.framing.machine import Candidate, Cut, Failure
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.framing.starts import starts_of
+
+
+def judged() -> list[tuple[Path, str]]:
+    """Endpoints whose damaged frames have a judge."""
+    return [
+        (path, sender.name)
+        for path in SCHEMAS
+        for sender in protocol_of(path).senders
+        if judge_of(module_at(path).PROTOCOL.sender(sender.name)) is not None
+    ]
+
+
+JUDGED = judged()
+
+
+def by_candidate(sender: SenderSpec, data: bytes, is_all: bool) -> Cut | Failure | None:
+    candidate = Candidate(sender)
+    verdicts = map(candidate.push, data)
+    found = next((verdict for verdict in verdicts if verdict is not None), None)
+    return candidate.flush() if found is None and is_all else found
+
+
+@pytest.mark.parametrize(("path", "name"), JUDGED, ids=name_of)
+def test_a_judge_says_what_a_candidate_says(path: Path, name: str) -> None:
+    sender = module_at(path).PROTOCOL.sender(name)
+    judge, starts = judge_of(sender), starts_of(sender.frame)
+    assert isinstance(judge, Judge)
+    dice = Random(f"{path.stem} {name}")
+    material = material_of(path, name)
+    tried = told = 0
+    while tried < 1500:
+        data = damaged(dice.choice(list(DAMAGES)), dice.choice(material.frames), material, dice)
+        if starts.find(data, 0, 1) != 0:
+            continue
+        data += dice.choice(material.frames)
+        tried += 1
+        is_all = dice.random() < 0.5
+        found = judge.failure(data, 0, is_all=is_all)
+        if found is not None:
+            told += 1
+            assert found == by_candidate(sender, data, is_all), (data.hex(" "), is_all)
+    assert told > tried / 5
+
+
+def test_the_documents_have_judges() -> None:
+    names = {(path.stem, name) for path, name in JUDGED}
+    assert {("rn1", "brain"), ("rflex", "flex"), ("matty", "esp"), ("matty", "pc")} <= names
+
+
+def test_nested_false_starts_are_not_taken_byte_by_byte(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each announces 64 bytes, in which others start: a candidate for each takes 14 times as many."""
+    (path,) = (path for path in SCHEMAS if path.stem == "sync_length_crc")
+    stream = bytes.fromhex("B5 62 42 40 00") * 400
+    taken = 0
+    push = Candidate.push
+
+    def counted(candidate: Candidate, byte: int) -> Cut | Failure | None:
+        nonlocal taken
+        taken += 1
+        return push(candidate, byte)
+
+    expected = module_at(path).Decoder("station", engine="construct")
+    events = expected.feed(stream) + expected.flush()
+    monkeypatch.setattr(Candidate, "push", counted)
+    decoder = module_at(path).Decoder("station")
+    assert decoder.feed(stream) + decoder.flush() == events
+    assert taken < len(stream) / 4
