@@ -61,7 +61,7 @@ def test_the_documents_have_judges() -> None:
 
 
 def test_nested_false_starts_are_not_taken_byte_by_byte(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each announces 64 bytes, in which others start: a candidate for each takes 14 times as many."""
+    """Each announces 64 bytes, in which others start: candidates would take 14 times the stream."""
     (path,) = (path for path in SCHEMAS if path.stem == "sync_length_crc")
     stream = bytes.fromhex("B5 62 42 40 00") * 400
     taken = 0
