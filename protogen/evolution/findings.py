@@ -116,8 +116,9 @@ class Gate(msgspec.Struct, frozen=True):
 
 
 def _matches(place: str, protocol: str, pattern: str) -> bool:
-    """True if a pattern fits a place, or the place behind the protocol's name."""
-    return fnmatchcase(place, pattern) or fnmatchcase(f"{protocol}.{place}", pattern)
+    """True if a pattern is the protocol's name, or fits a place, alone or behind that name."""
+    names = (place, f"{protocol}.{place}")
+    return pattern == protocol or any(fnmatchcase(name, pattern) for name in names)
 
 
 def findings(
