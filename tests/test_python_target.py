@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import subprocess
 import sys
@@ -9,12 +10,14 @@ import venv
 from pathlib import Path
 
 import pytest
+from compiled import SCHEMAS, protocol_of
 
 from protogen.api import load, module_of
 from protogen.model.names import unit_suffix
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.targets.markdown.emit import emit as emit_markdown
 from protogen.targets.python.emit import emit as emit_python
+from protogen.targets.python.names import tables_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, remark, wrapped
 
@@ -230,3 +233,38 @@ class TestWording:
         assert lines[1] == ""
         assert docstring(["word " * 60], 4).splitlines()[0].endswith("...")
         assert remark(["Short."], 4) == '"""Short."""'
+
+
+class TestNames:
+    @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.stem)
+    def test_every_name_of_a_module_is_in_the_table(self, path: Path) -> None:
+        protocol = protocol_of(path)
+        generated = module_of(protocol)
+        tables = tables_of(protocol)
+        assert {*_public(generated)} - {"annotations"} <= next(tables).things.keys()
+        for record in (*protocol.structs, *protocol.messages):
+            attributes = _public(getattr(generated, class_name(record.name), None))
+            assert {*filter(str.islower, attributes)} <= next(tables).things.keys()
+        (arguments,) = tables
+        assert inspect.signature(generated.encode).parameters.keys() <= arguments.things.keys()
+
+    def test_messages_may_be_called_like_what_a_module_does_not_use(self, tmp_path: Path) -> None:
+        names = ["not_implemented", "warning", "encode", "protocol", "messages", "write", "on_it"]
+        text = "protocol: demo\nendpoints: {host: Host}\ntransparency: slip\n"
+        text += (
+            "frame: {id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}\nmessages:\n"
+        )
+        for number, name in enumerate(names):
+            text += f"  {name}: {{id: {number}, from: host, fields: {{x: uint8}}}}\n"
+        path = tmp_path / "demo.yaml"
+        path.write_text(text, encoding="utf-8")
+        generated = module_of(load(path))
+        for number, name in enumerate(names):
+            message = generated.MESSAGES[name](x=7)
+            assert message != 7  # Here, Python's own NotImplemented is asked for.
+            assert generated.encode(message) == bytes([number, 7, 0xC0])
+            assert generated.decode(bytes([number, 7, 0xC0]), "host") == message
+
+
+def _public(owner: object) -> list[str]:
+    return [name for name in dir(owner) if not name.startswith("_")]

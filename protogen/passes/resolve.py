@@ -18,8 +18,8 @@ from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
 from protogen.passes.messages.identities import check_identities
 from protogen.passes.names.checking import check_names
-from protogen.passes.names.class_names import check_class_names
 from protogen.passes.names.decisions import resolve_decisions
+from protogen.passes.names.distinct import check_distinct_names
 from protogen.passes.names.reserved import resolve_reserved
 from protogen.passes.spec_hash import message_hash, spec_hash
 from protogen.passes.types.named_types import NamedTypes
@@ -34,7 +34,7 @@ PASSES: tuple[Pass, ...] = (
     check_codes,
     resolve_messages,
     check_unused,
-    check_class_names,
+    check_distinct_names,
     check_identities,
     resolve_reserved,
     attach_examples,

@@ -8,6 +8,7 @@ from protogen.model.protocol import Protocol
 from protogen.passes.context import Context, Loc
 from protogen.targets.c.protocol_names import names_of
 from protogen.targets.naming import Clash, Thing
+from protogen.targets.python.names import tables_of
 
 
 def check_emitted_names(context: Context, protocol: Protocol) -> None:
@@ -23,6 +24,8 @@ def _clashes(protocol: Protocol) -> Iterator[tuple[str, Clash]]:
     names = names_of(protocol)
     for table in (names.others, names.tags, names.members):
         yield from (("C", clash) for clash in table.clashes)
+    for table in tables_of(protocol):
+        yield from (("Python", clash) for clash in table.clashes)
 
 
 def _report(context: Context, language: str, clash: Clash) -> None:

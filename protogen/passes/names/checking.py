@@ -8,10 +8,7 @@ from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.names.references import check_references
 from protogen.passes.names.reserved_words import (
-    AS_CLASSES,
     DIRECTIVES,
-    OWN_ARGUMENTS,
-    OWN_ATTRIBUTES,
     languages_reserving,
 )
 from protogen.passes.types.type_names import is_builtin
@@ -48,8 +45,7 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
     languages = languages_reserving(name)
     if languages:
         report = context.error if at_value else context.error_at_key
-        becomes = f" would be `{name.capitalize()}`, which" if name in AS_CLASSES else ""
-        text = f"`{name}`{becomes} is a reserved word of {', '.join(languages)}"
+        text = f"`{name}` is a reserved word of {', '.join(languages)}"
         report("PG106", loc, text, f"another name, such as `{name}_value`")
 
 
@@ -59,23 +55,14 @@ def _usable_as_value(context: Context, name: str, loc: Loc) -> None:
         _usable(context, name, loc)
 
 
-def _free(context: Context, name: str, own: frozenset[str], loc: Loc) -> None:
-    if name in own:
-        text = f"`{name}` is a name that generated code uses itself"
-        context.error_at_key("PG106", loc, text)
-
-
 def _parts(context: Context, frame: Frame, loc: Loc) -> None:
-    for name, part in frame.items():
+    for name in frame:
         _usable(context, name, (*loc, name))
-        if part.literal is None and part.id is None:
-            _free(context, name, OWN_ARGUMENTS, (*loc, name))
 
 
 def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:
     for name, item in fields.items():
         _usable(context, name, (*loc, name))
-        _free(context, name, OWN_ATTRIBUTES, (*loc, name))
         _inside_field(context, item, (*loc, name))
 
 

@@ -29,21 +29,10 @@ var void while with yield
 DIRECTIVES = frozenset({"rename", "remove", "replace", "after", "before"})
 """Words of `extends`, which would be taken for directives where a name stands."""
 
-OWN_ATTRIBUTES = frozenset(
-    {"violations", "to_dict", "from_dict", "to_payload", "from_payload", "parse_payload"}
-)
-"""Attributes of generated messages and structs, which a field of the name would hide."""
-
-OWN_ARGUMENTS = frozenset({"message", "sender", "strict", "engine"})
-"""Arguments of a generated encoder beside the parts whose values the caller gives."""
-
-AS_CLASSES = frozenset({"none"})
-"""Words that are reserved only as classes are written."""
-
 _LANGUAGES: dict[str, frozenset[str]] = {
     "C": frozenset(C.split()),
     "C++": frozenset(CPP.split()),
-    "Python": frozenset(word for word in keyword.kwlist if word.islower()) | {"self"} | AS_CLASSES,
+    "Python": frozenset(word for word in keyword.kwlist if word.islower()) | {"self"},
     "JavaScript": frozenset(_JAVASCRIPT.split()),
     "protogen": DIRECTIVES,
 }

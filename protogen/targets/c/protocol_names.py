@@ -29,7 +29,7 @@ _FUNCTIONS = "write first is_high mask sum_of xor_of"
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
-accept add_noise begins close close_at_flush close_open complete cross decide decoder_feed
+accept add_noise begins close close_at_flush close_open compare complete cross decide decoder_feed
 decoder_flush decoder_init decoder_push dispatch drop end_noise ends_early enter_payload
 find_size finish_region follow_end follow_start give_up hand_over has_special identify invalid
 is_idle is_plain judge looks_idle measure measure_head open pass payload read_length release reopen

@@ -9,13 +9,13 @@ import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
-from protogen.model.names import unit_suffix
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
+from protogen.targets.python.names import bits_name, physical_name
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import class_name, member_name
 from protogen.targets.python.wrapping import (
@@ -289,15 +289,8 @@ def _views(field: Field, taken: frozenset[str]) -> list[Attribute]:
     return [view for view in views if view is not None]
 
 
-def _free(name: str, taken: frozenset[str]) -> str:
-    """A name that no field has."""
-    while name in taken:
-        name += "_value"
-    return name
-
-
 def _physical(field: Field, taken: frozenset[str]) -> Attribute:
-    name = _free(f"{field.name}_{unit_suffix(field.unit)}", taken)
+    name = physical_name(field, taken)
     kind = "PhysicalList" if isinstance(field.type, Array) else "Physical"
     kind += "OrNone" if field.special else ""
     unit = f" in {field.unit}" if field.unit else ", scaled"
@@ -324,7 +317,7 @@ def _physical_range(field: Field) -> str:
 
 
 def _bits(field: Field, item: BitField, taken: frozenset[str]) -> Attribute:
-    name = _free(f"{field.name}_{item.name}", taken)
+    name = bits_name(field, item, taken)
     bounds = (text(field.name), str(item.low), str(item.high))
     if item.enum:
         view = call("_rt.EnumRange", *bounds, class_name(item.enum.name))

@@ -13,6 +13,7 @@ from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, Constructor, EnumClass, RecordClass, slots_of
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
+from protogen.targets.python.names import frame_name, parts_name, union_name
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, method, one_of, remark, union, wrapped
 
@@ -139,7 +140,7 @@ def _parts_classes(protocol: Protocol) -> dict[str, PartsClass]:
     attributes = {sender.name: _part_attributes(sender) for sender in protocol.senders}
     alike = len(set(attributes.values())) == 1
     return {
-        name: PartsClass("Parts" if alike else f"{class_name(name)}Parts", items, _made(items))
+        name: PartsClass("Parts" if alike else parts_name(name), items, _made(items))
         for name, items in attributes.items()
     }
 
@@ -202,24 +203,24 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
     for sender in protocol.senders:
         frame_text = _frame(sender)
         known = frame_text in frame_names
-        frame = frame_names.setdefault(frame_text, f"_{sender.name}_frame_spec")
+        frame = frame_names.setdefault(frame_text, frame_name(sender.name))
         new = [message for message in sender.messages if message.name not in printed]
         printed.update(message.name for message in new)
-        union_name = f"{class_name(sender.name)}Message"
+        messages = union_name(sender.name)
         union_text = one_of(class_name(message.name) for message in sender.messages)
         views.append(
             SenderView(
                 name=sender.name,
                 title=titles[sender.name],
                 upper=sender.name.upper(),
-                union=union_name,
-                union_text=union(f"{union_name} = ", union_text, 0),
+                union=messages,
+                union_text=union(f"{messages} = ", union_text, 0),
                 parts=parts[sender.name].name,
                 frame=frame,
                 frame_text="" if known else frame_text,
-                spec_text=_sender_spec(sender, frame, parts[sender.name].name, union_name),
+                spec_text=_sender_spec(sender, frame, parts[sender.name].name, messages),
                 decode_head=_decode_head(
-                    f"_typing.Literal[{text(sender.name)}]", union_name, after=5
+                    f"_typing.Literal[{text(sender.name)}]", messages, after=5
                 ),
                 messages=tuple(
                     classes.message_class(message, _identity_words(sender, message))
