@@ -70,6 +70,16 @@ def algorithm_names() -> tuple[str, ...]:
     return (*own, *aliases)
 
 
+def variants(name: str) -> tuple[str, ...]:
+    """Return the algorithms that a shortened name may stand for; none if it is one's own name."""
+    found, start = find_algorithm(name), name.casefold()
+    if found is None or found.name.casefold() == start:
+        return ()
+    meant = (spec.name for key, spec in _by_folded_name().items() if key.startswith(start))
+    names = tuple(dict.fromkeys((found.name, *meant)))
+    return names if len(names) > 1 else ()
+
+
 @cache
 def crc_catalogue() -> Mapping[ChecksumSpec, tuple[str, ...]]:
     """The algorithms of the CRC catalogue up to 64 bits, in its order, each with its aliases."""

@@ -65,6 +65,10 @@ class Context(msgspec.Struct, frozen=True):
         """Report a problem at a value."""
         self._report(Problem.of(code, self.find(loc), message, hint), loc)
 
+    def warning(self, code: str, loc: Loc, message: str, hint: str) -> None:
+        """Report what can be read, but may be meant otherwise; it stops nothing."""
+        self.problems.add(code, self.find(loc), message, hint)
+
     def error_at_key(
         self,
         code: str,

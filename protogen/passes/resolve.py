@@ -20,6 +20,7 @@ from protogen.passes.messages.identities import check_identities
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.decisions import resolve_decisions
 from protogen.passes.names.distinct import check_distinct_names
+from protogen.passes.names.numbers import check_numbers
 from protogen.passes.names.reserved import resolve_reserved
 from protogen.passes.spec_hash import message_hash, spec_hash
 from protogen.passes.types.named_types import NamedTypes
@@ -29,6 +30,7 @@ Pass = Callable[[Context, Draft], None]
 
 PASSES: tuple[Pass, ...] = (
     check_names,
+    check_numbers,
     resolve_decisions,
     resolve_frames,
     check_codes,

@@ -12,6 +12,7 @@ from protogen.model.checksums import (
     algorithm_names,
     crc_catalogue,
     find_algorithm,
+    variants,
 )
 from protogen.model.frame import (
     ChecksumPart,
@@ -289,9 +290,16 @@ class FrameBuilder:
             return self._parameters(name, item.algorithm)
         found = find_algorithm(item.algorithm or "")
         if found is None:
-            hint = hint_for(item.algorithm or "", algorithm_names()) or _algorithms(item)
+            close = hint_for(
+                item.algorithm or "", [n for n in algorithm_names() if not variants(n)]
+            )
+            hint = close or _algorithms(item)
             text = f"there is no checksum algorithm `{item.algorithm}`"
             self._error("PG134", name, "algorithm", text, hint)
+        elif others := variants(item.algorithm or ""):
+            text = f"`{item.algorithm}` is taken for {found.name}, and others are called so, too"
+            hint = f"write the whole name of the one that is meant: {', '.join(others)}"
+            self._context.warning("PG126", (*self._loc, name, "algorithm"), text, hint)
         return found
 
     def _parameters(self, name: str, given: CrcParameters) -> ChecksumSpec | None:

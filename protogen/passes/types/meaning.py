@@ -13,6 +13,7 @@ from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.type_names import UNKNOWN_TYPE
 from protogen.passes.types.value_names import named_values
+from protogen.schema.text.scalars import exact_number
 
 _NUMERIC_KEYS = ("range", "scale", "offset", "special", "unit")
 
@@ -61,6 +62,11 @@ class _Check:
         for key in _NUMERIC_KEYS:
             if getattr(self._item, key) is not None and not number:
                 self._error("PG110", key, f"`{key}` is for numbers, and `{self._name}` is none")
+        unit = self._item.unit
+        if unit is not None and unit != "1" and exact_number(unit) is not None:
+            text = f"the unit of `{self._name}` is a number, {unit}"
+            hint = f"name the unit, such as `mm`; a factor is `scale: {unit}`"
+            self._context.warning("PG125", self._field.at("unit"), text, hint)
         if self._item.closed and self._item.values is None:
             self._error("PG110", "closed", "`closed` is for a field that has `values`")
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_fields
+from protogen.problems.catalogue.sketch import with_fields, with_message
+from protogen.problems.severity import Severity
 
 FIELD_CODES: tuple[Code, ...] = (
     Code(
@@ -280,5 +281,34 @@ physical value are equal. Programs have physical values as 64-bit floating point
 """,
         with_fields("angle: {type: sint16, scale: 0, unit: deg}"),
         with_fields("angle: {type: sint16, scale: 1/16, unit: deg}"),
+    ),
+    Code(
+        "PG124",
+        "leading-zero",
+        "A number that begins with a zero",
+        """\
+`010` is ten in YAML 1.2, which protogen and most editors read, and eight in YAML 1.1 and in C. So
+it is not clear what is meant. Write `10`, or `0o10` for an octal number. In a text, such as a
+version, zeros stay as they are.
+""",
+        with_message("""
+            fields: {angle: {type: uint16, default: 010}}
+        """),
+        with_message("""
+            fields: {angle: {type: uint16, default: 10}}
+        """),
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "PG125",
+        "unit-is-a-number",
+        "A unit that is a number",
+        """\
+A unit is the name of what a physical value is counted in, such as `mm` or `deg/s`. What a raw value
+is multiplied by is its `scale`. A quantity without a unit has none, or `unit: 1`.
+""",
+        with_fields("range: {type: uint16, unit: 5}"),
+        with_fields("range: {type: uint16, scale: 5, unit: mm}"),
+        severity=Severity.WARNING,
     ),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
 from protogen.problems.catalogue.sketch import with_frame, with_framed
+from protogen.problems.severity import Severity
 
 FRAME_CODES: tuple[Code, ...] = (
     Code(
@@ -141,6 +142,35 @@ catalogue is given by its parameters:
             """,
             more="transparency: slip",
         ),
+    ),
+    Code(
+        "PG126",
+        "checksum-of-many",
+        "A checksum's name that several have",
+        """\
+The catalogue of CRCs lists many of each width, and short names such as `CRC-16` are used for more
+than one of them. The short name is taken for the one that the catalogue gives it to, which may not
+be the device's. Write the whole name.
+""",
+        with_frame(
+            """
+                id: {type: uint8, id: true}
+                payload: {}
+                crc: {type: uint16, algorithm: CRC-16, covers: id..payload}
+                end: {literal: 0xC0}
+            """,
+            more="transparency: slip",
+        ),
+        with_frame(
+            """
+                id: {type: uint8, id: true}
+                payload: {}
+                crc: {type: uint16, algorithm: CRC-16/ARC, covers: id..payload}
+                end: {literal: 0xC0}
+            """,
+            more="transparency: slip",
+        ),
+        severity=Severity.WARNING,
     ),
     Code(
         "PG135",

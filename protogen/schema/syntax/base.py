@@ -51,7 +51,7 @@ def _as_is(value: object) -> object:
     return value
 
 
-def _as_written(value: object) -> object:
+def as_written(value: object) -> object:
     """Text keys take `1.10` or `2014` as the characters that stand in the file."""
     return getattr(value, "text", value)
 
@@ -66,7 +66,7 @@ def _to_fraction(value: object) -> object:
     if isinstance(value, int) and not isinstance(value, bool):
         return Fraction(int(value))
     if isinstance(value, float | str):
-        number = exact_number(str(_as_written(value)).strip())
+        number = exact_number(str(as_written(value)).strip())
         if number is not None:
             return number
     raise ValueError("expected an exact number such as 0.01, 1/16 or -3")
@@ -113,7 +113,7 @@ def _to_bit_range(value: object) -> object:
 Character = Annotated[str, Field(min_length=1, max_length=1)]
 """A text of one character, which stands for its code."""
 
-Text = Annotated[str, BeforeValidator(_as_written, json_schema_input_type=str | float | int)]
+Text = Annotated[str, BeforeValidator(as_written, json_schema_input_type=str | float | int)]
 """Prose or a version: taken as written, also when it looks like a number."""
 
 Name = Annotated[str, StringConstraints(pattern=NAME_PATTERN, max_length=64)]

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 import msgspec
 from pydantic import BaseModel, BeforeValidator
 
-from protogen.schema.syntax.base import ShortForm
+from protogen.schema.syntax.base import ShortForm, as_written
 from protogen.schema.syntax.names import Mark
 
 
@@ -20,6 +20,8 @@ class Form(msgspec.Struct):
     marks: list[Mark] = msgspec.field(default_factory=list)
     models: list[type[BaseModel]] = msgspec.field(default_factory=list)
     """Classes of mappings with fixed keys."""
+    text: bool = False
+    """True for what is taken as it is written, such as 1.10 or 007."""
     short: str | None = None
     """Key that a bare scalar stands for."""
     names: Form | None = None
@@ -85,5 +87,7 @@ def _add_metadata(form: Form, metadata: Iterable[Any]) -> None:
     for mark in metadata:
         if isinstance(mark, Mark):
             form.marks.append(mark)
+        elif isinstance(mark, BeforeValidator) and mark.func is as_written:
+            form.text = True
         elif isinstance(mark, BeforeValidator) and isinstance(mark.func, ShortForm):
             form.short = mark.func.key
