@@ -3,6 +3,7 @@
 A `ChecksumSpec` says what to compute, not how: each target prints it in its own language.
 """
 
+import re
 from collections.abc import Mapping
 from functools import cache
 from typing import Literal
@@ -13,6 +14,11 @@ from protogen.model.crc_catalogue import catalogue_rows
 from protogen.runtime import checksum as sums
 
 ChecksumKind = Literal["xor", "sum", "fletcher", "crc"]
+
+
+_WORD = re.compile(r"[a-z]+|[0-9]+")
+_GREATEST_LETTERS = 3
+"""Letters, numbers and companies, such as `A`, `16` and `IBM`, are in names of all kinds."""
 
 
 class ChecksumSpec(msgspec.Struct, frozen=True):
@@ -75,9 +81,20 @@ def variants(name: str) -> tuple[str, ...]:
     found, start = find_algorithm(name), name.casefold()
     if found is None or found.name.casefold() == start:
         return ()
-    meant = (spec.name for key, spec in _by_folded_name().items() if key.startswith(start))
+    meant = (
+        spec.name
+        for key, spec in _by_folded_name().items()
+        if key.startswith(start) or (spec.width == found.width and _has_words(key, start))
+    )
     names = tuple(dict.fromkeys((found.name, *meant)))
     return names if len(names) > 1 else ()
+
+
+def _has_words(name: str, short: str) -> bool:
+    """True for `CRC-16/CCITT-FALSE` and `CRC-CCITT`, but not for what has letters in common."""
+    words = set(_WORD.findall(short)) - {"crc"}
+    told_apart = any(len(word) > _GREATEST_LETTERS for word in words)
+    return told_apart and words <= set(_WORD.findall(name))
 
 
 @cache

@@ -290,10 +290,7 @@ class FrameBuilder:
             return self._parameters(name, item.algorithm)
         found = find_algorithm(item.algorithm or "")
         if found is None:
-            close = hint_for(
-                item.algorithm or "", [n for n in algorithm_names() if not variants(n)]
-            )
-            hint = close or _algorithms(item)
+            hint = _close_algorithm(item.algorithm or "") or _algorithms(item)
             text = f"there is no checksum algorithm `{item.algorithm}`"
             self._error("PG134", name, "algorithm", text, hint)
         elif others := variants(item.algorithm or ""):
@@ -356,10 +353,18 @@ def _holds_cobs(frame: Frame, part: ChecksumPart) -> bool:
     return isinstance(frame.encoding, Cobs) and not frame.stuffed.isdisjoint(part.covers)
 
 
+def _close_algorithm(name: str) -> str | None:
+    """One name that was probably meant; where it may be several, all of them are listed."""
+    if re.fullmatch(r"crc\W*\d*", name.casefold()):
+        return None
+    return hint_for(name, [known for known in algorithm_names() if not variants(known)])
+
+
 def _algorithms(item: PartSyntax) -> str:
     """The algorithms that there are, by name; of CRCs those of the width that is asked for."""
     width = re.search(r"crc\D*(\d+)", str(item.algorithm).casefold())
     names = [spec.name for spec in SIMPLE_ALGORITHMS]
     family = "" if width is None else f"CRC-{width[1]}/"
     names += [spec.name for spec in crc_catalogue() if family and spec.name.startswith(family)]
-    return f"there are {', '.join(names)}, and each CRC by its name in the catalogue or parameters"
+    crcs = "each CRC by its name in the catalogue, such as CRC-16/KERMIT, or by parameters"
+    return f"there are {', '.join(names)}, and {crcs}"
