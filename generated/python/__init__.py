@@ -14,7 +14,7 @@
 # from rn1.yaml
 # spec sha256 565ea17f0e53
 # from rn1_firmware.yaml
-# spec sha256 a8d17e0fa120
+# spec sha256 c6fc92e41722
 # from uherobot.yaml
 # spec sha256 38490cb78d21
 # from uherobot_daemon.yaml
