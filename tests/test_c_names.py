@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
+from c_library import write_sources
 from compiled import ROOT, SCHEMAS, protocol_of
+from tooling import require_tool
 
 from protogen.model.protocol import Protocol
 from protogen.targets.c import module
@@ -64,3 +67,19 @@ def test_no_name_stands_for_two_things() -> None:
     assert names.others.clashes == [Clash("robot_status_x_encode", first, second)]
     assert names.claim_macro(first, "ok") == "ROBOT_OK"
     assert names.claim_helper("status_x_encode") == "robot_status_x_encode_2"
+
+
+def test_messages_may_be_called_like_functions_of_the_source(tmp_path: Path) -> None:
+    text = "protocol: demo\nendpoints: {host: Host}\ntransparency: slip\n"
+    text += "frame: {id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}\nmessages:\n"
+    for number, name in enumerate(("write", "copy", "on_it", "frame_it", "host_take", "linux")):
+        kind = "{type: bytes, size: 4}"
+        text += f"  {name}: {{id: {number}, from: host, fields: {{x: {kind}}}}}\n"
+    path = tmp_path / "demo.yaml"
+    path.write_text(text, encoding="utf-8")
+    write_sources(protocol_of(path), tmp_path)
+    assert "\nstruct demo_write {\n" in (tmp_path / "demo.h").read_text(encoding="utf-8")
+    (tmp_path / "main.cpp").write_text('#include "demo.h"\n', encoding="utf-8")
+    flags = ["-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
+    for command in (["cc", "-std=gnu99", "demo.c"], ["c++", "-std=c++11", "main.cpp"]):
+        subprocess.run([require_tool(command[0]), *flags, *command[1:]], cwd=tmp_path, check=True)

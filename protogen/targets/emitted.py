@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from protogen.model.protocol import Protocol
 from protogen.passes.context import Context, Loc
 from protogen.targets.c.protocol_names import names_of
-from protogen.targets.naming import Clash, Thing
+from protogen.targets.naming import PROTOCOL, Clash, Thing
 from protogen.targets.python.names import tables_of
 
 
@@ -22,7 +22,7 @@ def check_emitted_names(context: Context, protocol: Protocol) -> None:
 
 def _clashes(protocol: Protocol) -> Iterator[tuple[str, Clash]]:
     names = names_of(protocol)
-    for table in (names.others, names.tags, names.members):
+    for table in (names.files, names.others, names.tags, names.members):
         yield from (("C", clash) for clash in table.clashes)
     for table in tables_of(protocol):
         yield from (("Python", clash) for clash in table.clashes)
@@ -31,11 +31,12 @@ def _clashes(protocol: Protocol) -> Iterator[tuple[str, Clash]]:
 def _report(context: Context, language: str, clash: Clash) -> None:
     first, second, name = clash.first, clash.second, clash.name
     if not first.place:
-        own = second.place[-1]
+        whole = second == PROTOCOL
+        own = context.syntax.protocol if whole else second.place[-1]
         becomes = "" if own == name else f" would be `{name}`, which"
-        hint = f"another name, such as `{own}_{'data' if len(second.place) == 2 else 'value'}`"
-        text = f"`{own}`{becomes} {first.what}"
-        context.error_at_key("PG106", _place(context, second), text, hint)
+        hint = f"another name, such as `{own}_{'value' if second.place[2:] else 'data'}`"
+        report = context.error if whole else context.error_at_key
+        report("PG106", _place(context, second), f"`{own}`{becomes} {first.what}", hint)
         return
     spans = {thing: context.find_key(_place(context, thing)) for thing in (first, second)}
     if spans[first].file == spans[second].file:
@@ -47,6 +48,8 @@ def _report(context: Context, language: str, clash: Clash) -> None:
 
 def _place(context: Context, thing: Thing) -> Loc:
     """Keys of the schema: those of a type inside of a field begin with the field's."""
+    if len(thing.place) == 1:
+        return thing.place
     kind, name, *rest = map(str, thing.place)
     if kind == "frame":
         return ("frame", context.frame_key(name), *rest)

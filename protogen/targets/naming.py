@@ -21,6 +21,7 @@ class Thing(msgspec.Struct, frozen=True):
 
 
 OWN = Thing("generated code uses itself")
+PROTOCOL = Thing("protocol", ("protocol",))
 
 
 class Clash(msgspec.Struct, frozen=True):

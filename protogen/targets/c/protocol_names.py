@@ -14,8 +14,8 @@ from protogen.targets.c.frame.checksums import checksum_name
 from protogen.targets.c.named import claim_fields, enum_view, flags_view
 from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
-from protogen.targets.c.words import foreign_words
-from protogen.targets.naming import OWN, Thing, endpoint, inside, named_type, part
+from protogen.targets.c.words import foreign_words, headers
+from protogen.targets.naming import OWN, PROTOCOL, Thing, endpoint, inside, named_type, part
 
 _MACROS = """
 ok error_size error_value error_encoding error_range error_space spec_hash version h implementation
@@ -42,6 +42,8 @@ _MACROS_OF_A_SENDER = "frame_max"
 def names_of(protocol: Protocol) -> Names:
     """The names of a protocol, whatever is chosen to be printed of it."""
     names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
+    names.files.things |= dict.fromkeys(headers(), Thing("is a header of C"))
+    names.files.add(f"{protocol.name}.h", PROTOCOL)
     _claim_own(names)
     for sender in protocol.senders:
         _claim_sender(names, sender)

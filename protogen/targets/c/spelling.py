@@ -31,6 +31,7 @@ class Names:
         """Functions, variables, typedefs, macros and named values."""
         self.members = NameTable()
         """Members and parameters, none of which may hide one of the others."""
+        self.files = NameTable()
 
     def claim_tag(self, thing: Thing, *words: str) -> str:
         """A struct or an enum: `rn1_gyro`."""

@@ -17,6 +17,17 @@ int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t size_t
 """
 """Types that generated code uses. A member called like one would be another type in C++."""
 
+_HEADERS = """
+assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign
+stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar
+wchar wctype
+"""
+
+
+def headers() -> Iterator[str]:
+    """Headers of C, in place of which compilers would find a protocol's own."""
+    return (f"{name}.h" for name in _HEADERS.split())
+
 
 def foreign_words() -> Iterator[tuple[str, Thing]]:
     """Each word, with what it is."""

@@ -31,7 +31,7 @@ _ATTRIBUTES = "violations to_dict from_dict to_payload from_payload parse_payloa
 _ARGUMENTS = "message sender strict engine"
 """Arguments of a generated encoder beside the parts whose values the caller gives."""
 
-_WORD = Thing("is a reserved word of Python")
+_RESERVED = dict.fromkeys(keyword.kwlist, Thing("is a reserved word of Python"))
 _USED = Thing("is a name that generated code uses itself")
 
 
@@ -46,10 +46,8 @@ def tables_of(protocol: Protocol) -> Iterator[NameTable]:
 def _table(own: str, used: Thing) -> NameTable:
     """The words of Python, and those that generated code uses there."""
     table = NameTable()
-    for word in keyword.kwlist:
-        table.add(word, _WORD)
-    for word in own.split():
-        table.add(word, used)
+    table.things |= _RESERVED
+    table.things |= dict.fromkeys(own.split(), used)
     return table
 
 
