@@ -326,7 +326,7 @@ What each does, and does not:
   have offsets, sequence and sizes of all rows, every message, invalid bytes with their reasons.
   What either decodes with is made before anything is timed.
   Native columns are measured on {loops} streams behind one another, by batches, and on one core;
-  [columns.md](columns.md) has more.
+  [columns.md](columns.md) measures them beside C by hand, on larger captures and in another run.
 
 ## Live streams
 
