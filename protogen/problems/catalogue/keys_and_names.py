@@ -103,9 +103,8 @@ Messages and types share one set of names, because generated code has one class 
 `gyro_1` and `gyro1` would both be `Gyro1`. What is written inside a field is called after its
 message and field: `gyro_status`. A type can't be called like a built-in one. Nor is a declared type
 one type if its uses differ: in byte order, or because a switch in it ends the payload in one place
-and not in another. In C, the names of two things, joined with others, can come to the same: the
-frames of a message `board` and those of an endpoint `board` are both at most `RN1_BOARD_FRAME_MAX`
-long. Rename one of the two, or declare a type for each use.
+and not in another. In C, joined names can come to the same: a message `board` and an endpoint
+`board` both have `RN1_BOARD_FRAME_MAX`. Rename one, or declare a type for each use.
 """,
         with_messages(
             "gyro: {id: 1, from: robot, fields: {state: {type: gyro}}}",
