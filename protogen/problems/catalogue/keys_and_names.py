@@ -88,8 +88,7 @@ The name is taken in C, C++, Python or JavaScript, or by the code that protogen 
 directive of `extends`. No target changes a name, so that a field has one name in every language and
 in the document. Add a word that says more: `class` becomes `class_id`. Names of an enum's values
 stand behind that of their enum, so that they may be words of a language, unless a case of a union
-is called after them. The name of the protocol is that of files, too: compilers would find a
-`string.h` of its own in place of that of C.
+is called after them. Files have the protocol's name: its `string.h` would hide that of C.
 """,
         with_fields("default: uint16"),
         with_fields("default_speed: uint16"),
