@@ -503,7 +503,7 @@ class TestErrors:
 
         protocol = protocol_of(sink)
         writer = McapWriter("x", Pending(tmp_path), tables_of(protocol, protocol.sender("pc")))
-        monkeypatch.setattr(writer._writer, "finish", fail)
+        monkeypatch.setattr(writer._mcap, "close", fail)
         with pytest.raises(OSError, match="No space"):
             writer.close()
         assert writer._file.closed

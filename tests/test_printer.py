@@ -23,9 +23,11 @@ np = pytest.importorskip("numpy")
 from protogen.convert.columns.batches import Tally  # noqa: E402
 from protogen.convert.columns.csv_text import quoted_characters  # noqa: E402
 from protogen.convert.columns.decoders import _PRINTERS  # noqa: E402
+from protogen.convert.columns.tables import tables_of  # noqa: E402
 from protogen.convert.formats import OutputFormat  # noqa: E402
 from protogen.convert.writers.csv_writer import CsvWriter  # noqa: E402
 from protogen.convert.writers.format_writers import write_all  # noqa: E402
+from protogen.convert.writers.mcap_writer import McapWriter  # noqa: E402
 from protogen.convert.writers.pending_files import Pending  # noqa: E402
 from protogen.native.print_steps import (  # noqa: E402
     IN_CELLS,
@@ -271,6 +273,42 @@ def test_csv_is_that_of_events(path: Path, sender: str, tmp_path: Path) -> None:
     assert each[:2] == each[2:]
 
 
+# --- MCAP -----------------------------------------------------------------------------------------
+
+
+def mcap_messages(
+    folder: Path, path: Path, sender: str, data: bytes, engine: str | None, *how: Any
+) -> list[Any]:
+    reading = pytest.importorskip("mcap.reader")
+    protocol = protocol_of(path)
+    tables = tables_of(protocol, protocol.sender(sender))
+    writer = McapWriter("run", pending := Pending(folder), tables)
+    batches = batches_of(path, sender, data, engine, *how, to=OutputFormat.MCAP)
+    write_all(writer, batches, Tally())
+    pending.commit()
+    with (folder / "run.mcap").open("rb") as file:
+        reader = reading.make_reader(file, validate_crcs=True)
+        found = list(reader.iter_messages(log_time_order=False))
+        statistics = reader.get_summary().statistics
+        assert statistics.message_count == len(found)
+        if found:
+            assert statistics.message_start_time == min(it.log_time for _, _, it in found)
+            ordered = [it.log_time for _, _, it in reader.iter_messages()]
+            assert ordered == sorted(it.log_time for _, _, it in found)
+        return found
+
+
+@pytest.mark.parametrize(("path", "sender"), [*senders(), *SENDERS], ids=name_of)
+def test_messages_of_mcap_are_those_of_events(path: Path, sender: str, tmp_path: Path) -> None:
+    data = capture_of(path, sender, 4, 150)
+    each = [
+        mcap_messages(tmp_path / f"{engine} {timed}", path, sender, data, engine, timed)
+        for engine in ("events", None)
+        for timed in (False, True)
+    ]
+    assert each[:2] == each[2:]
+
+
 SCALED = """
       a: {type: uint64, scale: 1/3, offset: 5, unit: m}
       b: {type: sint64, scale: 1e-9, unit: s, special: {absent: 0}}
@@ -295,6 +333,50 @@ def test_csv_has_the_same_physical_values(tmp_path: Path, more: str) -> None:
     expected = csv_files(tmp_path / "events", path, "one", data, "events")
     assert expected["scaled"].count(b"\n") > 20
     assert csv_files(tmp_path / "native", path, "one", data, None) == expected
+    messages = mcap_messages(tmp_path / "messages", path, "one", data, "events")
+    assert mcap_messages(tmp_path / "printed", path, "one", data, None) == messages
+
+
+FLOATS = """
+      one: {type: float32, scale: 1e30, unit: m}
+      many: {type: float64, count: 2}
+      n: {type: uint8, range: [1, 2]}
+      pairs:
+        count: 2
+        fields:
+          kind: {type: uint8, values: {real: 1, whole: 2}}
+          first: float32
+          of: {switch: kind, cases: {real: float32, whole: uint16}}
+      of:
+        switch: n
+        cases: {1: float32, 2: {fields: {inner: float64, text: {type: ascii, size: 2}}}}
+"""
+
+
+def test_messages_of_mcap_leave_out_what_is_no_number(tmp_path: Path) -> None:
+    path = tmp_path / "great.yaml"
+    message = f"  scaled:\n    id: 3\n    from: one\n    fields:{FLOATS}"
+    path.write_text(GREAT[: GREAT.index("  scaled:")] + message)
+    spec = module_at(path).PROTOCOL.sender("one")
+    frames = b""
+    for odd in (float("nan"), float("inf"), -0.0, 1e10):
+        front = struct.pack("<f2d", odd, odd, 1.0)
+        pairs = struct.pack("<BffBfH", 1, odd, odd, 2, 1.5, 7)
+        for last in (struct.pack("<f", odd), struct.pack("<d2s", odd, b"a")):
+            number = bytes([1 if len(last) == 4 else 2])
+            payload = front + number + pairs + last
+            frames += encode_frame(spec, (3,), payload, {}, strict=False)
+    found = mcap_messages(tmp_path / "messages", path, "one", frames, "events")
+    assert mcap_messages(tmp_path / "printed", path, "one", frames, None) == found
+    rows = [json.loads(message.data) for _, _, message in found]
+    assert rows[0]["pairs"] == [
+        {"kind": 1, "of": {"real": {}}},
+        {"kind": 2, "first": 1.5, "of": {"whole": {"value": 7}}},
+    ]
+    assert rows[0]["many"] == [None, 1.0]
+    assert rows[0].keys() == {"offset", "size", "many", "n", "pairs"}
+    assert rows[1].keys() - rows[0].keys() == {"of.case_2.text"}
+    assert rows[7]["one_m"] > 9e39
 
 
 @pytest.mark.parametrize("to", [OutputFormat.JSONL, OutputFormat.CSV])

@@ -18,6 +18,8 @@ _MAX_INTEGER = 20
 """Characters of an integer of 64 bits with its sign."""
 _MAX_FLOAT = 40
 """Characters of a float."""
+_ENVELOPE = 31
+"""Bytes in front of a message of MCAP."""
 _EXACT = 1 << 53
 """Whole numbers up to here are floats without loss."""
 _LONG = 1 << 63
@@ -268,6 +270,38 @@ def _switch(
 
 def _count(count: Count) -> str:
     return count.value if isinstance(count, Place) else str(count)
+
+
+def unless(place: Place, special: Iterable[int], body: Iterable[Step]) -> Step:
+    """Take steps unless a number is one of these."""
+    equal = " || ".join(f"{place.value} == {_constant(it, place)}" for it in sorted(special))
+    return Step([*_either(f"!({equal})", block(body))])
+
+
+def finite(place: Place, scaled: tuple[Fraction, Fraction] | None, body: Iterable[Step]) -> Step:
+    """Take steps where a float, or what it is by scale and offset, is a finite number."""
+    value = place.value if scaled is None else _scaled_float(place, *scaled)
+    return Step([*_either(f"{value} - {value} == 0.0", block(body))])
+
+
+def without_comma() -> Step:
+    """Take back the `, ` behind the last member."""
+    return Step(["if (out[-1] == ' ') {", "    out -= 2;", "}"], 0)
+
+
+def enveloped(channel: int, body: Iterable[Step]) -> Step:
+    """Print a record of MCAP that holds a message of that channel."""
+    return Step(
+        [
+            f"NEED({_ENVELOPE});",
+            "{",
+            "    uint8_t *const envelope = out;",
+            f"    out += {_ENVELOPE};",
+            *indented(block(body)),
+            f"    put_envelope(envelope, out, {channel}U, rows);",
+            "}",
+        ]
+    )
 
 
 # --- numbers --------------------------------------------------------------------------------------

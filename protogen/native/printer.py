@@ -16,10 +16,12 @@ from protogen.native.print_steps import Steps, block, indented
 
 _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
+_LEAST = 4
+"""Bytes that every row has at least."""
 _PARAMETERS = "const struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end"
 
 
-class PrintedRows(msgspec.Struct, frozen=True):
+class PrintedRows(msgspec.Struct):
     """Rows to be printed."""
 
     table: int
@@ -34,6 +36,8 @@ class PrintedRows(msgspec.Struct, frozen=True):
     """Byte for each row: 1 if its time is known."""
     payloads: bytes = b""
     """Bytes that rows of unknown frames refer to."""
+    logged: Any = None
+    """Time of each row as a message of MCAP has it: `uint64`."""
 
 
 class _Job(ctypes.Structure):
@@ -42,6 +46,8 @@ class _Job(ctypes.Structure):
         ("base", ctypes.c_uint64),
         ("repr", ctypes.c_void_p),
         ("release", ctypes.c_void_p),
+        ("starts", ctypes.c_void_p),
+        ("started", ctypes.c_uint64),
     )
 
 
@@ -55,6 +61,7 @@ class _Rows(ctypes.Structure):
         ("differs", ctypes.c_void_p),
         ("times", ctypes.c_void_p),
         ("timed", ctypes.c_void_p),
+        ("logged", ctypes.c_void_p),
         ("payloads", ctypes.c_void_p),
     )
 
@@ -108,25 +115,36 @@ class Printer:
         self._print.argtypes = (pointer, pointer, size, pointer, size)
         self._repr = _address("PyOS_double_to_string")
         self._release = _address("PyMem_Free")
-        self._room = numpy().empty(_ROOM, "u1")
+        self._make_room(_ROOM)
+
+    def _make_room(self, size: int) -> None:
+        self._room = numpy().empty(size, "u1")
+        self._starts = numpy().empty((size // _LEAST, 3), "u8")
 
     def texts(self, tables: Sequence[PrintedRows], line: bytes, base: int = 0) -> Iterator[bytes]:
         """The rows of all tables by their offsets, in pieces of text.
 
         `line` has the bytes of the capture from offset `base` on.
         """
+        return (text for text, _ in self.pieces(tables, line, base))
+
+    def pieces(
+        self, tables: Sequence[PrintedRows], line: bytes, base: int = 0
+    ) -> Iterator[tuple[bytes, Any]]:
+        """The same, each with an array: of each row its logged time, its place there, its table."""
         whole = _bytes(line)
         job = _Job(whole.ctypes.data, base, self._repr, self._release)
         payloads = [_bytes(table.payloads) for table in tables]
         pairs = zip(tables, payloads, strict=True)
         lent = (_Rows * len(tables))(*(_lent(table, held) for table, held in pairs))
         while any(table.next < table.count for table in lent):
-            room = self._room
+            room, starts = self._room, self._starts
+            job.starts, job.started = starts.ctypes.data, 0
             count = self._print(ctypes.byref(job), lent, len(lent), room.ctypes.data, len(room))
             if count:
-                yield room[:count].tobytes()
+                yield room[:count].tobytes(), starts[: job.started]
             else:  # Not even one row has room.
-                self._room = numpy().empty(2 * len(room), "u1")
+                self._make_room(2 * len(room))
 
 
 def _bytes(data: bytes) -> Any:
@@ -135,7 +153,7 @@ def _bytes(data: bytes) -> Any:
 
 def _lent(table: PrintedRows, payloads: Any) -> _Rows:
     rows = table.rows
-    beside = (table.differs, table.times, table.timed, payloads)
+    beside = (table.differs, table.times, table.timed, table.logged, payloads)
     places = (None if item is None else item.ctypes.data for item in beside)
     return _Rows(rows.ctypes.data, rows.strides[0], len(rows), 0, table.table, *places)
 

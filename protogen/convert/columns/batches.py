@@ -20,6 +20,17 @@ from protogen.runtime.framing.sender import SenderSpec
 _ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
 
 
+class Messages(msgspec.Struct, frozen=True):
+    """Message records of MCAP one behind the other, and where they are."""
+
+    data: bytes
+    places: Mapping[int, bytes]
+    """For each channel the pairs of time and place in `data`, as an index has them."""
+    least: int
+    """The least time of all messages."""
+    greatest: int
+
+
 class Tally(msgspec.Struct):
     """Counts of what was in a capture, for people."""
 
@@ -55,6 +66,9 @@ class Batch(Protocol):
 
     def csv(self) -> Iterable[tuple[Table, Iterable[bytes]]]:
         """The rows of each table that has some, as lines of CSV."""
+
+    def messages(self) -> Iterable[Messages] | None:
+        """The rows as messages of MCAP, in the order of the capture; None: they are not printed."""
 
 
 class BatchDecoder(Protocol):
@@ -160,6 +174,9 @@ class EventBatch(msgspec.Struct, frozen=True):
         """The rows of each table that has some, as lines of CSV."""
         for rows in self.rows():
             yield rows.table, [csv_of(rows)]
+
+    def messages(self) -> None:
+        """Nothing: what writes MCAP makes messages of the rows."""
 
     def _line(self, event: Any, when: int | None) -> str:
         line = event.as_json()

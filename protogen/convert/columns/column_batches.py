@@ -13,7 +13,7 @@ from protogen.capture.engines import Engine
 from protogen.capture.schema import CaptureSchema, InvalidReason, TableSchema
 from protogen.capture.tables import Tables as Filled
 from protogen.convert.columns.arrays import Array, Codes, Nothing, Numbers, Spans
-from protogen.convert.columns.batches import Tally
+from protogen.convert.columns.batches import Messages, Tally
 from protogen.convert.columns.composite_arrays import Same, Scattered
 from protogen.convert.columns.nested_columns import nested
 from protogen.convert.columns.physical_values import NameFinder, physical
@@ -31,6 +31,9 @@ class BatchPrinter(Protocol):
 
     def table_lines(self, batch: ColumnBatch) -> Iterable[tuple[Table, Iterable[bytes]]]:
         """The rows of each table that has some."""
+
+    def messages(self, batch: ColumnBatch) -> Iterable[Messages]:
+        """The rows of all tables, in the order of the capture, as messages of MCAP."""
 
 
 Reader = Callable[[Any], Values]
@@ -171,6 +174,10 @@ class ColumnBatch(msgspec.Struct):
         """The rows of each table that has some, as lines of CSV."""
         assert self.printer is not None, "decoded for a format that has no lines"
         return self.printer.table_lines(self)
+
+    def messages(self) -> Iterable[Messages] | None:
+        """The rows as messages of MCAP; None where nothing prints them."""
+        return None if self.printer is None else self.printer.messages(self)
 
     def _frame(self, readers: Sequence[Reader], rows: Any) -> list[Values]:
         offset, size, *parts = (reader(rows) for reader in readers)

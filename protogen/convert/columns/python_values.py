@@ -30,3 +30,22 @@ def json_of_each(values: Sequence[Any], default: Callable[[Any], Any]) -> list[s
     if len(texts) == len(values):
         return texts
     return [json.dumps(value, default=default) for value in values]
+
+
+def present_json(value: Any) -> str:
+    """Strict JSON of a value, without members that are missing; bytes are hexadecimal digits."""
+    return json.dumps(_present(value), default=lambda it: bytes(it).hex())
+
+
+def _present(value: Any) -> Any:
+    """The value without members that are missing; JSON has no infinities and not-a-number."""
+    match value:
+        case float() if value - value != 0:
+            return None
+        case list():
+            return [_present(item) for item in value]
+        case dict():
+            members = {name: _present(item) for name, item in value.items()}
+            return {name: item for name, item in members.items() if item is not None}
+        case _:
+            return value

@@ -195,6 +195,19 @@ class Tables(msgspec.Struct, frozen=True):
         """Every table, those of messages first."""
         return (*self.messages.values(), self.unknown, self.invalid)
 
+    @property
+    def channels(self) -> Mapping[str, int]:
+        """The number of each table's channel in MCAP, by the table's name, in their order."""
+        return {table.name: number for number, table in enumerate(self.all_tables, start=1)}
+
+    @property
+    def byte_time(self) -> Fraction:
+        """Nanoseconds that a byte takes on the line; a microsecond where the rate is not known."""
+        link = self.protocol.link
+        if link.baud is None:
+            return Fraction(1000)
+        return Fraction(link.bits_per_byte * 10**9, link.baud)
+
 
 def tables_of(protocol: Protocol, sender: Sender) -> Tables:
     """The tables of what a sender sends."""

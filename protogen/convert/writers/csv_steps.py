@@ -61,7 +61,7 @@ def _row(table: tables.Table, held: TableSchema) -> Steps:
             found.append(_event_cell(column, places))
         else:
             fields = table.message.fields
-            found += _Cell(column).reached(column.path, fields, held.columns, Spot.row())
+            found += Cell(column).reached(column.path, fields, held.columns, Spot.row())
         found.append(literal(","))
     found[-1] = literal("\n")
     return found
@@ -87,33 +87,41 @@ def _event_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
             return hex_of(Source.LINE, places["offset"], places["size"])
 
 
-class _CellValues(ValueSteps):
+class CellValues(ValueSteps):
     """Values inside of lists, as `json.dumps` has what `plain_fields` gives."""
 
     others = IN_JSON
     spelling = Spelling.JSON_ASCII
 
     def name(self, name: str) -> str:
+        """A name as JSON."""
         return json.dumps(name)
 
     def constant(self, type: Type, value: Any) -> str:
+        """A constant as JSON."""
         return json.dumps(value, default=bytes.hex)
 
     def case(self, name: str, body: Iterator[Step]) -> Iterator[Step]:
+        """The value of a switch: that of its case, or with an empty name its bytes."""
         yield literal(f"{{{json.dumps(name)}: ")
         yield from body
         yield literal("}")
 
     def nothing(self) -> str:
+        """The value of a case without fields."""
         return "{}"
 
 
-class _Cell:
-    """Prints the cell of a column: it may lie inside of structs, and of cases that are chosen."""
+class Cell:
+    """Prints the cell of a column: it may lie inside of structs, and of cases that are chosen.
+
+    Subclasses print what is found there in other words.
+    """
+
+    values = CellValues()
 
     def __init__(self, column: tables.Column) -> None:
-        self._column = column
-        self._values = _CellValues()
+        self.column = column
 
     def reached(
         self, path: Path, fields: Sequence[Field], columns: Sequence[Column], at: Spot
@@ -128,7 +136,7 @@ class _Cell:
     ) -> Iterator[Step]:
         """The cell of what the rest of a path leads to."""
         if not path:
-            return self._value(item, type, column, at)
+            return self.value(item, type, column, at)
         if isinstance(type, Struct):
             return self.reached(path, type.fields, members_of(column), at)
         assert isinstance(type, Switch)
@@ -139,38 +147,49 @@ class _Cell:
             else ()
             for case in type.cases
         }
-        other = [] if rest is None or path[0] else [rest_digits(rest, at)]
+        other = () if rest is None or path[0] else self.rest(rest, at)
         return chosen(at.scope[type.selector], bodies, other)
 
-    def _value(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
+    def rest(self, rest: Column, at: Spot) -> Iterator[Step]:
+        """The bytes of a value that no case stands for."""
+        yield rest_digits(rest, at)
+
+    def value(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
+        """The cell of a value that was reached."""
         if column is None and item.const is not None:
-            value, derived = constant_of(item, type), self._column.derived
+            value, derived = constant_of(item, type), self.column.derived
             shown = value if derived is None else derived.of(value)
-            yield literal(cell_text(self._column.type, shown))
+            yield literal(cell_text(self.column.type, shown))
         elif column is None or isinstance(type, Array):
-            yield quoted(self._list(item, type, column, at))
+            yield quoted(self.list_of(item, type, column, at))
         elif isinstance(type, Text):
             yield quoted([text_of(type, column, column.dimensions[0], at, Spelling.PLAIN)])
         elif isinstance(type, Octets):
             yield hex_digits(at.place(), count_of(type.extent, column.dimensions, at))
         else:
-            yield self._number(at.place(column), "", IN_CELLS)
+            yield self.number(at.place(column), "", IN_CELLS)
 
-    def _list(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
+    def list_of(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
+        """A list as JSON, of raw or of derived values."""
         left = dimensions_of(column)
-        if column is None or self._column.derived is None:
-            return self._values.value(item, type, column, left, at)
+        if column is None or self.column.derived is None:
+            return self.values.value(item, type, column, left, at)
         assert isinstance(type, Array)
-        return self._values.array(
+        return self.values.array(
             type,
             column,
             left,
             at,
-            lambda spot: iter([self._number(spot.place(column), "null", IN_JSON)]),
+            lambda spot: iter([self.element(spot.place(column))]),
         )
 
-    def _number(self, place: Place, missing: str, others: Others) -> Step:
-        match self._column.derived:
+    def element(self, place: Place) -> Step:
+        """An element of a list of derived values."""
+        return self.number(place, "null", IN_JSON)
+
+    def number(self, place: Place, missing: str, others: Others) -> Step:
+        """A number, or what is derived of it; `missing` where that has no value."""
+        match self.column.derived:
             case tables.Physical(scale=scale, offset=offset, special=special):
                 return physical(place, scale, offset, special, missing, others)
             case tables.Naming(names=names):

@@ -13,11 +13,12 @@ one without a value is null, and the list's `items` are `nullable`, in the words
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import struct
+from collections.abc import Iterator
 from typing import Any
 
-from protogen.convert.columns.batches import Batch
-from protogen.convert.columns.python_values import as_list
+from protogen.convert.columns.batches import Batch, Messages
+from protogen.convert.columns.python_values import as_list, present_json
 from protogen.convert.columns.rows import Rows
 from protogen.convert.columns.tables import (
     Column,
@@ -30,113 +31,78 @@ from protogen.convert.columns.tables import (
     Tables,
 )
 from protogen.convert.errors import needed
+from protogen.convert.writers.mcap_file import McapFile
 from protogen.convert.writers.pending_files import Pending
-from protogen.model.protocol import Link
 
-_MICROSECOND = 1000
+_MESSAGE = 5
+"""Number of the records that hold messages."""
+_HEAD = struct.Struct("<BQHIQQ")
+"""What stands in front of a message."""
+_PLACE = struct.Struct("<QQ")
+"""A message in an index: its time, and where it begins in its chunk."""
 
 
 class McapWriter:
     """Writes one file."""
 
     def __init__(self, name: str, pending: Pending, tables: Tables) -> None:
-        writers = needed("mcap.writer", "writing MCAP")
+        needed("mcap", "writing MCAP")
         self._tables = tables
         self._file = pending.path(f"{name}.mcap").open("wb")
-        self._writer: Any = writers.Writer(self._file)
-        library = f"protogen {tables.invalid.facts['protogen.version']}"
-        self._writer.start(profile="", library=library)
-        facts = {**tables.invalid.facts, "protogen.capture": name}
-        self._writer.add_metadata("protogen", facts)
-        self._channels: dict[str, int] = {}
-        self._time_of = _line_time(tables.protocol.link)
+        facts = tables.invalid.facts
+        self._mcap = McapFile(self._file, f"protogen {facts['protogen.version']}")
+        self._mcap.add_metadata("protogen", {**facts, "protogen.capture": name})
 
     def write(self, batch: Batch) -> None:
         """Write the rows of a batch in the order of the capture."""
-        rows = [row for item in batch.rows() for row in self._messages(item)]
-        rows.sort(key=lambda row: row[0])
-        for offset, when, channel, data in rows:
-            self._writer.add_message(channel, when, data, when, offset & 0xFFFFFFFF)
+        for messages in batch.messages() or self._made(batch):
+            for number in sorted(messages.places.keys() - self._mcap.channels):
+                self._open(number, self._tables.all_tables[number - 1])
+            self._mcap.add(messages)
 
     def close(self) -> None:
         """Write what is left, and the index."""
         with self._file:
-            self._writer.finish()
+            self._mcap.close()
 
-    def _messages(self, rows: Rows) -> list[tuple[int, int, int, bytes]]:
-        table = rows.table
-        channel = self._channels.get(table.name) or self._open(table)
-        names = [column.name for column in table.all_columns]
+    def _made(self, batch: Batch) -> Iterator[Messages]:
+        """The rows made by Python, where no C prints them."""
+        records = sorted(record for rows in batch.rows() for record in self._records(rows))
+        places: dict[int, list[bytes]] = {}
+        place = 0
+        for _, time, channel, data in records:
+            places.setdefault(channel, []).append(_PLACE.pack(time, place))
+            place += len(data)
+        if records:
+            times = [time for _, time, _, _ in records]
+            yield Messages(
+                b"".join(data for *_, data in records),
+                {channel: b"".join(found) for channel, found in places.items()},
+                min(times),
+                max(times),
+            )
+
+    def _records(self, rows: Rows) -> Iterator[tuple[int, int, int, bytes]]:
+        channel, byte_time = self._tables.channels[rows.table.name], self._tables.byte_time
+        names = [column.name for column in rows.table.all_columns]
         columns = [as_list(values) for values in rows.columns]
-        known = not any(_may_miss(column.type) for column in table.all_columns)
-        messages = []
         for row in zip(*columns, strict=True):
             offset, size, when = row[:3]
-            data = _message(names, row, known=known)
+            data = present_json(dict(zip(names, row, strict=True))).encode()
             # The log knows no time before 1970; `t_ns` says what a recording has.
-            time = self._time_of(offset + size) if when is None else max(0, when)
-            messages.append((offset, time, channel, data))
-        return messages
+            time = int((offset + size) * byte_time) if when is None else max(0, when)
+            head = (_MESSAGE, 22 + len(data), channel, offset & 0xFFFFFFFF, time, time)
+            yield offset, time, channel, _HEAD.pack(*head) + data
 
-    def _open(self, table: Table) -> int:
+    def _open(self, number: int, table: Table) -> None:
         facts = table.facts
         topic = f"/{facts['protogen.protocol']}/{facts['protogen.sender']}/{table.name}"
         schema = json.dumps(json_schema(table)).encode()
         name = f"{facts['protogen.protocol']}.{table.name}"
-        schema_id = self._writer.register_schema(name, "jsonschema", schema)
-        channel: int = self._writer.register_channel(topic, "json", schema_id, dict(facts))
-        self._channels[table.name] = channel
-        return channel
-
-
-def _line_time(link: Link) -> Callable[[int], int]:
-    """Nanoseconds that so many bytes take on the line."""
-    if link.baud is None:
-        return lambda size: size * _MICROSECOND
-    bits, baud = link.bits_per_byte, link.baud
-    return lambda size: size * bits * 10**9 // baud
+        self._mcap.add_channel(number, topic, name, schema, facts)
 
 
 # --- JSON -----------------------------------------------------------------------------------------
-
-
-def _hex(value: Any) -> str:
-    return bytes(value).hex()
-
-
-def _message(names: list[str], row: tuple[Any, ...], *, known: bool) -> bytes:
-    """A row without the columns that have no value. `known`: what lists hold is all there."""
-    values = {name: value for name, value in zip(names, row, strict=True) if value is not None}
-    if known:
-        data = json.dumps(values, default=_hex).encode()
-        if b"NaN" not in data and b"Infinity" not in data:
-            return data
-    return json.dumps(_present(values), default=_hex).encode()
-
-
-def _present(value: Any) -> Any:
-    """The value without members that are missing; JSON has no infinities and not-a-number."""
-    match value:
-        case float() if value - value != 0:
-            return None
-        case list():
-            return [_present(item) for item in value]
-        case dict():
-            members = {name: _present(item) for name, item in value.items()}
-            return {name: item for name, item in members.items() if item is not None}
-        case _:
-            return value
-
-
-def _may_miss(type: ColumnType) -> bool:
-    """True if members of what a list holds may be missing."""
-    match type:
-        case Record(members=members, gaps=gaps):
-            return gaps or any(_may_miss(member) for _, member in members)
-        case Listed(element=element):
-            return _may_miss(element)
-        case _:
-            return False
 
 
 def json_schema(table: Table) -> dict[str, Any]:

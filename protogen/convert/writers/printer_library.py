@@ -9,6 +9,7 @@ from protogen.convert.columns.tables import Tables
 from protogen.convert.formats import OutputFormat
 from protogen.convert.writers.csv_steps import cell_steps
 from protogen.convert.writers.jsonl_steps import line_steps
+from protogen.convert.writers.mcap_steps import message_steps
 from protogen.native.build import Built
 from protogen.native.printer import build_printer
 
@@ -16,7 +17,7 @@ from protogen.native.printer import build_printer
 def built_printer(
     tables: Tables, format: OutputFormat, schema: CaptureSchema | None = None
 ) -> Built:
-    """The library that prints a sender's rows as lines of JSON or CSV.
+    """The library that prints a sender's rows as lines of JSON or CSV, or messages of MCAP.
 
     Raises NativeError, and UnprintableError where numbers of a scale are too great for C.
     """
@@ -24,4 +25,6 @@ def built_printer(
     name = f"{tables.protocol.name}_{tables.sender.name}_{format.value}"
     if format is OutputFormat.CSV:
         return build_printer(name, cell_steps(schema, tables), quoted_characters())
+    if format is OutputFormat.MCAP:
+        return build_printer(name, message_steps(schema, tables))
     return build_printer(name, line_steps(schema))

@@ -9,6 +9,7 @@ import numpy as np
 
 from protogen.capture.native import library_of
 from protogen.convert.columns.arrays import Array, Nothing
+from protogen.convert.columns.batches import Messages
 from protogen.convert.columns.column_batches import ColumnBatch, Readings
 from protogen.convert.columns.tables import Table
 from protogen.convert.formats import OutputFormat
@@ -26,6 +27,8 @@ class RowPrinter:
         self.readings = readings
         self._printer = Printer(built_printer(tables, format, readings.schema))
         self._numbers = {name: number for number, name in enumerate(readings.messages)}
+        others = (tables.invalid.name, tables.unknown.name)
+        self._channels = [tables.channels[name] for name in (*readings.messages, *others)]
         self._library: Library | None = None
         if format is OutputFormat.JSONL and not tables.sender.plan.has_one_spelling:
             self._library = library_of(tables.protocol, tables.sender)
@@ -39,6 +42,37 @@ class RowPrinter:
         """The rows of each table that has some."""
         for table, rows in self._tables(batch):
             yield table, self._texts(batch, [rows])
+
+    def messages(self, batch: ColumnBatch) -> Iterator[Messages]:
+        """The rows of all tables, in the order of the capture, as messages of MCAP."""
+        each = [rows for _, rows in self._tables(batch)]
+        for rows in each:
+            rows.logged = self._log_times(rows)
+        for data, starts in self._printer.pieces(each, batch.data, batch.filled.offset):
+            times, numbers = starts[:, 0], starts[:, 2]
+            places = {
+                self._channels[number]: starts[numbers == number, :2].astype("<u8").tobytes()
+                for number in np.unique(numbers).tolist()
+            }
+            yield Messages(data, places, int(times.min()), int(times.max()))
+
+    def _log_times(self, printed: PrintedRows) -> Array:
+        """When each row was logged: at its time or, without one, when the line had come so far."""
+        rows, byte = printed.rows, self.readings.tables.byte_time
+        ends = rows["offset"] + rows["size"]
+        found: Array
+        if byte.numerator * byte.denominator < 1 << 64:
+            whole, rest = np.divmod(ends, np.uint64(byte.denominator))
+            times, over = np.uint64(byte.numerator), np.uint64(byte.denominator)
+            found = whole * times + rest * times // over
+        else:
+            found = np.array([int(end * byte) for end in ends.tolist()], "u8")
+        if printed.times is None:
+            return found
+        # The log knows no time before 1970; `t_ns` says what a recording has.
+        given = np.maximum(printed.times, 0).astype("u8")
+        logged: Array = np.where(printed.timed.view("?"), given, found)
+        return logged
 
     def _texts(self, batch: ColumnBatch, each: list[PrintedRows]) -> Iterator[bytes]:
         return self._printer.texts(each, batch.data, batch.filled.offset)

@@ -19,12 +19,21 @@
 #error "doubles are computed with another precision"
 #endif
 
+/* A row that was printed. */
+struct start {
+    uint64_t time; /* That of its message of MCAP. */
+    uint64_t place;
+    uint64_t table;
+};
+
 /* What is printed at once. All members have eight bytes, or are pointers. */
 struct job {
     const uint8_t *line; /* The bytes of the capture from offset `base` on. */
     uint64_t base;
     char *(*repr)(double value, char format, int precision, int flags, int *type);
     void (*release)(void *memory);
+    struct start *starts;
+    uint64_t started;
 };
 
 /* The rows of a table. Every row begins with the offset of its event. */
@@ -37,6 +46,7 @@ struct rows {
     const uint8_t *differs; /* NULL: no row does. */
     const int64_t *times;   /* NULL: none is known. */
     const uint8_t *timed;
+    const uint64_t *logged; /* The times that messages of MCAP have. */
     const uint8_t *payloads;
 };
 
@@ -346,6 +356,24 @@ static uint8_t *put_quotes(uint8_t *mark, uint8_t *out, const uint8_t *end) {
     return out + more;
 }
 
+/* --- MCAP ---------------------------------------------------------------------------------------- */
+
+static uint8_t *put_bytes(uint8_t *out, uint64_t value, int count) {
+    for (; count > 0; count--, value >>= 8) {
+        *out++ = (uint8_t)value;
+    }
+    return out;
+}
+
+/* Put what stands in front of a message, which ends at `out`. */
+static inline void put_envelope(uint8_t *at, const uint8_t *out, uint64_t channel, const struct rows *rows) {
+    const uint64_t offset = u8_at(rows->rows + (size_t)rows->next * rows->stride);
+    *at = 5;
+    at = put_bytes(at + 1, (uint64_t)(out - at) - 9U, 8);
+    at = put_bytes(put_bytes(at, channel, 2), offset, 4);
+    (void)put_bytes(put_bytes(at, rows->logged[rows->next], 8), rows->logged[rows->next], 8);
+}
+
 /* --- rows ---------------------------------------------------------------------------------------- */
 
 /* Print the next row. */
@@ -356,7 +384,7 @@ static uint64_t offset_of(const struct rows *rows) {
 }
 
 /* Print rows of all tables by their offsets, as many as there is room for. Returns the bytes. */
-PROTOGEN_EXPORT size_t protogen_print(const struct job *job, struct rows *tables, size_t count, uint8_t *room,
+PROTOGEN_EXPORT size_t protogen_print(struct job *job, struct rows *tables, size_t count, uint8_t *room,
                                       size_t size) {
     const uint8_t *const end = size < SLACK ? room : room + (size - SLACK);
     uint8_t *out = room;
@@ -385,6 +413,9 @@ PROTOGEN_EXPORT size_t protogen_print(const struct job *job, struct rows *tables
             if (behind == NULL) {
                 return (size_t)(out - room);
             }
+            job->starts[job->started].time = first->logged == NULL ? 0U : first->logged[first->next];
+            job->starts[job->started].place = (uint64_t)(out - room);
+            job->starts[job->started++].table = first->table;
             out = behind;
             first->next++;
         } while (first->next < first->count && offset_of(first) < limit);
