@@ -55,6 +55,24 @@ def test_a_judge_says_what_a_candidate_says(path: Path, name: str) -> None:
     assert told > tried / 5
 
 
+def test_a_start_of_two_flags_is_refused_at_its_first_byte(tmp_path: Path) -> None:
+    path = tmp_path / "flags.yaml"
+    path.write_text(
+        "protocol: flags\nendpoints: {host: Host}\ntransparency: {preset: hdlc, covers: id..x}\n"
+        "frame: {start: {literal: {hex: 7E 7E}}, id: {type: uint8, id: true}, payload: {}, "
+        "x: {type: uint8, algorithm: sum-8, covers: id..payload}}\n"
+        "messages: {m: {id: 1, from: host, fields: {a: uint8, b: uint8}}}\n",
+        encoding="utf-8",
+    )
+    # A frame without its last two bytes, in front of a whole one.
+    data = bytes.fromhex("7E 7E 01 05  7E 7E 01 05 06 0C")
+    for engine in ("fast", "construct"):
+        decoder = module_at(path).Decoder("host", engine=engine)
+        lost, found = [*decoder.feed(data), *decoder.flush()]
+        assert (lost.reason, lost.offset, lost.size) == ("stuffing", 0, 4)
+        assert (found.offset, found.size) == (4, 6)
+
+
 def test_the_documents_have_judges() -> None:
     names = {(path.stem, name) for path, name in JUDGED}
     assert {("rn1", "brain"), ("rflex", "flex"), ("matty", "esp"), ("matty", "pc")} <= names

@@ -49,7 +49,20 @@ def _is_stuffed_plainly(sender: SenderSpec[Any, Any]) -> bool:
         return True
     before = sum(part.size for part in layout.parts[: layout.stuffed[0]])
     is_whole = before == len(layout.start) > 0 and layout.stuffed[-1] == len(layout.parts) - 1
-    return is_whole and isinstance(stuffing, Substitution | Escape) and not stuffing.lenient
+    if not is_whole or not isinstance(stuffing, Substitution | Escape) or stuffing.lenient:
+        return False
+    return _is_seen_whole(stuffing, layout.start)
+
+
+def _is_seen_whole(stuffing: Substitution | Escape, start: bytes) -> bool:
+    """True if no byte of a start but its last is refused in a region, before it is seen whole."""
+    unstuffer = stuffing.decoder()
+    try:
+        for byte in start[:-1]:
+            unstuffer.push(byte)
+    except TransparencyError:
+        return False
+    return True
 
 
 class Judge:
