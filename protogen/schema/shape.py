@@ -68,8 +68,13 @@ def _without(data: Any, details: Sequence[ErrorDetails]) -> Shape | None:
         syntax = ProtocolSyntax.model_validate(data)
     except ValidationError:
         return None
-    spoilt = any(detail["loc"][2:3] != ("examples",) for detail in details)
+    spoilt = not all(map(_is_in_example, details))
     return Shape(syntax, recovery.consequences(syntax), frozenset(recovery.lost), spoilt)
+
+
+def _is_in_example(detail: ErrorDetails) -> bool:
+    loc = detail["loc"]
+    return loc[0] == "messages" and loc[2:3] == ("examples",)
 
 
 def _report(detail: ErrorDetails, data: Any, find: Find, problems: Problems) -> None:
