@@ -73,6 +73,25 @@ def test_a_start_of_two_flags_is_refused_at_its_first_byte(tmp_path: Path) -> No
         assert (found.offset, found.size) == (4, 6)
 
 
+def test_the_first_byte_of_the_next_start_may_be_content(tmp_path: Path) -> None:
+    path = tmp_path / "halves.yaml"
+    path.write_text(
+        "protocol: halves\nendpoints: {host: Host}\n"
+        "transparency: {covers: id..x, escape: {byte: 0x7D, of: [0x55, 0x7D], transform: invert}}\n"
+        "frame: {start: {literal: {hex: 41 55}}, id: {type: uint8, id: true}, payload: {}, "
+        "x: {type: uint8, algorithm: sum-8, covers: id..payload}}\n"
+        "messages: {m: {id: 1, from: host, fields: {a: uint8, b: uint8}}}\n",
+        encoding="utf-8",
+    )
+    # A frame without its sum, in whose place the 41 of the next frame stands, and that frame.
+    data = bytes.fromhex("41 55 01 05 06  41 55 01 05 06 0C")
+    for engine in ("fast", "construct"):
+        decoder = module_at(path).Decoder("host", engine=engine)
+        lost, found = [*decoder.feed(data), *decoder.flush()]
+        assert (lost.reason, lost.offset, lost.size) == ("checksum", 0, 5)
+        assert (found.offset, found.size) == (5, 6)
+
+
 def test_the_documents_have_judges() -> None:
     names = {(path.stem, name) for path, name in JUDGED}
     assert {("rn1", "brain"), ("rflex", "flex"), ("matty", "esp"), ("matty", "pc")} <= names

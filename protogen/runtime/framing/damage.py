@@ -46,23 +46,21 @@ def _is_stuffed_plainly(sender: SenderSpec[Any, Any]) -> bool:
     """True if nothing is stuffed, or all between start and end, in one way only."""
     layout, stuffing = sender.layout, sender.frame.transparency
     if stuffing is None or not layout.stuffed:
-        return True
+        return len(layout.start) <= 1
     before = sum(part.size for part in layout.parts[: layout.stuffed[0]])
     is_whole = before == len(layout.start) > 0 and layout.stuffed[-1] == len(layout.parts) - 1
     if not is_whole or not isinstance(stuffing, Substitution | Escape) or stuffing.lenient:
         return False
-    return _is_seen_whole(stuffing, layout.start)
+    return _is_held(stuffing, layout.start[:-1])
 
 
-def _is_seen_whole(stuffing: Substitution | Escape, start: bytes) -> bool:
-    """True if no byte of a start but its last is refused in a region, before it is seen whole."""
+def _is_held(stuffing: Substitution | Escape, begun: bytes) -> bool:
+    """True if a region neither refuses the beginning of a start, nor takes it for content."""
     unstuffer = stuffing.decoder()
     try:
-        for byte in start[:-1]:
-            unstuffer.push(byte)
+        return not any(unstuffer.push(byte) for byte in begun)
     except TransparencyError:
         return False
-    return True
 
 
 class Judge:
