@@ -58,6 +58,10 @@ def examples(count: int) -> settings:
     )
 
 
+MEANT_OTHERWISE = {"PG124", "PG126"}
+"""Codes of warnings about valid schemas: leading zeros, and short names of checksums."""
+
+
 @pytest.fixture(scope="module")
 def compile_text(tmp_path_factory: pytest.TempPathFactory) -> Compile:
     path = tmp_path_factory.mktemp("schemas") / "drawn.yaml"
@@ -71,7 +75,8 @@ def compile_text(tmp_path_factory: pytest.TempPathFactory) -> Compile:
 
 def valid(compile_text: Compile, schema: Schema) -> Protocol:
     compilation = compile_text(to_yaml(schema.data))
-    problems = [f"{item.code} {item.span}: {item.message}" for item in compilation.problems]
+    wrong = [item for item in compilation.problems if item.code not in MEANT_OTHERWISE]
+    problems = [f"{item.code} {item.span}: {item.message}" for item in wrong]
     assert not problems, "\n".join([*problems, to_yaml(schema.data)])
     assert compilation.protocol is not None
     return compilation.protocol
@@ -91,7 +96,7 @@ def test_model_depends_on_what_is_written_and_not_on_its_style(
     model = valid(compile_text, schema)
     assert valid(compile_text, schema) == model
     again = compile_text(styled)
-    assert not again.problems
+    assert {problem.code for problem in again.problems} <= MEANT_OTHERWISE
     assert again.protocol is not None
     assert again.protocol.spec_hash == model.spec_hash
     assert without_places(again.protocol) == without_places(model)

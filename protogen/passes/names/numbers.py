@@ -12,7 +12,8 @@ from protogen.schema.references import form_under
 from protogen.schema.syntax.forms import Form, keys_of
 from protogen.schema.syntax.protocol import SCHEMA
 
-_LEADING_ZERO = re.compile(r"[-+]?0[0-9]+")
+_LEADING_ZERO = re.compile(r"[-+]?0+(?!0*[0-7]$)[0-9]+")
+"""Not those of one digit below 8, which are the same number in octal."""
 _BYTES = ("hex", "text")
 """Keys of a byte string, whose digits are no number."""
 
