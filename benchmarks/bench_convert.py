@@ -2,7 +2,7 @@
 
     python benchmarks/bench_convert.py [--megabytes N] [--rounds N] [--folder DIR]
 
-Needs `cc`, NumPy and pyarrow. Writes benchmarks/convert.md.
+Needs `cc`, NumPy, pyarrow and mcap. Writes benchmarks/convert.md.
 """
 
 from __future__ import annotations
@@ -28,10 +28,16 @@ from protogen.convert.formats import OutputFormat  # noqa: E402
 from protogen.convert.runs.conversion import Job, convert, plan  # noqa: E402
 
 OUT = Path(__file__).with_name("convert.md")
-FORMATS = (OutputFormat.PARQUET, OutputFormat.ARROW, OutputFormat.JSONL, OutputFormat.CSV)
+FORMATS = (
+    OutputFormat.PARQUET,
+    OutputFormat.ARROW,
+    OutputFormat.JSONL,
+    OutputFormat.CSV,
+    OutputFormat.MCAP,
+)
 MEMORY = "/dev/shm"
 """A folder in memory, so that what the disk does meanwhile is not in the figures."""
-LEAST = {OutputFormat.PARQUET: 100, OutputFormat.JSONL: 20}
+LEAST = {OutputFormat.PARQUET: 100, OutputFormat.JSONL: 20, OutputFormat.MCAP: 50}
 """MB/s that the project wants."""
 DIFFERENT = 20_000
 """Frames that are repeated: so many that Snappy, which looks back 64 KB, does not see it."""
