@@ -92,6 +92,23 @@ def test_the_first_byte_of_the_next_start_may_be_content(tmp_path: Path) -> None
         assert (found.offset, found.size) == (5, 6)
 
 
+def test_a_start_of_two_bytes_above_seven_bits_is_refused_at_its_first_byte(tmp_path: Path) -> None:
+    path = tmp_path / "bits.yaml"
+    path.write_text(
+        "protocol: bits\nendpoints: {host: Host}\nbyte_bits: 7\n"
+        "frame: {start: {literal: {hex: FF FF}}, id: {type: uint7, id: true}, payload: {}}\n"
+        "messages: {m: {id: 1, from: host, fields: {a: uint7, b: uint7}}}\n",
+        encoding="utf-8",
+    )
+    # A frame without its last byte, in front of a whole one.
+    data = bytes.fromhex("FF FF 01 05  FF FF 01 05 06")
+    for engine in ("fast", "construct"):
+        decoder = module_at(path).Decoder("host", engine=engine)
+        lost, found = [*decoder.feed(data), *decoder.flush()]
+        assert (lost.reason, lost.offset, lost.size) == ("encoding", 0, 4)
+        assert (found.offset, found.size) == (4, 5)
+
+
 def test_the_documents_have_judges() -> None:
     names = {(path.stem, name) for path, name in JUDGED}
     assert {("rn1", "brain"), ("rflex", "flex"), ("matty", "esp"), ("matty", "pc")} <= names
