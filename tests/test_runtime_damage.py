@@ -55,58 +55,56 @@ def test_a_judge_says_what_a_candidate_says(path: Path, name: str) -> None:
     assert told > tried / 5
 
 
-def test_a_start_of_two_flags_is_refused_at_its_first_byte(tmp_path: Path) -> None:
-    path = tmp_path / "flags.yaml"
-    path.write_text(
-        "protocol: flags\nendpoints: {host: Host}\ntransparency: {preset: hdlc, covers: id..x}\n"
-        "frame: {start: {literal: {hex: 7E 7E}}, id: {type: uint8, id: true}, payload: {}, "
-        "x: {type: uint8, algorithm: sum-8, covers: id..payload}}\n"
-        "messages: {m: {id: 1, from: host, fields: {a: uint8, b: uint8}}}\n",
-        encoding="utf-8",
-    )
-    # A frame without its last two bytes, in front of a whole one.
-    data = bytes.fromhex("7E 7E 01 05  7E 7E 01 05 06 0C")
-    for engine in ("fast", "construct"):
-        decoder = module_at(path).Decoder("host", engine=engine)
-        lost, found = [*decoder.feed(data), *decoder.flush()]
-        assert (lost.reason, lost.offset, lost.size) == ("stuffing", 0, 4)
-        assert (found.offset, found.size) == (4, 6)
-
-
-def test_the_first_byte_of_the_next_start_may_be_content(tmp_path: Path) -> None:
-    path = tmp_path / "halves.yaml"
-    path.write_text(
-        "protocol: halves\nendpoints: {host: Host}\n"
+FRAME = (
+    "id: {type: uint8, id: true}, payload: {}, "
+    "x: {type: uint8, algorithm: sum-8, covers: id..payload}"
+)
+TWO_BYTES = {
+    # Flags are refused in a stuffed region. A frame without its last two bytes, and a whole one.
+    "flags": (
+        "transparency: {preset: hdlc, covers: id..x}\n"
+        f"frame: {{start: {{literal: {{hex: 7E 7E}}}}, {FRAME}}}\n",
+        "uint8",
+        ("7E 7E 01 05", "7E 7E 01 05 06 0C"),
+        ("stuffing", 4),
+    ),
+    # 41 may be content. A frame without its sum, in whose place the next frame's 41 stands.
+    "halves": (
         "transparency: {covers: id..x, escape: {byte: 0x7D, of: [0x55, 0x7D], transform: invert}}\n"
-        "frame: {start: {literal: {hex: 41 55}}, id: {type: uint8, id: true}, payload: {}, "
-        "x: {type: uint8, algorithm: sum-8, covers: id..payload}}\n"
-        "messages: {m: {id: 1, from: host, fields: {a: uint8, b: uint8}}}\n",
-        encoding="utf-8",
-    )
-    # A frame without its sum, in whose place the 41 of the next frame stands, and that frame.
-    data = bytes.fromhex("41 55 01 05 06  41 55 01 05 06 0C")
-    for engine in ("fast", "construct"):
-        decoder = module_at(path).Decoder("host", engine=engine)
-        lost, found = [*decoder.feed(data), *decoder.flush()]
-        assert (lost.reason, lost.offset, lost.size) == ("checksum", 0, 5)
-        assert (found.offset, found.size) == (5, 6)
+        f"frame: {{start: {{literal: {{hex: 41 55}}}}, {FRAME}}}\n",
+        "uint8",
+        ("41 55 01 05 06", "41 55 01 05 06 0C"),
+        ("checksum", 5),
+    ),
+    # FF is none of seven bits. A frame without its last byte, in front of a whole one.
+    "bits": (
+        "byte_bits: 7\n"
+        "frame: {start: {literal: {hex: FF FF}}, id: {type: uint7, id: true}, payload: {}}\n",
+        "uint7",
+        ("FF FF 01 05", "FF FF 01 05 06"),
+        ("encoding", 4),
+    ),
+}
 
 
-def test_a_start_of_two_bytes_above_seven_bits_is_refused_at_its_first_byte(tmp_path: Path) -> None:
-    path = tmp_path / "bits.yaml"
+@pytest.mark.parametrize("name", TWO_BYTES)
+def test_the_first_byte_of_a_start_of_two_may_end_what_is_in_front(
+    name: str, tmp_path: Path
+) -> None:
+    framing, type_, (damaged_frame, frame), (reason, size) = TWO_BYTES[name]
+    path = tmp_path / f"{name}.yaml"
     path.write_text(
-        "protocol: bits\nendpoints: {host: Host}\nbyte_bits: 7\n"
-        "frame: {start: {literal: {hex: FF FF}}, id: {type: uint7, id: true}, payload: {}}\n"
-        "messages: {m: {id: 1, from: host, fields: {a: uint7, b: uint7}}}\n",
+        f"protocol: {name}\nendpoints: {{host: Host}}\n{framing}"
+        f"messages: {{m: {{id: 1, from: host, fields: {{a: {type_}, b: {type_}}}}}}}\n",
         encoding="utf-8",
     )
-    # A frame without its last byte, in front of a whole one.
-    data = bytes.fromhex("FF FF 01 05  FF FF 01 05 06")
+    whole = bytes.fromhex(frame)
+    data = bytes.fromhex(damaged_frame) + whole
     for engine in ("fast", "construct"):
         decoder = module_at(path).Decoder("host", engine=engine)
         lost, found = [*decoder.feed(data), *decoder.flush()]
-        assert (lost.reason, lost.offset, lost.size) == ("encoding", 0, 4)
-        assert (found.offset, found.size) == (4, 5)
+        assert (lost.reason, lost.offset, lost.size) == (reason, 0, size)
+        assert (found.offset, found.size) == (size, len(whole))
 
 
 def test_the_documents_have_judges() -> None:

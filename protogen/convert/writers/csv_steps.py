@@ -58,7 +58,7 @@ def _row(table: tables.Table, held: TableSchema) -> Steps:
         found += [_frame_cell(column, places), literal(",")]
     for column in table.columns:
         if table.message is None:
-            found.append(_event_cell(column, places))
+            found.append(event_cell(column, places))
         else:
             fields = table.message.fields
             found += Cell(column).reached(column.path, fields, held.columns, Spot.row())
@@ -77,7 +77,8 @@ def _frame_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
             return number(places[column.path[0]], IN_CELLS)
 
 
-def _event_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
+def event_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
+    """The reason or the bytes of what is no message, without quotes."""
     match column.path:
         case ("reason",):
             return named(places["reason"], {it.value: it.word for it in InvalidReason})

@@ -6,13 +6,13 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from protogen.capture.schema import CaptureSchema, Column, InvalidReason, TableSchema
+from protogen.capture.schema import CaptureSchema, Column, TableSchema
 from protogen.convert.columns import tables
 from protogen.convert.columns.event_values import constant_of
 from protogen.convert.columns.held_columns import dimensions_of
 from protogen.convert.columns.python_values import present_json
 from protogen.convert.columns.tables import Tables
-from protogen.convert.writers.csv_steps import Cell, CellValues
+from protogen.convert.writers.csv_steps import Cell, CellValues, event_cell
 from protogen.convert.writers.jsonl_steps import places_of
 from protogen.convert.writers.value_steps import Spot, count_of, rest_digits, text_of
 from protogen.model.types import Array, Field, Float, Octets, Text, Type
@@ -22,14 +22,12 @@ from protogen.native.print_steps import (
     Condition,
     Others,
     Place,
-    Source,
     Spelling,
     Step,
     Steps,
     enveloped,
     finite,
     hex_digits,
-    hex_of,
     literal,
     named,
     number,
@@ -58,7 +56,7 @@ def _row(table: tables.Table, held: TableSchema) -> Iterator[Step]:
         yield from _frame_member(column, places)
     for column in table.columns:
         if table.message is None:
-            yield from _event_member(column, places)
+            yield from _member(column.name, _in_quotes(event_cell(column, places)))
         else:
             fields = table.message.fields
             yield from _Member(column).reached(column.path, fields, held.columns, Spot.row())
@@ -80,17 +78,6 @@ def _frame_member(column: tables.Column, places: Mapping[str, Place]) -> Iterato
             yield when(Condition.TIMED, _member(column.name, iter([TIME])))
         case _:
             yield from _member(column.name, iter([number(places[column.path[0]], IN_JSON)]))
-
-
-def _event_member(column: tables.Column, places: Mapping[str, Place]) -> Iterator[Step]:
-    match column.path:
-        case ("reason",):
-            step = named(places["reason"], {it.value: it.word for it in InvalidReason})
-        case ("payload",):
-            step = hex_of(Source.PAYLOADS, places["payload_offset"], places["payload_size"])
-        case _:
-            step = hex_of(Source.LINE, places["offset"], places["size"])
-    yield from _member(column.name, _in_quotes(step))
 
 
 def _in_quotes(step: Step) -> Iterator[Step]:

@@ -150,8 +150,7 @@ class Content:
     def _read_length(self, part: LengthPart) -> None:
         value = self.numbers[part.name]
         size = self._layout.counted_payload(part, value)
-        greatest = self._sender.frame.greatest_payload
-        if not part.least <= value <= part.greatest or size is None or size > greatest:
+        if size is None:
             raise Rejected("length", f"{part.name} is {value}")
         self._set_payload(size)
         self._compare()

@@ -135,8 +135,7 @@ class Judge:
             return None if group is None else group.fixed
         value = numbers[part.name]
         size = layout.counted_payload(part, value)
-        greatest = self._sender.frame.greatest_payload
-        if size is not None and size <= greatest and part.least <= value <= part.greatest:
+        if size is not None:
             return size if self._fits(size, numbers) else None
         end = next(place.stop for checked, place in self._checked if checked is part)
         return self._of_length(content[:end], f"{part.name} is {value}")

@@ -134,11 +134,11 @@ class Layout:
         return payload + self._counted_around[part.name, payload > 0]
 
     def counted_payload(self, part: LengthPart, value: int) -> int | None:
-        """The payload's size for a value of a length part; None if there is none."""
-        if value == self.counted(part, 0):
-            return 0
-        size = value - (self.counted(part, 1) - 1)
-        return size if size > 0 else None
+        """The payload's size for a value of a length part; None if a receiver takes none such."""
+        empty = value == self.counted(part, 0)
+        size = 0 if empty else value - (self.counted(part, 1) - 1)
+        is_taken = part.least <= value <= part.greatest and size <= self.spec.greatest_payload
+        return size if is_taken and (empty or size > 0) else None
 
 
 def _counted_around(parts: Iterable[Part], length: LengthPart, has_payload: bool) -> int:
