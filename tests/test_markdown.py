@@ -167,9 +167,7 @@ def test_decisions_are_told_and_linked():
     assert "- **Document:** It asks. (lines 3-4)\n- **Choice:** No.\n" in text
     link = "decision [newline](#decision-newline)"
     assert f"See {link}, {link} and decision other." in text
-    assert "| 1 | 0 | 1 | 0 | 0 | 0 | 1 |" in page(
-        tiny_protocol(decisions=(decision,)), "fidelity.md"
-    )
+    assert "- **Decisions:** 1\n" in page(tiny_protocol(decisions=(decision,)), "fidelity.md")
 
 
 def test_reserved_things_are_listed():
@@ -198,17 +196,30 @@ def test_unknowns_are_listed():
         ("[m](#message-m)", "`x`", "2 bytes. Always 2.", "line 9"),
         ("[raw](#message-raw)", "all", "0 to 8 bytes of payload", ""),
     ]
-    counts = [row for row in tables(page(made, "fidelity.md"))[0] if row[0] == "[tiny](tiny.md)"]
-    assert counts == [["[tiny](tiny.md)", "tiny.txt", "2", "1", "1", "1", "0", "0", "0"]]
+    assert counts(made) == [
+        "- **Document:** tiny.txt",
+        "- **Messages:** 2, 1 unspecified",
+        "- **Fields:** 1, 1 unknown",
+        "- **Examples:** 0 verified, 0 contradict",
+        "- **Decisions:** 0",
+    ]
+
+
+def counts(made: Protocol) -> list[str]:
+    """What the page of counts says of a protocol called tiny."""
+    section = page(made, "fidelity.md").split("## [tiny](tiny.md)\n\n")[1]
+    return section.split("\n\n")[0].splitlines()
 
 
 def test_why_a_schema_has_no_examples_stands_beside_their_count():
     source = Source(document="tiny.txt", note="It prints no bytes")
-    text = page(replace(protocol(message("m", 1, ("x", UINT8))), source=source), "fidelity.md")
-    assert "| 0 ([why](#without-examples)) | 0 | 0 |" in text
-    assert '## <a id="without-examples"></a>Without examples\n' in text
-    assert "- [tiny](tiny.md): It prints no bytes.\n" in text
-    assert "without-examples" not in page(tiny_protocol(), "fidelity.md")
+    made = replace(protocol(message("m", 1, ("x", UINT8))), source=source)
+    assert counts(made)[3:5] == [
+        "- **Examples:** 0 verified, 0 contradict",
+        "- **Why no examples:** It prints no bytes.",
+    ]
+    shown = protocol(message("m", 1, ("x", UINT8), examples=(example("e", "AA 01 09 0D 0A"),)))
+    assert "It prints no bytes" not in page(replace(shown, source=source), "fidelity.md")
 
 
 def test_fields_inside_structs_arrays_and_cases_are_counted():
@@ -216,7 +227,7 @@ def test_fields_inside_structs_arrays_and_cases_are_counted():
     array = Array(element=point, extent=Fixed(count=3))
     made = protocol(message("m", 1, ("points", array)), switch_message())
     # points, x, y; op, argument, rate.
-    assert tables(page(made, "fidelity.md"))[0][2][2:] == ["2", "0", "6", "0", "0", "0", "0"]
+    assert "- **Fields:** 6, 0 unknown" in counts(made)
 
 
 def test_index_lists_protocols_and_dialects():
@@ -224,10 +235,12 @@ def test_index_lists_protocols_and_dialects():
     dialect = replace(base, name="a_dialect", files=("a_dialect.yaml", "tiny.yaml"), source=None)
     files = {str(file.path): file for file in emit([base, dialect])}
     assert list(files) == ["a_dialect.md", "tiny.md", "index.md", "fidelity.md"]
-    index = tables(files["index.md"].text)
-    assert index[0][2] == ["[tiny](tiny.md)", "Tiny protocol", "`pc`", "1", "tiny.txt"]
-    assert index[1][2] == ["[a_dialect](a_dialect.md)", "Tiny protocol", "tiny.yaml", "`pc`", "1"]
-    assert "## Dialects" in files["fidelity.md"].text
+    assert files["index.md"].text.endswith(
+        "## [a_dialect](a_dialect.md)\n\nTiny protocol.\n\n"
+        "- **Extends:** tiny.yaml\n- **Senders:** `pc`\n- **Messages:** 1\n\n"
+        "## [tiny](tiny.md)\n\nTiny protocol.\n\n"
+        "- **Document:** tiny.txt\n- **Senders:** `pc`\n- **Messages:** 1\n"
+    )
     assert "\n<!-- from a_dialect.yaml -->\n<!-- spec sha256 " in (files["index.md"].banner or "")
 
 

@@ -326,5 +326,5 @@ def test_contradictions_are_explained(contradiction, expected):
     made = protocol(message("m", 1, ("a", UINT8), examples=(shown,)))
     assert f"**Contradicts this reference.** {expected}\n" in page(made)
     fidelity = page(made, "fidelity.md")
-    assert "- [tiny, m, odd](tiny.md#example-m-odd): " in fidelity
-    assert "| 0 | 1 | 0 |" in fidelity
+    assert "- **Contradicts:** [m, odd](tiny.md#example-m-odd): " in fidelity
+    assert "- **Examples:** 0 verified, 1 contradict\n" in fidelity
