@@ -3,41 +3,18 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
-import subprocess
-import tempfile
-from contextlib import chdir
 from pathlib import Path
 
 import pytest
-from cli_support import PATIENCE, run, start
+from cli_support import start
+from repositories import GONE, OLD, SECOND, answer, complaint, git, protogen
 from tooling import require_tool
-from typer.testing import Result
 
 from protogen.evolution.rules import RULES, Rule
 
-OLD = """\
-protocol: demo
-endpoints: {board: Sensor board}
-byte_order: little
-frame:
-  start:   {literal: 0xAA}
-  kind:    {type: uint8, id: true}
-  payload: {}
-  crc:     {type: uint16, algorithm: CRC-16/KERMIT, covers: [kind, payload]}
-transparency:
-  covers: kind..crc
-  escape: {byte: 0xAB, of: [0xAA, 0xAB], transform: {xor: 0x20}}
-messages:
-  reading: {id: 1, from: board, fields: {value: {type: uint16, unit: mm}}}
-  ping: {id: 3, from: board, fields: {number: uint8}}
-"""
-GONE = OLD[: OLD.index("  ping:")]
 RESERVED = f"{GONE}reserved: {{identities: [{{from: board, id: 3}}]}}\n"
 TURNED = OLD.replace("type: uint16, unit: mm", "type: uint16, byte_order: big, unit: cm")
-SECOND = OLD.replace("protocol: demo", "protocol: second")
-TEMPORARY = Path(tempfile.gettempdir()).resolve()
 DIALECT = """\
 protocol: demo_two
 extends: ../demo.yaml
@@ -51,26 +28,6 @@ def folder(tmp_path: Path) -> Path:
     for name, text in {"old": OLD, "gone": GONE, "reserved": RESERVED, "turned": TURNED}.items():
         (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
     return tmp_path
-
-
-def protogen(folder: Path, *arguments: str) -> Result:
-    # What the tests run in may be a git repository; only a scratch one counts.
-    with chdir(folder):
-        return run(*arguments, NO_COLOR="1", GIT_CEILING_DIRECTORIES=str(TEMPORARY))
-
-
-def answer(folder: Path, *arguments: str, code: int) -> str:
-    done = protogen(folder, *arguments)
-    output = done.stdout
-    assert done.exit_code == code, f"{output}\n{done.stderr}"
-    return output
-
-
-def complaint(folder: Path, *arguments: str, code: int = 2) -> str:
-    done = protogen(folder, *arguments)
-    assert done.exit_code == code, done.stdout
-    assert "Traceback" not in done.stderr
-    return done.stderr
 
 
 def rules_in(output: str) -> list[str]:
@@ -345,14 +302,6 @@ def repository(folder: Path) -> Path:
     git(folder, "add", "schemas")
     git(folder, "commit", "--quiet", "--message", "First")
     return folder
-
-
-def git(folder: Path, *arguments: str) -> None:
-    names = {"GIT_AUTHOR_NAME": "T", "GIT_AUTHOR_EMAIL": "t@example.org"}
-    names |= {"GIT_COMMITTER_NAME": "T", "GIT_COMMITTER_EMAIL": "t@example.org"}
-    nowhere = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
-    environment = {**os.environ, **names, **nowhere}
-    subprocess.run(["git", *arguments], cwd=folder, env=environment, check=True, timeout=PATIENCE)
 
 
 class TestGit:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from collections.abc import Callable, Sequence
 from itertools import permutations
 from pathlib import Path
 
 import pytest
-from cli_support import PATIENCE, run
+from cli_support import run
+from repositories import git
 from tooling import require_tool
 
 NAMES = ("alpha", "beta", "gamma", "omega")
@@ -60,23 +59,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "protogen.toml").write_text("")
     (tmp_path / "base.yaml").write_text(BASE.format(name="base"))
     return tmp_path
-
-
-def git(folder: Path, *arguments: str, fails: bool = False) -> str:
-    names = {"GIT_AUTHOR_NAME": "T", "GIT_AUTHOR_EMAIL": "t@example.org"}
-    names |= {"GIT_COMMITTER_NAME": "T", "GIT_COMMITTER_EMAIL": "t@example.org"}
-    nowhere = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
-    done = subprocess.run(
-        ["git", *arguments],
-        cwd=folder,
-        env={**os.environ, **names, **nowhere},
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-    )
-    assert (done.returncode != 0) == fails, done.stdout + done.stderr
-    return done.stdout
 
 
 def schema(folder: Path, name: str) -> Path:

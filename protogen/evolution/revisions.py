@@ -51,6 +51,13 @@ class Revision(msgspec.Struct, frozen=True):
                 hint = f"compare inside of it, in the folder {name}, with a revision of its own"
                 raise NoVersionError(message, hint)
 
+    def moved_projects(self) -> dict[Path, Path]:
+        """Project files that git finds in another place now: old and new paths below the top."""
+        files = [f":(top,glob)**/{name}" for name in (OWN_FILE, SHARED_FILE)]
+        moves = ("diff", "--find-renames", "--diff-filter=R", "--name-status", "-z")
+        fields = _git(*moves, self.name, "--", *files, folder=self.top).decode().split("\0")
+        return {Path(old): Path(new) for old, new in zip(fields[1::3], fields[2::3], strict=True)}
+
 
 @contextmanager
 def extracted(name: str, wanted: Path) -> Iterator[Revision]:

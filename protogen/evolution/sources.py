@@ -13,10 +13,9 @@ import msgspec
 from protogen.compiler import Compilation, compile_file
 from protogen.copying import replace
 from protogen.evolution.lock import LockError, read_lock
+from protogen.evolution.projects import folder_then, own_patterns
 from protogen.evolution.revisions import NoVersionError, Revision, extracted, is_revision
-from protogen.problems import Problem, Problems, SourceMap, Span
-from protogen.project.find import find_project
-from protogen.project.read import read_project
+from protogen.problems import Problem, SourceMap, Span
 from protogen.project.schemas import schemas_below
 from protogen.schema.files import SUFFIX
 
@@ -87,13 +86,18 @@ def _revised(given: str, path: Path | None, stack: ExitStack, *, may_lack: bool)
     wanted = Path(named) if named else path
     assert wanted is not None
     revision = stack.enter_context(extracted(name, wanted))
-    inside = revision.inside
-    from_top = not wanted.is_absolute() and ".." not in wanted.parts
-    if named and not (revision.folder / inside).exists() and from_top:
-        inside = wanted
+    inside = _inside(revision, named)
     revision.check_no_submodule(revision.top / inside)
     title = f"{name}:{inside.as_posix()}"
     return _compiled(title, revision.folder / inside, revision, may_lack=may_lack)
+
+
+def _inside(revision: Revision, named: str) -> Path:
+    """Path in a revision of what is named, from the working directory, or else from the top."""
+    wanted = Path(named)
+    from_top = named and not wanted.is_absolute() and ".." not in wanted.parts
+    is_there = (revision.folder / revision.inside).exists()
+    return wanted if from_top and not is_there else revision.inside
 
 
 @contextmanager
@@ -103,7 +107,9 @@ def opened_project(
     """The schemas of a project as they are now, by the patterns in its file.
 
     With `given` as they were: in `git:REV`, in `lock:FILE`, or in another folder, each by the
-    patterns in its own project's file if it has one. There may be none. Raises NoVersionError.
+    patterns in its own project's file if it has one. There may be none. In a revision, the project
+    may be in another folder: in the one that is named, or that its file was moved from. Raises
+    NoVersionError.
     """
     if given is None:
         yield _below(str(folder), folder, patterns)
@@ -113,14 +119,16 @@ def opened_project(
         if not Path(given).is_dir():
             message = f"there is no folder `{given}`, to compare the project's schemas with"
             raise NoVersionError(message, hint_for_revision(given))
-        yield _below(given, Path(given), _own_patterns(Path(given), given) or patterns)
+        yield _below(given, Path(given), own_patterns(Path(given), given) or patterns)
     else:
         name, _, named = given.removeprefix(GIT).partition(":")
         with extracted(name, Path(named) if named else folder) as revision:
-            place = revision.folder / revision.inside
-            patterns = _own_patterns(place, given) or patterns
+            inside = _inside(revision, named) if named else folder_then(revision)
+            place = revision.folder / inside
+            place.mkdir(parents=True, exist_ok=True)  # Else `..` in patterns leads nowhere.
+            patterns = own_patterns(place, given) or patterns
             for pattern in patterns:
-                revision.check_no_submodule(revision.top / revision.inside / pattern)
+                revision.check_no_submodule(revision.top / inside / pattern)
             yield _below(name, place, patterns, revision)
 
 
@@ -129,22 +137,6 @@ def hint_for_revision(given: str) -> str | None:
     if is_revision(given, Path.cwd()):
         return f"`{given}` is a revision: write {GIT}{given}"
     return None
-
-
-def _own_patterns(folder: Path, given: str) -> Sequence[str]:
-    """Patterns of the schemas in a folder's own project file. Raises NoVersionError."""
-    if not folder.is_dir():
-        return ()
-    file = find_project(folder.resolve())
-    if file is None or file.parent.resolve() != folder.resolve():
-        return ()
-    problems = Problems()
-    project = read_project(file, problems, SourceMap())
-    if project is None:
-        words = "; ".join(problem.message for problem in problems)
-        message = f"{file.name} of {given} can't be read: {words}"
-        raise NoVersionError(message)
-    return project.settings.schemas
 
 
 def _locked(lock: Path, path: Path | None, *, may_lack: bool = False) -> Version:

@@ -19,11 +19,17 @@ def find_project(start: Path | None = None) -> Path | None:
     The path is relative to the working directory.
     """
     current = Path.cwd() if start is None else start
-    for folder in (current, *current.parents):
-        for file in (folder / OWN_FILE, folder / SHARED_FILE):
-            if file.is_file() and (file.name == OWN_FILE or _has_table(file)):
-                return Path(os.path.relpath(file))
-    return None
+    found = filter(None, map(project_in, (current, *current.parents)))
+    file = next(found, None)
+    return None if file is None else Path(os.path.relpath(file))
+
+
+def project_in(folder: Path) -> Path | None:
+    """Return the file with settings that is in a folder itself."""
+    own, shared = folder / OWN_FILE, folder / SHARED_FILE
+    if own.is_file():
+        return own
+    return shared if shared.is_file() and _has_table(shared) else None
 
 
 def table_of(file: Path) -> tuple[str, ...]:
