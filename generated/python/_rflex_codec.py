@@ -333,16 +333,13 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
     if size - at > 2048:
         at = _BULK_0.take(data, at, base, events, _cut_linux, _LINUX_HEADS)
     add = events.append
-    unchecked: list[bytes] = []
-    together = 4
-    are_many = size - at > 1024
     try:
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
-                break
+                return at
             end = data.find(b"\x1b\x03", at + 2, at + 782)
             if end < 0:
-                break
+                return at
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
@@ -353,33 +350,25 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
                 again = content.replace(b"\x1b", b"\x1b\x00")
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
-                    break
+                    return at
             length = content[3]
             if len(content) != length + 5:
-                break
-            if not are_many:
-                folded = _FROM_BYTES_0(content[4:], "little")
-                if len(content) > 36:
-                    folded ^= folded >> 1024
-                    folded ^= folded >> 512
-                    folded ^= folded >> 256
-                folded ^= folded >> 128
-                folded ^= folded >> 64
-                folded ^= folded >> 32
-                folded ^= folded >> 16
-                if (folded ^ folded >> 8) & 0xFF:
-                    break
+                return at
+            folded = _FROM_BYTES_0(content[4:], "little")
+            if len(content) > 36:
+                folded ^= folded >> 1024
+                folded ^= folded >> 512
+                folded ^= folded >> 256
+            folded ^= folded >> 128
+            folded ^= folded >> 64
+            folded ^= folded >> 32
+            folded ^= folded >> 16
+            if (folded ^ folded >> 8) & 0xFF:
+                return at
             numbers, read = _LINUX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(LINUX_SENDER, base + at, raw, numbers, content[4:-1]))
                 at = end
-                if are_many:
-                    unchecked.append(content)
-                    if len(unchecked) >= together:
-                        if not _checksum.are_sound(unchecked, 4):
-                            break
-                        unchecked.clear()
-                        together = min(2 * together, 64)
                 continue
             event: _typing.Any = _MessageEvent()
             event.message = read(content)
@@ -390,17 +379,8 @@ def _cut_linux(data: bytes, at: int, base: int, events: list[_typing.Any]) -> in
             event.kept_parts = None
             add(event)
             at = end
-            if are_many:
-                unchecked.append(content)
-                if len(unchecked) >= together:
-                    if not _checksum.are_sound(unchecked, 4):
-                        break
-                    unchecked.clear()
-                    together = min(2 * together, 64)
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
-    if unchecked:
-        at = _checksum.in_order(at, base, events, unchecked, 4)
     return at
 
 
@@ -445,16 +425,13 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
     if size - at > 2048:
         at = _BULK_0.take(data, at, base, events, _cut_flex, _FLEX_HEADS)
     add = events.append
-    unchecked: list[bytes] = []
-    together = 4
-    are_many = size - at > 1024
     try:
         while at < size:
             if not data.startswith(b"\x1b\x02", at):
-                break
+                return at
             end = data.find(b"\x1b\x03", at + 2, at + 782)
             if end < 0:
-                break
+                return at
             end += 2
             raw = data[at:end]
             content = raw[2:-2]
@@ -465,33 +442,25 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
                 again = content.replace(b"\x1b", b"\x1b\x00")
                 again = again.replace(b"\x7c", b"\x7c\x1b\x01")
                 if again != stuffed:
-                    break
+                    return at
             length = content[3]
             if len(content) != length + 5:
-                break
-            if not are_many:
-                folded = _FROM_BYTES_0(content[4:], "little")
-                if len(content) > 36:
-                    folded ^= folded >> 1024
-                    folded ^= folded >> 512
-                    folded ^= folded >> 256
-                folded ^= folded >> 128
-                folded ^= folded >> 64
-                folded ^= folded >> 32
-                folded ^= folded >> 16
-                if (folded ^ folded >> 8) & 0xFF:
-                    break
+                return at
+            folded = _FROM_BYTES_0(content[4:], "little")
+            if len(content) > 36:
+                folded ^= folded >> 1024
+                folded ^= folded >> 512
+                folded ^= folded >> 256
+            folded ^= folded >> 128
+            folded ^= folded >> 64
+            folded ^= folded >> 32
+            folded ^= folded >> 16
+            if (folded ^ folded >> 8) & 0xFF:
+                return at
             numbers, read = _FLEX_HEADS[content[0:3]]
             if read is None:
                 add(_fast.unknown(FLEX_SENDER, base + at, raw, numbers, content[4:-1]))
                 at = end
-                if are_many:
-                    unchecked.append(content)
-                    if len(unchecked) >= together:
-                        if not _checksum.are_sound(unchecked, 4):
-                            break
-                        unchecked.clear()
-                        together = min(2 * together, 64)
                 continue
             event: _typing.Any = _MessageEvent()
             event.message = read(content)
@@ -502,17 +471,8 @@ def _cut_flex(data: bytes, at: int, base: int, events: list[_typing.Any]) -> int
             event.kept_parts = None
             add(event)
             at = end
-            if are_many:
-                unchecked.append(content)
-                if len(unchecked) >= together:
-                    if not _checksum.are_sound(unchecked, 4):
-                        break
-                    unchecked.clear()
-                    together = min(2 * together, 64)
     except _fast.ANYTHING:  # The reference looks at what is here.
         pass
-    if unchecked:
-        at = _checksum.in_order(at, base, events, unchecked, 4)
     return at
 
 

@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Callable
 from functools import cache
 from itertools import accumulate
-from typing import Any, Protocol
+from typing import Protocol
 from zlib import adler32
 
 from protogen.runtime.values import Frozen
@@ -55,42 +55,13 @@ def xor_of(data: bytes) -> int:
     return (great ^ great >> 8) & 0xFF
 
 
-_FEW = 8
-"""So few strings are not worth being looked at all at once."""
-
-
 def are_sound(contents: list[bytes], first: int) -> bool:
-    """True if the bytes from `first` on have the exclusive or 0 in each of these."""
-    by_size: dict[int, list[bytes]] = {}
-    for content in contents:
-        by_size.setdefault(len(content), []).append(content)
-    return all(_are_sound(size, alike, first) for size, alike in by_size.items())
-
-
-def _are_sound(size: int, contents: list[bytes], first: int) -> bool:
-    """The same for contents of one size."""
-    if len(contents) < _FEW:
-        return not any(xor_of(content[first:]) for content in contents)
+    """True if the bytes from `first` on have the exclusive or 0 in each of these of one size."""
     # One great integer of each place has a byte of each content.
-    joined, great = b"".join(contents), 0
+    joined, size, great = b"".join(contents), len(contents[0]), 0
     for place in range(first, size):
         great ^= _from_bytes(joined[place::size], "little")
     return great == 0
-
-
-def in_order(at: int, base: int, events: list[Any], contents: list[bytes], first: int) -> int:
-    """The place up to which frames are in order: `at`, or that of the first wrong checksum.
-
-    The last of the events are of frames with these contents, whose bytes from `first` on have yet
-    to be seen to have the exclusive or 0. From the first wrong one on, events are taken back.
-    """
-    if are_sound(contents, first):
-        return at
-    sound = next(place for place, content in enumerate(contents) if xor_of(content[first:]))
-    wrong = len(contents) - sound
-    at = events[-wrong].offset - base
-    del events[-wrong:]
-    return at
 
 
 class Xor8(Frozen):

@@ -7,12 +7,12 @@ from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
-from protogen.runtime.framing.damage import Judge, judge_of
 from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.framing.starts import starts_of
+from protogen.runtime.plain_cut import PlainCutter
 
 Engine = Literal["fast", "construct"]
 """Engine that decodes and encodes. `construct` is the reference: byte by byte, and construct's own
@@ -55,11 +55,12 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co], engine: Engine = "fast") -> None:
         check_engine(engine)
         self._sender = sender
-        self._cut = sender.cut if engine == "fast" else None
+        cut = sender.cut if engine == "fast" else None
         self._starts = starts_of(sender.frame)
+        self._plain_cut = None if cut is None else PlainCutter(sender, cut, self._starts)
         is_alone = not self._starts.context and not sender.layout.shares_delimiter
-        self._lane = self._cut if is_alone else None
-        """Cuts what comes in, where nothing of earlier frames tells how a frame starts."""
+        self._lane = self._plain_cut.take if is_alone and self._plain_cut else None
+        """Takes what comes in, where nothing of earlier frames tells how a frame starts."""
         shared = len(sender.layout.start) if sender.layout.shares_delimiter else 0
         self._least = sender.frame.least - shared  # So many bytes a frame has that can be cut.
         self._greatest = sender.frame.greatest
@@ -76,10 +77,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._failure: Failure | None = None  # The candidate's, until the next start is known.
         self._shares_start = False  # Whether the candidate starts with the end before it.
         self._wanted = 0  # Before so many bytes come in, what stands at `_scan` is not judged.
-        self._judges = self._cut is not None  # Whether beginnings of frames can be judged.
+        self._judges = cut is not None  # Whether beginnings of frames can be judged.
         self._prefix: Prefix | None = None  # Judge of them, made when first needed.
-        self._has_judge = self._judges  # Whether damaged frames can be judged as a whole.
-        self._damage: Judge | None = None  # Judge of them, made when first needed.
         self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
 
@@ -265,22 +264,14 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._scan = self._pushed = start
         if self._cut_frames():
             return True
-        self._failure = self._damaged(start, final)
-        if self._failure is not None:
-            return True
+        if self._plain_cut is not None:
+            self._failure = self._plain_cut.verdict(self._data, start, is_all=final)
+            if self._failure is not None:
+                return True
         self._wanted = 0 if final else self._wanted_at(start)
         if not self._wanted:
             self._candidate = Candidate(self._sender)
         return not self._wanted
-
-    def _damaged(self, start: int, final: bool) -> Failure | None:
-        """The verdict on what begins there, where it plainly is no frame."""
-        if self._has_judge and self._damage is None:
-            self._damage = judge_of(self._sender)
-            self._has_judge = self._damage is not None
-        return (
-            None if self._damage is None else self._damage.failure(self._data, start, is_all=final)
-        )
 
     def _wanted_at(self, start: int) -> int:
         """Bytes that may come before what begins there is judged; 0: a candidate takes it."""
@@ -304,11 +295,11 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
-        if self._cut is None or self._done != self._scan:
+        if self._plain_cut is None or self._done != self._scan:
             return False
         if len(self._data) - self._scan < self._least:
             return False
-        end = self._cut(self._data, self._scan, self._offset, self._events)
+        end = self._plain_cut.take(self._data, self._scan, self._offset, self._events)
         if end == self._scan:
             return False
         self._done = end

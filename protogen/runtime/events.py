@@ -142,7 +142,12 @@ class InvalidEvent(Frozen):
     def __init__(
         self, offset: int, raw: bytes, sender: str, reason: Reason, problem: str = ""
     ) -> None:
-        self._set(offset, raw, sender, reason, problem)
+        set_field = object.__setattr__  # Faster than `_set`: a damaged stream has many of these.
+        set_field(self, "offset", offset)
+        set_field(self, "raw", raw)
+        set_field(self, "sender", sender)
+        set_field(self, "reason", reason)
+        set_field(self, "problem", problem)
 
     @property
     def size(self) -> int:

@@ -20,8 +20,11 @@ from protogen.runtime.framing.frame import (
 from protogen.runtime.framing.layout import Place
 from protogen.runtime.framing.machine import Failure, wrong_sum
 from protogen.runtime.framing.sender import SenderSpec
-from protogen.runtime.framing.starts import starts_of
 from protogen.runtime.transparency import Escape, Substitution, TransparencyError
+
+Verdict = Failure | int | None
+"""What stands at a start: no frame, or one of so many bytes that ends in front of the next start.
+None where neither is plain."""
 
 _KEPT = 32
 """Sizes of payloads whose places are remembered: what a wire gives must not fill the memory."""
@@ -71,7 +74,11 @@ class Judge:
         self._layout = layout = sender.layout
         self._greatest = sender.frame.greatest
         self._places: dict[int, dict[str, Place]] = {}
-        checked: tuple[Part | None, ...] = (*layout.identity, layout.length, *layout.bounded)
+        self._asks_identity = layout.length is None or (
+            layout.spec.rescans and (layout.early_identity or not layout.identity)
+        )
+        asked = layout.identity if self._asks_identity else ()
+        checked: tuple[Part | None, ...] = (*asked, layout.length, *layout.bounded)
         head = [item for item in layout.slices(1) if item.part in layout.head]
         self._literals = [
             (item.part.value, slice(item.start, item.end))
@@ -85,10 +92,10 @@ class Judge:
             and (item.part in checked or item.part.number.bits < 8 * item.part.size)
         ]
 
-    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
-        """The verdict on the candidate that starts there; None where it is not plain.
+    def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
+        """The verdict on the candidate that starts there.
 
-        `is_all`: the input ends behind the data.
+        `end`: place of the next start, or -1. `is_all`: the input ends behind the data.
         """
         raise NotImplementedError
 
@@ -142,9 +149,7 @@ class Judge:
 
     def _fits(self, size: int, numbers: dict[str, int]) -> bool:
         """True unless the identity shows at once that the size can't be."""
-        layout = self._layout
-        is_late = bool(layout.identity) and not layout.early_identity
-        if is_late or not layout.spec.rescans:
+        if not self._asks_identity:
             return True
         group = self._sender.group(self._sender.identity(numbers))
         return group is None or group.holds(size)
@@ -157,8 +162,8 @@ class Judge:
 class SizeJudge(Judge):
     """Judge of frames whose size is told by their first bytes; a start may occur inside of them."""
 
-    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
-        """The verdict on the candidate that starts there; None where it is not plain."""
+    def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
+        """The verdict on the candidate that starts there."""
         head = data[start : start + self._layout.head_size]
         try:
             numbers = self._numbers(head)
@@ -183,18 +188,16 @@ class SliceJudge(Judge):
     def __init__(self, sender: SenderSpec[Any, Any]) -> None:
         super().__init__(sender)
         layout = sender.layout
-        self._starts = starts_of(sender.frame)
         self._front = len(layout.start) or 1
         self._end = layout.end
         self._stuffing = sender.frame.transparency if layout.stuffed else None
         self._announced: Reason = "size" if layout.length is None else "length"
 
-    def failure(self, data: bytes, start: int, *, is_all: bool) -> Failure | None:
-        """The verdict on the candidate that starts there; None where it is not plain."""
-        end = self._starts.find(data, start + 1, len(data) + 1)
+    def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
+        """The verdict on the candidate that starts there."""
         return None if end < 0 else self._of_slice(data[start:end])
 
-    def _of_slice(self, wire: bytes) -> Failure | None:
+    def _of_slice(self, wire: bytes) -> Verdict:
         if len(wire) >= self._greatest:
             return None
         behind = wire.find(self._end, self._front) if self._end else -1
@@ -215,7 +218,8 @@ class SliceJudge(Judge):
             return _truncated(wire)
         if len(content) == limit:
             return self._of_whole(content, size, len(wire))
-        return self._of_whole(content[:limit], size, self._wire_size(content[:limit]))
+        own = self._wire_size(content[:limit])
+        return self._of_whole(content[:limit], size, own) or own
 
     def _of_ended(
         self, wire: bytes, behind: int, content: bytes, limit: int, size: int

@@ -20,9 +20,6 @@ FOLDED, _GREATEST_FOLDED = 32, 256
 class ChecksumFunction(FrameFunction):
     """Printer of a function that compares the checksums of a frame."""
 
-    stop = "return at"
-    """Statement for where something is not plainly in order."""
-
     def __init__(self, frame: EngineFrame, lines: Lines) -> None:
         super().__init__(frame, lines)
         is_raw = not frame.stuffed and not self.plan.shares_delimiter and not self.plan.end_bytes
@@ -30,17 +27,9 @@ class ChecksumFunction(FrameFunction):
         """All parts before stuffing, but not the end, nor literals in front."""
 
     def stop_if(self, condition: str) -> None:
-        """Leave it to the reference where the condition holds."""
+        """Leave it to the caller where the condition holds."""
         self.lines.add(f"if {condition}:")
-        self.lines.add(f"    {self.stop}")
-
-    @property
-    def deferred(self) -> int | None:
-        """Place in the content from which an exclusive or is compared for many frames at once."""
-        if len(self.frame.checksums) != 1 or self.plan.optional_size:
-            return None
-        (part,) = self.frame.checksums
-        return self.xors_to_nothing(part, self.frame.covered(part, self.content))
+        self.lines.add("    return at")
 
     def compare_checksums(self) -> None:
         """Compare all checksums that are there."""
@@ -60,7 +49,7 @@ class ChecksumFunction(FrameFunction):
                 continue
             first_of_xor = self.xors_to_nothing(part, covered)
             if first_of_xor is not None:
-                self._compare_xor(first_of_xor)
+                self._fold(first_of_xor)
                 continue
             if covered == self.payload_slice and not self.frame.gives_content:
                 covered = "payload"
@@ -88,14 +77,6 @@ class ChecksumFunction(FrameFunction):
         first = runs[0][0]
         is_last = covered == self.frame.slice_of(self.content, first, -1) and first >= 0
         return first if is_last else None
-
-    def _compare_xor(self, first: int) -> None:
-        """Compare it here where there are few frames, else for many of them together."""
-        if self.deferred is None:
-            self._fold(first)
-            return
-        with self.lines.block("if not are_many:"):
-            self._fold(first)
 
     def _fold(self, first: int) -> None:
         frame = self.frame

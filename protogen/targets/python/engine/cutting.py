@@ -13,14 +13,6 @@ from protogen.targets.python.engine.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
 
-_MANY, _FIRST, _TOGETHER = 1024, 4, 64
-"""Bytes from which on exclusive ors are compared together; those of how many frames at first, and
-at most.
-
-They are checked after events were made, which are dropped from the first wrong one on. So what is
-done in vain is in proportion to what was not, and bounded.
-"""
-
 
 def cutter(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:
     """The body of `_cut_SENDER(data, at, base, events)`.
@@ -42,10 +34,6 @@ class _Cutter(ChecksumFunction):
         if self.frame.can_cut_in_bulk:
             self._runs()
         self.lines.add("add = events.append")
-        if self.deferred is not None:
-            self.lines.add("unchecked: list[bytes] = []")
-            self.lines.add(f"together = {_FIRST}")
-            self.lines.add(f"are_many = size - at > {_MANY}")
         if self.plan.end_rule is EndRule.NEXT_START:
             # Behind a frame that ends where the next start is, that needs not be checked again.
             with self.lines.block("try:"):
@@ -53,18 +41,12 @@ class _Cutter(ChecksumFunction):
             with self.lines.block("except _fast.ANYTHING:  # There is nothing."):
                 self.lines.add("return at")
         with self.lines.block("try:"), self.lines.block("while at < size:"):
-            if self.deferred is not None:
-                self.stop = "break"
             if self.plan.end_rule is not EndRule.NEXT_START:
                 self._start()
             self._frame()
             self._event()
         with self.lines.block("except _fast.ANYTHING:  # The reference looks at what is here."):
             self.lines.add("pass")
-        if self.deferred is not None:
-            with self.lines.block("if unchecked:"):
-                given = f"unchecked, {self.deferred}"
-                self.lines.add(f"at = _checksum.in_order(at, base, events, {given})")
         self.lines.add("return at")
         return self.lines.text
 
@@ -160,7 +142,7 @@ class _Cutter(ChecksumFunction):
         with self.lines.block("if end < 0:"):
             # A length tells whether the last frame is all there; else the next start has to.
             if self.plan.length is None:
-                self.lines.add(self.stop)
+                self.lines.add("return at")
             else:
                 self.lines.add("end = size")
         if len(self.plan.start_bytes) > 1:
@@ -242,7 +224,7 @@ class _Cutter(ChecksumFunction):
             with self.lines.block("elif count > 0:"):
                 self.lines.add(f"end = {self._place(around)} + count")
             with self.lines.block("else:"):
-                self.lines.add(self.stop)
+                self.lines.add("return at")
         else:
             self.stop_if("count < 0")
             self.lines.add(f"end = {self._place(around)} + count")
@@ -428,19 +410,7 @@ class _Cutter(ChecksumFunction):
         self.lines.add(f"event.codec = {self.name.upper()}_SENDER")
         self.lines.add("event.kept_parts = None")
         self.lines.add("add(event)")
-        self._taken()
-
-    def _taken(self) -> None:
-        """Go on behind a frame."""
         self.lines.add("at = end")
-        if self.deferred is None:
-            return
-        with self.lines.block("if are_many:"):
-            self.lines.add(f"unchecked.append({self.content})")
-            with self.lines.block("if len(unchecked) >= together:"):
-                self.stop_if(f"not _checksum.are_sound(unchecked, {self.deferred})")
-                self.lines.add("unchecked.clear()")
-                self.lines.add(f"together = min(2 * together, {_TOGETHER})")
 
     @property
     def _read_from(self) -> str:
@@ -480,5 +450,5 @@ class _Cutter(ChecksumFunction):
         spec = f"{self.name.upper()}_SENDER"
         payload = self.payload_slice if self.frame.gives_content else "payload"
         self.lines.add(f"add(_fast.unknown({spec}, base + at, raw, numbers, {payload}))")
-        self._taken()
+        self.lines.add("at = end")
         self.lines.add("continue")
