@@ -21,16 +21,22 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-from peers import slotted_matty, slotted_rflex, slotted_rn1  # noqa: E402
-from peers.cases import Case, cases  # noqa: E402
+from peers import slotted_imu, slotted_matty, slotted_rflex, slotted_rn1  # noqa: E402
+from peers.cases import Case, Row, cases  # noqa: E402
 from peers.timing import measure, ratio  # noqa: E402
 
+import protogen  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
 
 OUT = HERE / "damage.md"
 SHARES = (0.0, 0.01, 0.05)
 """Shares of the frames that are damaged."""
-BY_HAND = {"rn1": slotted_rn1, "rflex": slotted_rflex, "matty": slotted_matty}
+BY_HAND = {
+    "rn1": slotted_rn1,
+    "rflex": slotted_rflex,
+    "matty": slotted_matty,
+    "imu": slotted_imu,
+}
 
 MADE_BY_HAND: dict[str, type[Any]] = {
     "gyro": slotted_rn1.Gyro,
@@ -38,6 +44,7 @@ MADE_BY_HAND: dict[str, type[Any]] = {
     "read_motor": slotted_rflex.Motor,
     "sonar_data": slotted_rflex.Sonar,
     "status": slotted_matty.Status,
+    "sample": slotted_imu.Sample,
 }
 """Classes by hand of the messages."""
 
@@ -53,12 +60,25 @@ ns of CPU time for each frame of a stream of about 66 kB that is given as a whol
 protogen's time as a multiple of what an expert's code by hand (`hand, slotted` of
 [python.md](python.md)) takes for the same stream; medians of {rounds} rounds. Of the frames, so
 many have one byte changed, lost or added. Before the times are taken, both have to find the same
-messages.
+messages. The last stream has frames of sync bytes, length and CRC, in which the sync bytes may
+occur ([imu.yaml](peers/imu.yaml)).
 
 | stream | {heads} |
 | --- | {lines} |
 {rows}
 """
+
+
+def sample() -> Case:
+    """The case of a frame of sync bytes, length and CRC."""
+    module = protogen.module_of(protogen.load(HERE / "peers" / "imu.yaml"))
+    return Case("imu sample", "imu", "sample", module, "board", module.Sample, _sample)
+
+
+def _sample(dice: Random) -> Row:
+    bits = dice.getrandbits
+    vectors = (tuple(bits(16) - (1 << 15) for _ in range(3)) for _ in range(2))
+    return bits(32), dice.randrange(1, 3), *vectors
 
 
 def damaged(case: Case, share: float) -> bytes:
@@ -114,7 +134,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=7)
     rounds = parser.parse_args().rounds
-    rows = [row(case, rounds) for case in cases() if case.protocol in BY_HAND]
+    rows = [row(case, rounds) for case in (*cases(), sample())]
     page = PAGE.format(
         rounds=rounds,
         version=VERSION,

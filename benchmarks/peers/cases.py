@@ -76,8 +76,9 @@ class Case:
         if self.message == "sonar_data":
             readings = (rflex.SonarDataReadings(cluster=a, distance=b) for a, b in row[2])
             values["readings"] = list(readings)
-        if self.message == "lidar":
-            values["distances"] = list(row[1])
+        for name, value in values.items():
+            if isinstance(value, tuple):
+                values[name] = list(value)
         return self.kind(**values)
 
     def row(self, message: Any) -> Row:

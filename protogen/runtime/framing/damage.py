@@ -6,6 +6,7 @@ would say. What is not plain is left to a candidate.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 from protogen.runtime.errors import ByteError, Reason
@@ -26,8 +27,8 @@ Verdict = Failure | int | None
 """What stands at a start: no frame, or one of so many bytes that ends in front of the next start.
 None where neither is plain."""
 
-_KEPT = 32
-"""Sizes of payloads whose places are remembered: what a wire gives must not fill the memory."""
+_KEPT = 256
+"""Heads and sizes of which is remembered what they tell: a wire must not fill the memory."""
 
 
 def judge_of(sender: SenderSpec[Any, Any]) -> Judge | None:
@@ -73,7 +74,9 @@ class Judge:
         self._sender = sender
         self._layout = layout = sender.layout
         self._greatest = sender.frame.greatest
-        self._places: dict[int, dict[str, Place]] = {}
+        self._around = layout.head_size + layout.tail_size(1)
+        self._places = lru_cache(_KEPT)(self._places_of)
+        self._payload_size = lru_cache(_KEPT)(self._payload_size_of)
         self._asks_identity = layout.length is None or (
             layout.spec.rescans and (layout.early_identity or not layout.identity)
         )
@@ -101,7 +104,7 @@ class Judge:
 
     def _of_whole(self, content: bytes, size: int, own: int) -> Failure | None:
         """The verdict on a content of the right size: a wrong checksum, or nothing plain."""
-        places = self._places.get(size) or self._placed(size)
+        places = self._places(size)
         for part in self._layout.checksums:
             covered = self._layout.covered(part, places, content)
             problem = wrong_sum(part, covered, content[slice(*places[part.name])])
@@ -109,32 +112,18 @@ class Judge:
                 return Failure(own, "checksum", problem)
         return None
 
-    def _placed(self, size: int) -> dict[str, Place]:
-        if len(self._places) >= _KEPT:
-            self._places.clear()
-        slices = self._layout.slices(size)
-        self._places[size] = places = {part.name: (start, end) for part, start, end in slices}
-        return places
+    def _places_of(self, size: int) -> dict[str, Place]:
+        return {part.name: (start, end) for part, start, end in self._layout.slices(size)}
 
     def _may_hold(self, content: bytes, size: int) -> bool:
         """True if no byte of the payload has a bit that it must not have."""
         head_size = self._layout.head_size
         return not self._sender.frame.seven_bit or content[head_size : head_size + size].isascii()
 
-    def _numbers(self, content: bytes) -> dict[str, int] | None:
-        """The numbers that tell something; None where not all of the head is there, or right."""
-        if len(content) < self._layout.head_size:
-            return None
-        if any(content[place] != value for value, place in self._literals):
-            return None
-        numbers = {part.name: part.number.decode(content[place]) for part, place in self._checked}
-        bounded = self._layout.bounded
-        is_right = all(part.least <= numbers[part.name] <= part.greatest for part in bounded)
-        return numbers if is_right else None
-
-    def _payload_size(self, content: bytes, numbers: dict[str, int] | None) -> int | Failure | None:
+    def _payload_size_of(self, head: bytes) -> int | Failure | None:
         """The payload's size, or the verdict on a length that can't be; None: nothing plain."""
         layout, part = self._layout, self._layout.length
+        numbers = self._numbers(head)
         if numbers is None:
             return None
         if part is None:
@@ -145,7 +134,21 @@ class Judge:
         if size is not None:
             return size if self._fits(size, numbers) else None
         end = next(place.stop for checked, place in self._checked if checked is part)
-        return self._of_length(content[:end], f"{part.name} is {value}")
+        return self._of_length(head[:end], f"{part.name} is {value}")
+
+    def _numbers(self, head: bytes) -> dict[str, int] | None:
+        """The numbers that tell something; None where not all of the head is there, or right."""
+        if len(head) < self._layout.head_size:
+            return None
+        if any(head[place] != value for value, place in self._literals):
+            return None
+        try:
+            numbers = {part.name: part.number.decode(head[place]) for part, place in self._checked}
+        except ByteError:
+            return None
+        bounded = self._layout.bounded
+        is_right = all(part.least <= numbers[part.name] <= part.greatest for part in bounded)
+        return numbers if is_right else None
 
     def _fits(self, size: int, numbers: dict[str, int]) -> bool:
         """True unless the identity shows at once that the size can't be."""
@@ -164,15 +167,10 @@ class SizeJudge(Judge):
 
     def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
         """The verdict on the candidate that starts there."""
-        head = data[start : start + self._layout.head_size]
-        try:
-            numbers = self._numbers(head)
-            size = self._payload_size(head, numbers)
-        except ByteError:
-            return None
-        if isinstance(size, Failure) or size is None:
+        size = self._payload_size(data[start : start + self._layout.head_size])
+        if not isinstance(size, int):
             return size
-        limit = self._layout.head_size + size + self._layout.tail_size(size)
+        limit = self._around + size
         content = data[start : start + limit]
         if limit > self._greatest or not self._may_hold(content, size):
             return None
@@ -203,13 +201,12 @@ class SliceJudge(Judge):
         behind = wire.find(self._end, self._front) if self._end else -1
         try:
             content = self._content(wire if behind < 0 else wire[:behind])
-            numbers = self._numbers(content)
-            size = self._payload_size(content, numbers)
-        except (ByteError, TransparencyError):
+        except TransparencyError:
             return None
-        if isinstance(size, Failure) or size is None:
+        size = self._payload_size(content[: self._layout.head_size])
+        if not isinstance(size, int):
             return size
-        limit = self._layout.head_size + size + self._layout.tail_size(size)
+        limit = self._around + size
         if not self._may_hold(content, size):
             return None
         if self._end:

@@ -60,7 +60,10 @@ class ChecksumFunction(FrameFunction):
                 continue
             last = first + part.type.size
             found = self.frame.slice_of(self.content, first, last)
-            self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
+            if self.has_padding(part.type):
+                self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
+            else:
+                self.stop_if(f'int.from_bytes({found}, "{part.type.byte_order}") != {due}')
 
     def sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
         """True if the checksum brings the sum of the whole content to 0."""

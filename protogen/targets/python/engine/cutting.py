@@ -226,9 +226,16 @@ class _Cutter(ChecksumFunction):
             with self.lines.block("else:"):
                 self.lines.add("return at")
         else:
-            self.stop_if("count < 0")
+            least, greatest = self._payload_bounds(length)
+            self.stop_if(f"not {least} <= count <= {greatest}")
             self.lines.add(f"end = {self._place(around)} + count")
         self._sized()
+
+    def _payload_bounds(self, length: LengthPlan) -> tuple[int, int]:
+        """The least and the greatest payload that a length can tell, and a frame can have."""
+        part, counted = length.part, length.base + length.optional
+        least = max(part.least - counted, 0)
+        return least, min(part.greatest - counted, self.plan.payload.greatest)
 
     def _by_kind(self) -> None:
         frame, around = self.frame, self._overhead
@@ -339,7 +346,8 @@ class _Cutter(ChecksumFunction):
         around = self.plan.head_size - frame.skipped + self.plan.tail_size
         sliced = f"payload = {self.payload_slice}"
         if length is not None and not self.plan.optional_size:
-            self._length(length, around)
+            if self.plan.end_rule is not EndRule.LENGTH or frame.stuffed:
+                self._length(length, around)
             if not frame.gives_content:
                 self.lines.add(sliced)
         elif self.plan.optional_size:
@@ -371,10 +379,9 @@ class _Cutter(ChecksumFunction):
         rest = around - counted
         due = f"length + {rest}" if rest > 0 else f"length - {-rest}" if rest else "length"
         size = f"len({self.content})"
-        least = max(part.least, counted)
-        greatest = min(part.greatest, counted + self.plan.payload.greatest)
-        if least > 0 or greatest < part.type.greatest:
-            self.stop_if(f"not {least + rest} <= {size} == {due} <= {greatest + rest}")
+        least, greatest = self._payload_bounds(length)
+        if least + counted > 0 or greatest + counted < part.type.greatest:
+            self.stop_if(f"not {least + around} <= {size} == {due} <= {greatest + around}")
         else:
             self.stop_if(f"{size} != {due}")
 
