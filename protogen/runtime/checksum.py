@@ -160,6 +160,16 @@ class Crc(Frozen):
             register = _reversed_bits(register, self.width)
         return register ^ self.xorout
 
+    def function(self) -> Callable[[bytes], int]:
+        """Return the fastest function that computes it."""
+        given = self.width, self.poly, self.refin, self.refout
+        init, xorout = self.init, self.xorout
+        if given == (16, 0x1021, False, False):
+            return lambda data: binascii.crc_hqx(data, init) ^ xorout
+        if given == (32, 0x04C11DB7, True, True) and init == xorout == 0xFFFFFFFF:
+            return zlib.crc32
+        return self.compute
+
 
 # An engine takes data and the register before it, and gives the register behind it. The register
 # of a reflected engine (`refin`) is in reverse bit order throughout.

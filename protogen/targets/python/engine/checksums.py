@@ -7,8 +7,10 @@ from contextlib import nullcontext
 from protogen.model.frame import ChecksumPart
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
+from protogen.targets.python.engine.layout import UNSIGNED
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
+from protogen.targets.python.engine.place import Place
 
 _SHORT = 256
 """So many bytes can be summed by Adler-32 without its modulus showing."""
@@ -55,15 +57,12 @@ class ChecksumFunction(FrameFunction):
                 covered = "payload"
             due = checksum(part, covered, self.frame, self.lines.constants)
             first = self.frame.offset(part)
-            if part.type.size == 1 and not self.has_padding(part.type):
-                self.stop_if(f"{self.content}[{first}] != {due}")
+            if part.type.size in UNSIGNED and not self.has_padding(part.type):
+                found = self.number_at(self.content, part, Place("", first))
+                self.stop_if(f"{found} != {due}")
                 continue
-            last = first + part.type.size
-            found = self.frame.slice_of(self.content, first, last)
-            if self.has_padding(part.type):
-                self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
-            else:
-                self.stop_if(f'int.from_bytes({found}, "{part.type.byte_order}") != {due}')
+            found = self.frame.slice_of(self.content, first, first + part.type.size)
+            self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
 
     def sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
         """True if the checksum brings the sum of the whole content to 0."""
@@ -135,5 +134,6 @@ def checksum(part: ChecksumPart, data: str, frame: EngineFrame, constants: Const
         return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
     if spec.kind == "xor" and spec.init == 0:
         return f"_checksum.xor_of({data})"
-    compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.compute")
+    function = "function()" if spec.kind == "crc" else "compute"
+    compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.{function}")
     return f"{compute}({data})"

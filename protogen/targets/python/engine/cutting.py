@@ -217,7 +217,8 @@ class _Cutter(ChecksumFunction):
         around, length = self._overhead, self.plan.length
         assert length is not None
         counted = length.base + length.optional
-        self.lines.add(f"count = {self.number('data', length.part, 'at')} - {counted}")
+        less = f" - {counted}" if counted else ""
+        self.lines.add(f"count = {self.number('data', length.part, 'at')}{less}")
         if self.plan.optional_size:
             with self.lines.block(f"if count == {-length.optional}:"):
                 self.lines.add(f"end = {self._place(around - self.plan.optional_size)}")

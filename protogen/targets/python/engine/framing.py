@@ -233,6 +233,9 @@ class _Framer(FrameFunction):
         )
         if _is_plain(part.type) and part.type.size == 1:
             self.lines.add(f"content += _BYTES[{due}]")
+        elif _is_plain(part.type):
+            order = part.type.byte_order
+            self.lines.add(f'content += ({due}).to_bytes({part.type.size}, "{order}")')
         else:
             self.lines.add(f"content += {self.lines.constants.number(part.type)}.encode({due})")
 

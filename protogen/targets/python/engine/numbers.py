@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import NumberPart
+from protogen.model.frame import ChecksumPart, NumberPart
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
+from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
 
@@ -42,10 +43,15 @@ class FrameFunction:
         skipped = 0 if base is None else self.frame.skipped
         return self.number_at(source, part, Place(base or "", self.frame.offset(part) + skipped))
 
-    def number_at(self, source: str, part: NumberPart, first: Place) -> str:
+    def number_at(self, source: str, part: NumberPart | ChecksumPart, first: Place) -> str:
         """The value of a part whose bytes begin at that place."""
         if part.type.size == 1 and not self.has_padding(part.type):
             return f"{source}[{first.text}]"
+        code = UNSIGNED.get(part.type.size)
+        if code is not None and not self.has_padding(part.type):
+            layout = byte_order(part.type) + code
+            unpack = self.lines.constants.named("UNPACK", f'_struct.Struct("{layout}").unpack_from')
+            return f"{unpack}({source}, {first.text})[0]"
         behind = Place(first.variable, first.offset + part.type.size)
         piece = f"{source}[{first.text} : {behind.text}]"
         if self.has_padding(part.type):
