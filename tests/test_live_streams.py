@@ -321,7 +321,7 @@ def looked_at(path: Path, size: int, engine: str) -> tuple[int, int]:
 
         return call
 
-    for name in ("_lane", "_cut", "_wanted_at", "_join", "_deliver"):
+    for name in ("_lane", "_cut_frames", "_wanted_at", "_join", "_deliver"):
         if getattr(decoder, name) is not None:
             setattr(decoder, name, counted(getattr(decoder, name)))
     events = [event for byte in frame for event in decoder.feed(bytes([byte]))]

@@ -91,7 +91,7 @@ def integer(draw: st.DrawFn, setting: Setting) -> Built:
     least, greatest = _bounds(draw, data, kind)
     _physical(draw, data)
     _constants(draw, data, kind, least, greatest)
-    free = "const" not in data and not data.get("closed")
+    free = "const" not in data and not data.get("closed") and dress not in ("flags", "bits")
     counts = Size(least, greatest) if free and not kind.signed else None
     keys = draw(_keys(data, kind, least, greatest)) if "const" not in data else ()
     return Built(data, Size(kind.size, kind.size), counts, keys)
