@@ -105,7 +105,7 @@ def _cut(make: Callable[[], Any], stream: bytes) -> list[Any]:
     return events
 
 
-def _messages(case: Case, events: list[Any]) -> list[int]:
+def messages(case: Case, events: list[Any]) -> list[int]:
     """Places where events have a message of the case; the code by hand knows few others."""
     kinds = case.kind, MADE_BY_HAND[case.message]
     return [event.offset for event in events if isinstance(getattr(event, "message", None), kinds)]
@@ -120,7 +120,7 @@ def row(case: Case, rounds: int) -> str:
             "protogen": partial(_cut, partial(case.module.Decoder, case.sender), stream),
             "hand": partial(_cut, BY_HAND[case.protocol].Decoder, stream),
         }
-        found = {name: _messages(case, run()) for name, run in runs.items()}
+        found = {name: messages(case, run()) for name, run in runs.items()}
         if found["protogen"] != found["hand"]:
             raise SystemExit(f"{case.title}: other messages than by hand")
         times = measure(runs, rounds)
