@@ -33,7 +33,7 @@ _NO_NAMES: frozenset[str] = frozenset()
 
 def storage_bits(bits: int) -> int:
     """Bits of the smallest machine integer that holds so many: 8, 16, 32 or 64."""
-    return next(width for width in (8, 16, 32, 64) if bits <= width)
+    return max(8, 1 << (bits - 1).bit_length())
 
 
 def counting_bits(greatest: int) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -39,22 +40,24 @@ def spec_hash(protocol: Protocol) -> str:
     """SHA-256 in hex of everything that changes bytes or what they mean."""
     listed: list[Enum | Flags | Struct] = [*protocol.enums, *protocol.flags, *protocol.structs]
     listed.sort(key=lambda item: item.name)
-    plain = [_whole(protocol), *map(_whole, listed)]
-    text = json.dumps(plain, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return _sha256([_whole(protocol), *map(_whole, listed)], _named)
 
 
 def message_hash(message: Message) -> str:
     """SHA-256 in hex of a message: its identity, its layout and what its values mean."""
-    text = json.dumps(_whole(message, deep=True), separators=(",", ":"), ensure_ascii=True)
+    return _sha256(message, _plain)
+
+
+def _sha256(value: Any, plain: Callable[[Any], Any]) -> str:
+    """The hash of a value as JSON; `plain` turns into such what JSON does not have."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=True, default=plain)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _whole(value: Any, *, deep: bool = False) -> dict[str, Any]:
+def _whole(value: Any) -> dict[str, Any]:
     """A data class as a mapping tagged with its kind, without what is left out."""
     kind: Any = type(value)
-    found = {name: _plain(getattr(value, name), deep=deep) for name in _kept(kind)}
-    return {"kind": kind.__name__} | found
+    return {"kind": kind.__name__} | {name: getattr(value, name) for name in _kept(kind)}
 
 
 @cache
@@ -63,15 +66,13 @@ def _kept(kind: Any) -> tuple[str, ...]:
     return tuple(sorted({*field_names(kind)} - left_out))
 
 
-def _plain(value: Any, *, deep: bool) -> Any:
-    """A value as JSON has it; a named type as its name, or with `deep` as what it is."""
-    if value is None or isinstance(value, int | str | float):
-        return value
-    if isinstance(value, tuple):
-        return [_plain(item, deep=deep) for item in value]
+def _named(value: Any) -> Any:
+    """What JSON does not have; a named type as its name."""
+    return value.name if isinstance(value, _NAMED) else _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not have: fractions, bytes, and data classes."""
     if isinstance(value, Fraction):
         return str(value)
-    if isinstance(value, bytes):
-        return value.hex()
-    is_listed = isinstance(value, _NAMED) and not deep
-    return value.name if is_listed else _whole(value, deep=deep)
+    return value.hex() if isinstance(value, bytes) else _whole(value)

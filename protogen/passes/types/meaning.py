@@ -117,6 +117,8 @@ class _Check:
 
     def scale(self) -> Fraction:
         """The scale; zero would lose every value."""
+        if self._item.scale is None and self._item.offset is None:
+            return Fraction(1)
         scale = self._item.scale if self._item.scale is not None else Fraction(1)
         if scale == 0:
             self._error("PG123", "scale", "a scale of zero makes every value the same")

@@ -33,15 +33,14 @@ class _Break(msgspec.Struct, frozen=True):
 
 def wrapped(text: str) -> str:
     """The text with every line of code on at most so many columns, where that can be."""
-    return "\n".join(part for line in text.split("\n") for part in _lines(line))
+    return "\n".join(line if len(line) <= WIDTH else _broken(line) for line in text.split("\n"))
 
 
-def _lines(line: str) -> Iterator[str]:
-    head = _HEAD.match(line) if len(line) > WIDTH else None
+def _broken(line: str) -> str:
+    head = _HEAD.match(line)
     if head is None:
-        yield from _parts(line, ())
-    else:
-        yield prototype(head["function"], tuple(head["arguments"].split(", ")), head["end"])
+        return "\n".join(_parts(line, ()))
+    return prototype(head["function"], tuple(head["arguments"].split(", ")), head["end"])
 
 
 def _parts(line: str, margins: tuple[int, ...]) -> Iterator[str]:
