@@ -140,7 +140,7 @@ class _Composer:
         plain = not event.style
         value = resolve(event.value) if plain else event.value
         node = ScalarNode(value, event.value, plain, self._scalar_span(event))
-        if _SURROGATE.search(event.value):
+        if not plain and _SURROGATE.search(event.value):
             message = "the text holds half of a surrogate pair, which is no character"
             raise self._give_up("PG004", node.span, message)
         self._add(1, node.span)

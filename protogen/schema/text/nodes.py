@@ -129,8 +129,19 @@ def find(root: Node, loc: Loc, *, key: bool = False) -> Span:
     """
     if loc and loc[-1] == "[key]":
         return find(root, loc[:-1], key=True)
-    _, item, node = _Places(loc).follow(root, 0)
+    item, node = _straight(root, loc) or _Places(loc).follow(root, 0)[1:]
     return item[0].span if key and item is not None else node.span
+
+
+def _straight(node: Node, loc: Loc) -> tuple[Item | None, Node] | None:
+    """Return the last key and its value where every component is a key of the one before."""
+    item = None
+    for step in loc:
+        child = node.child(step)
+        if child is None:
+            return None
+        item, node = node.item(step) if isinstance(node, MappingNode) else None, child
+    return item, node
 
 
 _Found = tuple[int, Item | None, Node]
