@@ -58,13 +58,20 @@ class WireSizes:
     def _sizes(
         self, payload: SizeSet, identity: Mapping[str, int], fields: tuple[Field, ...]
     ) -> SizeSet:
+        optional = any(part.when_payload for part in self._frame.checksums)
+        if self._encoding is None:
+            least, greatest = map(self._plain, (payload.least, payload.greatest))
+            return SizeSet.between(least, greatest, 1 if optional else payload.step)
         least = -self._most(payload, identity, fields, sign=-1)
         greatest = self._most(payload, identity, fields, sign=1)
-        exact = self._encoding is None or isinstance(self._encoding, Base16)
         doubled = isinstance(self._encoding, Base16) and self._payload_name in self._covered
-        step = payload.step * (1 + doubled) if exact else 1
-        optional = any(part.when_payload for part in self._frame.checksums)
+        step = payload.step * (1 + doubled) if isinstance(self._encoding, Base16) else 1
         return SizeSet.between(least, greatest, 1 if optional else step)
+
+    def _plain(self, payload: int) -> int:
+        """Bytes of a frame in which nothing is stuffed."""
+        overhead = self.overhead
+        return payload + (overhead.greatest if payload else overhead.least)
 
     # -- over all sizes of the payload ----------------------------------------------------------
 
