@@ -6,8 +6,8 @@ from types import ModuleType
 
 from protogen.live.modules import Modules, compiled, import_modules
 from protogen.model.protocol import Protocol
+from protogen.targets.kept import Kept
 from protogen.targets.python.emit import codec_name, kept_source
-from protogen.targets.python.kept import Kept
 
 
 def modules_of(protocol: Protocol) -> Modules:

@@ -21,6 +21,10 @@ _CODE = re.compile(r"(?<!`)(`[A-Za-z0-9_.,:+/-]+`)(?!`)")
 """A name between backticks, as people write names in prose."""
 _QUOTE = re.compile(r'"(?="|\Z)')
 """Quotes that could be part of the three that end a docstring."""
+_OBEYED = re.compile(r"[\\`*\[\]|~$_#&<>]")
+"""Characters of which at least one is in every text that Markdown could obey."""
+_END_OF_COMMENT = re.compile(r"\*(?=/)|/(?=\*)")
+_TRIGRAPH = re.compile(r"\?(?=\?)")
 _BLANK_LINE = re.compile(r"\n[^\S\n]*\n\s*")
 
 
@@ -38,6 +42,9 @@ def one_line(text: str) -> str:
 
 def paragraphs(text: str) -> tuple[str, ...]:
     """Return the paragraphs of the text, each in one line; blank lines part them."""
+    if text.isprintable():
+        line = " ".join(text.split())
+        return (line,) if line else ()
     lines = "\n".join(text.splitlines())
     return tuple(one_line(part) for part in _BLANK_LINE.split(lines) if part.strip())
 
@@ -55,6 +62,8 @@ def markdown(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
+    if not _OBEYED.search(text):
+        return text
     escaped = _MARKED.sub(r"\\\g<0>", text)
     escaped = escaped.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return _HASH.sub(r"\#", _UNDERSCORE.sub(r"\_", escaped))
@@ -79,8 +88,7 @@ def python_docstring(text: str) -> str:
 def c_comment(text: str) -> str:
     """Return one line for the inside of ``/* */`` or behind ``//``, however it is wrapped."""
     line = one_line(text).replace("\\", "&#92;")
-    line = re.sub(r"\?(?=\?)", "? ", line)
-    return re.sub(r"\*(?=/)|/(?=\*)", r"\g<0> ", line)
+    return _END_OF_COMMENT.sub(r"\g<0> ", _TRIGRAPH.sub("? ", line))
 
 
 def _shown(character: str) -> str:

@@ -40,6 +40,12 @@ class NameTable:
         """The first thing of each name."""
         self.clashes: list[Clash] = []
 
+    def copy(self) -> NameTable:
+        """A table that names can be added to without a change of this one."""
+        table = NameTable()
+        table.things, table.clashes = self.things.copy(), self.clashes.copy()
+        return table
+
     def add(self, name: str, thing: Thing = OWN) -> str:
         """The name, which stands for this."""
         first = self.things.setdefault(name, thing)

@@ -31,11 +31,18 @@ class Form(msgspec.Struct):
 
     def inside(self, step: object) -> Form:
         """Form of what stands under a key or an index; empty if nothing is known of it."""
-        found = [keys[step] for model in self.models if step in (keys := keys_of(model))]
-        return next(iter(found), self.items or Form())
+        for model in self.models:
+            keys = keys_of(model)
+            if step in keys:
+                return keys[step]
+        return self.items or _UNKNOWN
 
     def __bool__(self) -> bool:
         return bool(self.marks or self.models or self.names or self.items)
+
+
+_UNKNOWN = Form()
+"""Form of what nothing is known of."""
 
 
 @cache

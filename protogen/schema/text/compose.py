@@ -19,7 +19,7 @@ from protogen.problems import Problems, Span
 from protogen.problems.sources import Position
 from protogen.schema.text.nodes import Node, ScalarNode
 from protogen.schema.text.open_nodes import OpenList, OpenMapping
-from protogen.schema.text.places import Places, end_of_span, position_of
+from protogen.schema.text.places import Places, position_of
 from protogen.schema.text.scalars import resolve
 
 GREATEST_DEPTH = 64
@@ -157,7 +157,7 @@ class _Composer:
             raise self._give_up("PG007", span, f"`*{name}` stands inside of what it repeats")
         self._add(anchored.count, span)
         self._check_depth(anchored.height, span)
-        self._place(anchored.node, anchored.height, end_of_span(span))
+        self._place(anchored.node, anchored.height, span)
 
     def _start(self, event: Any) -> None:
         self._check_tag(event)
@@ -181,11 +181,11 @@ class _Composer:
     def _finish_node(self, anchor: str | None, node: Node, count: int, height: int) -> None:
         if anchor is not None:
             self._anchors[anchor] = _Anchored(node, count, height)
-        self._place(node, height, end_of_span(node.span))
+        self._place(node, height, node.span)
 
-    def _place(self, node: Node, height: int, end: Position) -> None:
+    def _place(self, node: Node, height: int, span: Span) -> None:
         if self._open:
-            self._open[-1].put(node, height, end)
+            self._open[-1].put(node, height, span)
         else:
             self._root = node
 

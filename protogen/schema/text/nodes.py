@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
+
 from protogen.problems.span import Span
 from protogen.schema.text.scalars import Scalar, SourceFloat, SourceInt
 
@@ -31,8 +33,7 @@ class _Inside:
         return found
 
 
-@dataclass(frozen=True, slots=True)
-class ScalarNode(_Inside):
+class ScalarNode(_Inside, msgspec.Struct, frozen=True):
     """A single value; ``text`` is what was written, ``plain`` whether without quotes."""
 
     value: Scalar

@@ -18,15 +18,22 @@ class OpenList:
         self.begin = begin
         self.counted = counted
         """Number of nodes counted before it."""
-        self.end = begin
-        """End of the last thing inside."""
+        self._last: Span | None = None
+        """Span of the last thing inside."""
         self.height = 1
         self._elements: list[Node] = []
 
-    def put(self, node: Node, height: int, end: Position) -> None:
-        """Add a node that is complete, ``height`` collections high, and ends at ``end``."""
-        self.end = end
-        self.height = max(self.height, height + 1)
+    @property
+    def end(self) -> Position:
+        """End of the last thing inside."""
+        last = self._last
+        return self.begin if last is None else Position(last.end_line, last.end_column)
+
+    def put(self, node: Node, height: int, span: Span) -> None:
+        """Add a node that is complete, ``height`` collections high, which stands at ``span``."""
+        self._last = span
+        if height >= self.height:
+            self.height = height + 1
         self._elements.append(node)
 
     def close(self, span: Span) -> Node:
@@ -44,9 +51,9 @@ class OpenMapping(OpenList):
         self._items: list[Item] = []
         self._key: ScalarNode | None = None
 
-    def put(self, node: Node, height: int, end: Position) -> None:
+    def put(self, node: Node, height: int, span: Span) -> None:
         """Add a key or its value, which come by turns."""
-        super().put(node, height, end)
+        super().put(node, height, span)
         if len(self._elements) % 2:
             self._key = self._accepted(node)
         elif self._key is not None:

@@ -61,6 +61,9 @@ class Places:
         """Return the span of a scalar that is written out."""
         start, end = event.start_mark, event.end_mark
         if event.style not in _BLOCK_STYLES:
+            if event.anchor is None and event.tag is None:  # As nearly all, so in one step.
+                first, last = (start.line + 1, start.column + 1), (end.line + 1, end.column + 1)
+                return Span(self._file, *first, *last)
             return self.span(self.begin(event), position_of(end))
         text = self._text[start.index : end.index].rstrip()
         return self.span(self.begin(event), end_of(text, position_of(start)))
@@ -79,8 +82,3 @@ class Places:
 def position_of(mark: Any) -> Position:
     """Return the position of a mark of PyYAML."""
     return Position(mark.line + 1, mark.column + 1)
-
-
-def end_of_span(span: Span) -> Position:
-    """Return the position behind a span."""
-    return Position(span.end_line, span.end_column)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import textwrap
-
 from protogen.model.protocol import Protocol
 from protogen.model.types import Field, Float
 from protogen.targets import descriptions
 from protogen.targets.c.lines import WIDTH
 from protogen.targets.escape import c_comment
+from protogen.targets.folding import folded
 
 
 def comment(texts: list[str], indent: int = 0) -> tuple[str, ...]:
@@ -20,12 +19,8 @@ def comment(texts: list[str], indent: int = 0) -> tuple[str, ...]:
     for number, text in enumerate(escaped):
         if number:
             lines.append(" *")
-        lines += [f" * {line}" for line in _wrapped(text, WIDTH - indent - 3)]
+        lines += [f" * {line}" for line in folded(text, WIDTH - indent - 3, at_hyphens=False)]
     return (*lines, " */")
-
-
-def _wrapped(text: str, room: int) -> list[str]:
-    return textwrap.wrap(text, room, break_long_words=False, break_on_hyphens=False) or [""]
 
 
 def of_field(item: Field) -> list[str]:

@@ -15,6 +15,7 @@ from protogen.targets.c.named import claim_fields, enum_view, flags_view
 from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.words import foreign_words, headers
+from protogen.targets.kept import Kept
 from protogen.targets.naming import OWN, PROTOCOL, Thing, endpoint, inside, named_type, part
 
 _MACROS = """
@@ -40,7 +41,11 @@ _MACROS_OF_A_SENDER = "frame_max"
 
 
 def names_of(protocol: Protocol) -> Names:
-    """The names of a protocol, whatever is chosen to be printed of it."""
+    """The names of a protocol, whatever is chosen to be printed of it; others may be added."""
+    return _kept_names(protocol).copy()
+
+
+def _all_names(protocol: Protocol) -> Names:
     names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
     names.files.things |= dict.fromkeys(headers(), Thing("is a header of C"))
     names.files.add(f"{protocol.name}.h", PROTOCOL)
@@ -61,6 +66,10 @@ def names_of(protocol: Protocol) -> Names:
     for name, thing in _members(protocol):
         names.members.enter(name, thing, hidden)
     return names
+
+
+_kept_names = Kept(_all_names, most=64)
+"""Names that are asked for twice: once to check them, and once to print them."""
 
 
 def _members(protocol: Protocol) -> Iterator[tuple[str, Thing]]:

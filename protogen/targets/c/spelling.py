@@ -33,6 +33,13 @@ class Names:
         """Members and parameters, none of which may hide one of the others."""
         self.files = NameTable()
 
+    def copy(self) -> Names:
+        """Names that others can be added to without a change of these."""
+        names = Names(self.prefix, self.writer, self.writing)
+        names.tags, names.others = self.tags.copy(), self.others.copy()
+        names.members, names.files = self.members.copy(), self.files.copy()
+        return names
+
     def claim_tag(self, thing: Thing, *words: str) -> str:
         """A struct or an enum: `rn1_gyro`."""
         return self.tags.add(self._joined(words), thing)

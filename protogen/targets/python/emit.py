@@ -9,10 +9,10 @@ import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
+from protogen.targets.kept import Kept
 from protogen.targets.output import File
 from protogen.targets.printing import environment
 from protogen.targets.python.engine.view import engine_view
-from protogen.targets.python.kept import Kept
 from protogen.targets.python.module import Module, view
 from protogen.targets.python.wrapping import docstring
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
+
+from protogen.targets.folding import folded
 
 WIDTH = 100
 _INDENT = 4
 _OPENING = "([{"
 _CLOSING = ")]}"
+_SIGN = re.compile(r'"(?:[^"\\]|\\.)*"?|[](){}[,]', re.DOTALL)
+"""A string, a bracket or a comma."""
 
 
 def wrapped(expression: str, column: int, indent: int, after: int = 1) -> str:
@@ -59,17 +64,8 @@ def _items(inside: str) -> list[str]:
 
 def _signs(expression: str) -> list[tuple[int, str]]:
     """The brackets and commas outside of strings, with their places."""
-    found: list[tuple[int, str]] = []
-    inside_string = escaped = False
-    for place, sign in enumerate(expression):
-        if inside_string:
-            inside_string = escaped or sign != '"'
-            escaped = sign == "\\" and not escaped
-        elif sign == '"':
-            inside_string = True
-        elif sign in _OPENING + _CLOSING + ",":
-            found.append((place, sign))
-    return found
+    found = ((sign.start(), sign[0]) for sign in _SIGN.finditer(expression))
+    return [(place, sign) for place, sign in found if sign[0] != '"']
 
 
 _LONGEST_CHAIN = 200
@@ -136,7 +132,7 @@ def docstring(paragraphs: list[str], indent: int) -> str:
         return f'"""{first}"""'
     lines = [first]
     for paragraph in rest:
-        lines += ["", *textwrap.wrap(paragraph, WIDTH - indent, break_long_words=False)]
+        lines += ["", *folded(paragraph, WIDTH - indent)]
     body = "\n".join(margin + line if line else "" for line in lines)
     return '"""' + body[indent:] + f'\n{margin}"""'
 
@@ -157,9 +153,9 @@ def remark(paragraphs: list[str], indent: int) -> str:
     """The text below an attribute: a docstring that needs no summary."""
     margin = " " * indent
     first, *rest = paragraphs
-    lines = textwrap.wrap(first, WIDTH - indent - 3, break_long_words=False) or [""]
+    lines = folded(first, WIDTH - indent - 3)
     for paragraph in rest:
-        lines += ["", *textwrap.wrap(paragraph, WIDTH - indent, break_long_words=False)]
+        lines += ["", *folded(paragraph, WIDTH - indent)]
     fits = indent + len(lines[-1]) + (6 if len(lines) == 1 else 3) <= WIDTH
     closing = '"""' if fits else f'\n{margin}"""'
     return '"""' + "\n".join(margin + line if line else "" for line in lines)[indent:] + closing
