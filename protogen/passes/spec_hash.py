@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from protogen.copying import field_names
+from protogen.copying import defaults_of
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
@@ -55,15 +55,25 @@ def _sha256(value: Any, plain: Callable[[Any], Any]) -> str:
 
 
 def _whole(value: Any) -> dict[str, Any]:
-    """A data class as a mapping tagged with its kind, without what is left out."""
+    """A data class as a mapping tagged with its kind, without what is left out.
+
+    What holds its default is left out as well: a field that comes with a later version of the
+    compiler changes no hash of a schema that does not use it.
+    """
     kind: Any = type(value)
-    return {"kind": kind.__name__} | {name: getattr(value, name) for name in _kept(kind)}
+    found: dict[str, Any] = {"kind": kind.__name__}
+    for name, default in _kept(kind):
+        item = getattr(value, name)
+        if item is not default and item != default:
+            found[name] = item
+    return found
 
 
 @cache
-def _kept(kind: Any) -> tuple[str, ...]:
+def _kept(kind: Any) -> tuple[tuple[str, Any], ...]:
+    """The fields that count, each with its default."""
     left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
-    return tuple(sorted({*field_names(kind)} - left_out))
+    return tuple(sorted(item for item in defaults_of(kind).items() if item[0] not in left_out))
 
 
 def _named(value: Any) -> Any:
