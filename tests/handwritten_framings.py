@@ -11,7 +11,7 @@ import handwritten_rn1
 
 from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
-from protogen.runtime.checksum import Crc, Sum8, Xor8
+from protogen.runtime.checksum import Crc, Sum, Xor
 from protogen.runtime.transparency import Base16Upper, Cobs, Escape, Substitution
 
 CRC16 = Crc(16, poly=0x1021, init=0xFFFF)
@@ -131,7 +131,7 @@ class NumberMark:
 Framing = rt.SenderSpec[Any, Any]
 ID = rt.IdentityPart("id", BYTE)
 PAYLOAD = rt.PayloadPart("payload")
-XOR = rt.ChecksumPart("checksum", BYTE, algorithm=Xor8(), covers=("id", "payload"))
+XOR = rt.ChecksumPart("checksum", BYTE, algorithm=Xor(), covers=("id", "payload"))
 CRC = rt.ChecksumPart("crc", WORD, algorithm=CRC16, covers=("id", "payload"))
 
 
@@ -319,7 +319,7 @@ def ubx() -> Framing:
 
 def repeated_sync() -> Framing:
     """A sync that overlaps itself, and a header checksum in front of the payload."""
-    header = rt.ChecksumPart("header", BYTE, algorithm=Sum8(), covers=("id", "length"))
+    header = rt.ChecksumPart("header", BYTE, algorithm=Sum(), covers=("id", "length"))
     return framing(
         (literal(b"\xaa\xaa"), ID, length("payload", greatest=9), header, PAYLOAD, CRC),
         16,

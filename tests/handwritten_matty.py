@@ -237,7 +237,7 @@ FRAME = rt.FrameSpec(
         rt.ChecksumPart(
             "crc",
             rt.Number(8),
-            algorithm=checksum.Sum8(negated=True),
+            algorithm=checksum.Sum(negated=True),
             covers=("length", "counter", "command", "payload"),
         ),
     ),

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from protogen.model.checksums import (
     ChecksumSpec,
     algorithm_names,
+    checksum_of,
     crc_catalogue,
     find_algorithm,
 )
@@ -18,8 +19,8 @@ from protogen.runtime.checksum import (
     Checksum,
     Crc,
     Fletcher16,
-    Sum8,
-    Xor8,
+    Sum,
+    Xor,
     _mirrored,
     _plain_engine,
     _reflected_engine,
@@ -36,10 +37,8 @@ CHECK_DATA = b"123456789"
 def runtime_checksum(spec: ChecksumSpec) -> Checksum:
     """Function that the Python target prints for a spec."""
     match spec.kind:
-        case "xor":
-            return Xor8(spec.init)
-        case "sum":
-            return Sum8(spec.init, spec.negated)
+        case "xor" | "sum":
+            return checksum_of(spec)
         case "fletcher":
             return Fletcher16(spec.modulus)
         case "crc":
@@ -133,9 +132,40 @@ def test_crc_32c_gives_the_values_of_rfc_3720_appendix_b_4(data: bytes, value: i
 
 
 def test_the_initial_value_is_part_of_a_sum() -> None:
-    assert Xor8(init=0x55).compute(b"\x0f") == 0x5A
-    assert Sum8(init=0xFF).compute(b"\x02") == 0x01
-    assert Sum8(init=0xFF, negated=True).compute(b"\x02") == 0xFF
+    assert Xor(init=0x55).compute(b"\x0f") == 0x5A
+    assert Sum(init=0xFF).compute(b"\x02") == 0x01
+    assert Sum(init=0xFF, negated=True).compute(b"\x02") == 0xFF
+
+
+# --- sums that real protocols send ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("spec", "data", "value"),
+    [
+        # XBee API: 08 + 01 + 4E + 49 = A0, and A0 + 5F = FF.
+        (named_spec("sum-8/inverted"), "08 01 4E 49", 0x5F),
+        # Dynamixel 1: 01 + 04 + 02 + 2B + 01 = 33, inverted.
+        (named_spec("sum-8/inverted"), "01 04 02 2B 01", 0xCC),
+        # SCIP: the characters "00" sum up to 60; six bits of it are 20, and 30 makes it a "P".
+        (ChecksumSpec("sum", "sum", 8, mask=0x3F, add=0x30), "30 30", ord("P")),
+        # Roland's system exclusive: 40 + 11 + 00 + 41 = 92, modulo 128 12, and 80 - 12 = 6E.
+        (ChecksumSpec("sum", "sum", 7, negated=True), "40 11 00 41", 0x6E),
+        (named_spec("sum-16"), "FF FF 02", 0x0200),
+        (named_spec("sum-16/negated"), "FF FF 02", 0xFE00),
+        (named_spec("sum-16/inverted"), "20 40", 0xFF9F),  # FFFF - 60, as in iBus.
+        (named_spec("sum-32/inverted"), "20 40", 0xFFFFFF9F),
+        (named_spec("xor-16"), "01 02 03 04", 0x0602),
+        (named_spec("xor-16"), "01 02 03", 0x0202),
+        (ChecksumSpec("xor", "xor", 16, words="big"), "01 02 03", 0x0202),
+        (ChecksumSpec("xor", "xor", 16, words="big", init=0x1111), "12 34", 0x0325),
+        (ChecksumSpec("sum", "sum", 16, words="big"), "FF FF 00 02", 0x0001),
+        (ChecksumSpec("sum", "sum", 32, words="big"), "00 00 00 01 02", 0x02000001),
+        (ChecksumSpec("xor", "xor", 8, xorout=0xF0, mask=0x7F, add=0x01), "0F 81", 0x7F),
+    ],
+)  # fmt: skip
+def test_a_sum_is_what_was_added_up_by_hand(spec: ChecksumSpec, data: str, value: int) -> None:
+    assert runtime_checksum(spec).compute(bytes.fromhex(data)) == value
 
 
 # --- names --------------------------------------------------------------------------------------
@@ -176,8 +206,9 @@ def test_an_unknown_name_finds_nothing(name: str) -> None:
 
 def test_every_listed_name_is_found_and_listed_once() -> None:
     names = algorithm_names()
-    simple = ("xor-8", "sum-8", "sum-8/negated", "fletcher-16", "fletcher-16/256")
-    assert names[:6] == (*simple, "CRC-3/GSM")
+    sums = [f"sum-{bits}{what}" for bits in (8, 16, 32) for what in ("", "/negated", "/inverted")]
+    simple = ("xor-8", "xor-16", "xor-32", *sums, "fletcher-16", "fletcher-16/256")
+    assert names[:15] == (*simple, "CRC-3/GSM")
     assert len({name.casefold() for name in names}) == len(names)
     assert all(find_algorithm(name) for name in names)
     own = [name for name in names if named_spec(name).name == name]

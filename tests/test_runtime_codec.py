@@ -13,7 +13,7 @@ import pytest
 
 from protogen.runtime import api as rt
 from protogen.runtime import constructs as c
-from protogen.runtime.checksum import Sum8
+from protogen.runtime.checksum import Sum
 from protogen.runtime.transparency import Escape
 
 
@@ -490,8 +490,8 @@ def test_a_frame_format_says_what_it_can_not_build(values: dict[str, Any], path:
 
 
 def test_checksums_may_cover_checksums() -> None:
-    first = rt.ChecksumPart("first", framings.BYTE, Sum8(), covers=("second", "payload"))
-    second = rt.ChecksumPart("second", framings.BYTE, Sum8(), covers=("payload",))
+    first = rt.ChecksumPart("first", framings.BYTE, Sum(), covers=("second", "payload"))
+    second = rt.ChecksumPart("second", framings.BYTE, Sum(), covers=("payload",))
     spec = rt.FrameSpec(
         parts=(framings.literal(b"\xaa"), framings.ID, first, framings.PAYLOAD, second),
         start=rt.StartLiteral(b"\xaa", protected=False),

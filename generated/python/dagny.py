@@ -494,7 +494,7 @@ def _host_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "checksum",
                 _rt.Number(8),
-                algorithm=_checksum.Xor8(),
+                algorithm=_checksum.Xor(),
                 covers=("id", "payload"),
                 when_payload=True,
             ),

@@ -585,7 +585,7 @@ def _pc_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "crc",
                 _rt.Number(8),
-                algorithm=_checksum.Sum8(negated=True),
+                algorithm=_checksum.Sum(negated=True),
                 covers=("length", "counter", "command", "payload"),
             ),
         ),

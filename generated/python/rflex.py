@@ -922,7 +922,7 @@ def _linux_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "checksum",
                 _rt.Number(8),
-                algorithm=_checksum.Xor8(),
+                algorithm=_checksum.Xor(),
                 covers=("payload",),
             ),
             _rt.LiteralPart("end", bytes.fromhex("1B 03")),
@@ -951,7 +951,7 @@ def _flex_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "checksum",
                 _rt.Number(8),
-                algorithm=_checksum.Xor8(),
+                algorithm=_checksum.Xor(),
                 covers=("payload",),
             ),
             _rt.LiteralPart("end", bytes.fromhex("1B 03")),

@@ -1097,7 +1097,7 @@ def _linux_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "checksum",
                 _rt.Number(8),
-                algorithm=_checksum.Xor8(),
+                algorithm=_checksum.Xor(),
                 covers=("class_id", "number", "subclass", "length", "payload"),
             ),
             _rt.LiteralPart("end", bytes.fromhex("1B 03")),
@@ -1126,7 +1126,7 @@ def _flex_frame_spec() -> _rt.FrameSpec:
             _rt.ChecksumPart(
                 "checksum",
                 _rt.Number(8),
-                algorithm=_checksum.Xor8(),
+                algorithm=_checksum.Xor(),
                 covers=("class_id", "number", "subclass", "length", "payload"),
             ),
             _rt.LiteralPart("end", bytes.fromhex("1B 03")),

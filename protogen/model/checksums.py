@@ -25,7 +25,10 @@ class ChecksumSpec(msgspec.Struct, frozen=True):
     """One checksum algorithm with all its parameters.
 
     `width` is the checksum's size in bits. `init` is the value before the first byte (`xor`, `sum`
-    and `crc`). `negated` belongs to `sum`: the result is what brings the sum to 0 modulo 256.
+    and `crc`). A `sum` that is `negated` is what brings the sum to 0 modulo 2**width. `words` of a
+    `sum` or an `xor`: not bytes but words of `width` bits in this order are taken, the last one
+    filled with zeros. Behind it, `sum` and `xor` are changed by `xorout`, `mask` and `add`, in
+    this order; None masks nothing.
     `modulus` belongs to `fletcher` and follows from the name.
     `poly`, `refin`, `refout` and `xorout` belong to `crc` and are the Rocksoft parameters as the
     catalogue prints them: `poly` without its top bit, `init` and `poly` most significant bit
@@ -41,6 +44,29 @@ class ChecksumSpec(msgspec.Struct, frozen=True):
     refin: bool = False
     refout: bool = False
     xorout: int = 0
+    mask: int | None = None
+    add: int = 0
+    words: Literal["little", "big"] | None = None
+
+    @property
+    def is_folded_byte(self) -> bool:
+        """True for sums and exclusive ors of bytes in a register of 8 bits."""
+        return self.kind in ("sum", "xor") and self.width == 8 and self.words is None
+
+    @property
+    def is_bare(self) -> bool:
+        """True if a sum or an exclusive or is sent as it is, or negated."""
+        return self.mask is None and not self.xorout and not self.add
+
+    def result(self, register: int) -> int:
+        """The checksum of a sum or an exclusive or that has come to `register`."""
+        result = (-register if self.negated else register) ^ self.xorout
+        return ((result if self.mask is None else result & self.mask) + self.add) & self.greatest
+
+    @property
+    def greatest(self) -> int:
+        """The greatest number of so many bits."""
+        return (1 << self.width) - 1
 
     @property
     def modulus(self) -> int:
@@ -54,8 +80,17 @@ FLETCHER_256 = "fletcher-16/256"
 
 SIMPLE_ALGORITHMS = (
     ChecksumSpec("xor-8", "xor", 8),
-    ChecksumSpec("sum-8", "sum", 8),
-    ChecksumSpec("sum-8/negated", "sum", 8, negated=True),
+    ChecksumSpec("xor-16", "xor", 16, words="little"),
+    ChecksumSpec("xor-32", "xor", 32, words="little"),
+    *(
+        spec
+        for width in (8, 16, 32)
+        for spec in (
+            ChecksumSpec(f"sum-{width}", "sum", width),
+            ChecksumSpec(f"sum-{width}/negated", "sum", width, negated=True),
+            ChecksumSpec(f"sum-{width}/inverted", "sum", width, xorout=(1 << width) - 1),
+        )
+    ),
     ChecksumSpec("fletcher-16", "fletcher", 16),
     ChecksumSpec(FLETCHER_256, "fletcher", 16),
 )
@@ -133,9 +168,11 @@ def checksum_of(spec: ChecksumSpec) -> sums.Checksum:
     """Implementation of a checksum algorithm."""
     match spec.kind:
         case "xor":
-            return sums.Xor8(spec.init)
+            rest = spec.xorout, spec.mask, spec.add
+            return sums.Xor(spec.width, spec.init, *rest, words=spec.words)
         case "sum":
-            return sums.Sum8(spec.init, spec.negated)
+            rest = spec.xorout, spec.mask, spec.add
+            return sums.Sum(spec.width, spec.init, *rest, negated=spec.negated, words=spec.words)
         case "fletcher":
             return sums.Fletcher16(spec.modulus)
         case "crc":

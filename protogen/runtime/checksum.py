@@ -8,12 +8,14 @@ Each is an immutable value with one method, `compute`, from the covered bytes to
 
 import binascii
 import zlib
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterable
+from functools import cache, reduce
 from itertools import accumulate
+from operator import xor
 from typing import Protocol
 from zlib import adler32
 
+from protogen.runtime.payload.number import ByteOrder
 from protogen.runtime.values import Frozen
 
 GREATEST_WIDTH = 64
@@ -64,38 +66,87 @@ def are_sound(contents: list[bytes], first: int) -> bool:
     return great == 0
 
 
-class Xor8(Frozen):
-    """The exclusive or of all bytes and `init`."""
+class _Folded(Frozen):
+    """Base of sums and exclusive ors of `width` bits, which begin with `init`.
 
-    __slots__ = ("init",)
+    Of `words`, each has `width` bits in this order, and the last is filled with zeros; else bytes
+    are taken. What comes of them is changed by `xorout`, `mask` and `add`, in this order.
+    """
 
+    __slots__ = ("add", "init", "mask", "width", "words", "xorout")
+
+    width: int
     init: int
+    xorout: int
+    mask: int | None
+    add: int
+    words: ByteOrder | None
 
-    def __init__(self, init: int = 0) -> None:
-        self._set(init)
+    def _units(self, data: bytes) -> Iterable[int]:
+        """The numbers that are taken."""
+        if self.words is None:
+            return data
+        size = self.width // 8
+        places = range(0, len(data), size)
+        filled = data + bytes(-len(data) % size)
+        return (_from_bytes(filled[place : place + size], self.words) for place in places)
+
+    def _result(self, register: int) -> int:
+        result = register ^ self.xorout
+        return ((result if self.mask is None else result & self.mask) + self.add) & (
+            (1 << self.width) - 1
+        )
+
+
+class Xor(_Folded):
+    """The exclusive or of all bytes or words, and `init`."""
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        width: int = 8,
+        init: int = 0,
+        xorout: int = 0,
+        mask: int | None = None,
+        add: int = 0,
+        words: ByteOrder | None = None,
+    ) -> None:
+        self._set(width, init, xorout, mask, add, words)
 
     def compute(self, data: bytes) -> int:
-        """Return the checksum of `data`, 0..255."""
-        return xor_of(data) ^ self.init
+        """Return the checksum of `data`, 0 .. 2**width - 1."""
+        if self.words is None:
+            return self._result(xor_of(data) ^ self.init)
+        return self._result(reduce(xor, self._units(data), self.init))
 
 
-class Sum8(Frozen):
-    """The sum of all bytes and `init` modulo 256; `negated`: what brings that sum to 0."""
+class Sum(_Folded):
+    """The sum of all bytes or words, and `init`; `negated`: what brings that sum to 0."""
 
-    __slots__ = ("init", "negated")
+    __slots__ = ("negated",)
 
-    init: int
     negated: bool
 
-    def __init__(self, init: int = 0, negated: bool = False) -> None:
-        self._set(init, negated)
+    def __init__(
+        self,
+        width: int = 8,
+        init: int = 0,
+        xorout: int = 0,
+        mask: int | None = None,
+        add: int = 0,
+        words: ByteOrder | None = None,
+        negated: bool = False,
+    ) -> None:
+        self._set(width, init, xorout, mask, add, words, negated)
 
     def compute(self, data: bytes) -> int:
-        """Return the checksum of `data`, 0..255."""
+        """Return the checksum of `data`, 0 .. 2**width - 1."""
         # Adler-32 without its first 1 is a sum modulo 65521, and faster.
-        total = adler32(data, 0) & 0xFFFF if len(data) < _LONG else sum(data)
+        is_short = self.words is None and len(data) < _LONG
+        total = adler32(data, 0) & 0xFFFF if is_short else sum(self._units(data))
         total += self.init
-        return (-total if self.negated else total) & 0xFF
+        return self._result(-total if self.negated else total)
 
 
 class Fletcher16(Frozen):

@@ -88,7 +88,7 @@ def _report(detail: ErrorDetails, data: Any, find: Find, problems: Problems) -> 
             hint = "a decimal number has a point, such as 0.1; a comma ends a value"
             problems.add("PG100", find(loc, key=True), text, hint)
         case "extra_forbidden":
-            known = keys_at(loc[:-1])
+            known = keys_beside(loc)
             text = f"`{loc[-1]}` is no key here"
             around = _at(data, loc[:-1])
             hint = hints.indent_hint(around, str(loc[-1]), _mappings_at(loc[:-1]))
@@ -229,9 +229,10 @@ def _plain_words(words: str) -> str:
     return words
 
 
-def keys_at(loc: Steps) -> tuple[str, ...]:
-    """The keys that may be written at a place of the schema."""
-    found = (key for model in _models_at(SCHEMA, loc) for key in keys_of(model))
+def keys_beside(loc: Steps) -> tuple[str, ...]:
+    """The keys that may be written where this one may not; other forms may have it."""
+    models = map(keys_of, _models_at(SCHEMA, loc[:-1]))
+    found = (key for keys in models if loc[-1] not in keys for key in keys)
     return tuple(dict.fromkeys(map(str, found)))
 
 

@@ -15,6 +15,8 @@ from schema_fuzzing.numbers import ORDERS
 
 ALGORITHMS = (
     ("xor-8", 8), ("sum-8", 8), ("sum-8/negated", 8), ("fletcher-16", 16), ("fletcher-16/256", 16),
+    ("sum-8/inverted", 8), ("sum-16", 16), ("sum-16/negated", 16), ("sum-32/inverted", 32),
+    ("xor-16", 16), ("xor-32", 32),
     ("CRC-3/GSM", 3),
     ("CRC-5/USB", 5), ("CRC-7/MMC", 7), ("CRC-8/SMBUS", 8), ("CRC-8/MAXIM-DOW", 8),
     ("CRC-12/UMTS", 12), ("CRC-15/CAN", 15), ("CRC-16/KERMIT", 16), ("CRC-16/MODBUS", 16),
@@ -178,7 +180,25 @@ class Maker:
         values = type_.bytes_between(0, type_.greatest)
         return PartPlan(self.name(), "checksum", keys, values, optional=optional, type=type_)
 
+    def _folded(self) -> tuple[Any, int]:
+        """A sum or an exclusive or with parameters."""
+        kind = self._draw(st.sampled_from(["sum", "xor"]))
+        widths = st.integers(1, 64) if kind == "sum" else st.integers(1, 8)
+        width = self._draw(st.sampled_from([16, 32]) | widths)
+        number = st.integers(0, (1 << width) - 1)
+        found: dict[str, Any] = {kind: width}
+        for key in ("init", "xorout", "mask", "add"):
+            if self._draw(st.booleans()):
+                found[key] = self._draw(number)
+        if kind == "sum" and self._draw(st.booleans()):
+            found["negated"] = True
+        if kind == "sum" and width in (16, 32) and self._draw(st.booleans()):
+            found["words"] = True
+        return found, width
+
     def _parameters(self) -> tuple[Any, int]:
+        if self._draw(forms.one_in(3)):
+            return self._folded()
         width = self._draw(st.integers(1, 64))
         register = st.integers(0, (1 << width) - 1)
         found: dict[str, Any] = {"width": width, "poly": self._draw(register) | 1}

@@ -230,14 +230,8 @@ def _cobs(region: bytes) -> bytes:
 def checksum(spec: ChecksumSpec, data: bytes) -> int:
     """A checksum, bit by bit."""
     match spec.kind:
-        case "xor":
-            found = spec.init
-            for byte in data:
-                found ^= byte
-            return found
-        case "sum":
-            total = (spec.init + sum(data)) % 256
-            return -total % 256 if spec.negated else total
+        case "xor" | "sum":
+            return _folded(spec, data)
         case "fletcher":
             modulus = 256 if spec.name.endswith("/256") else 255
             low = high = 0
@@ -246,6 +240,23 @@ def checksum(spec: ChecksumSpec, data: bytes) -> int:
                 high = (high + low) % modulus
             return high << 8 | low
     return _crc(spec, data)
+
+
+def _folded(spec: ChecksumSpec, data: bytes) -> int:
+    """Byte by byte: in a word, each byte stands so many bits further up."""
+    total, count = spec.init, spec.width // 8
+    for place, byte in enumerate(data):
+        number = byte
+        if spec.words == "little":
+            number <<= 8 * (place % count)
+        elif spec.words == "big":
+            number <<= 8 * (count - 1 - place % count)
+        total = total ^ number if spec.kind == "xor" else total + number
+    modulus = 2**spec.width
+    total = (-total if spec.negated else total) % modulus ^ spec.xorout
+    if spec.mask is not None:
+        total &= spec.mask
+    return (total + spec.add) % modulus
 
 
 def _crc(spec: ChecksumSpec, data: bytes) -> int:

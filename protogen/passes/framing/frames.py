@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from protogen.copying import field_names
+from protogen.copying import field_names, replace
 from protogen.model.checksums import (
     SIMPLE_ALGORITHMS,
+    ChecksumKind,
     ChecksumSpec,
     algorithm_names,
     crc_catalogue,
@@ -36,7 +37,7 @@ from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
 from protogen.problems import hint_for
-from protogen.schema.syntax.parts import CrcParameters
+from protogen.schema.syntax.parts import CrcParameters, SumParameters, XorParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS
 
@@ -262,6 +263,8 @@ class FrameBuilder:
         covers = self._covers(name, item)
         if algorithm is None or covers is None:
             return None
+        if algorithm.words is not None:
+            algorithm = replace(algorithm, words=type_.byte_order)
         if algorithm.width != type_.bits:
             text = f"{algorithm.name} has {algorithm.width} bits, {item.type} has {type_.bits}"
             self._error("PG135", name, "type", text)
@@ -286,7 +289,7 @@ class FrameBuilder:
         return PAYLOAD in names and names.index(name) < names.index(PAYLOAD)
 
     def _algorithm(self, name: str, item: PartSyntax) -> ChecksumSpec | None:
-        if isinstance(item.algorithm, CrcParameters):
+        if item.algorithm is not None and not isinstance(item.algorithm, str):
             return self._parameters(name, item.algorithm)
         found = find_algorithm(item.algorithm or "")
         if found is None:
@@ -299,14 +302,23 @@ class FrameBuilder:
             self._context.warning("PG126", (*self._loc, name, "algorithm"), text, hint)
         return found
 
-    def _parameters(self, name: str, given: CrcParameters) -> ChecksumSpec | None:
-        for key in ("poly", "init", "xorout"):
-            if getattr(given, key) >> given.width:
-                loc = (*self._loc, name, "algorithm", key)
-                text = f"`{key}` has more than {given.width} bits"
-                self._context.error("PG135", loc, text)
+    def _parameters(
+        self, name: str, given: CrcParameters | SumParameters | XorParameters
+    ) -> ChecksumSpec | None:
+        found = _spec_of(given)
+        loc = (*self._loc, name, "algorithm")
+        for key in ("poly", "init", "xorout", "mask", "add"):
+            if (getattr(given, key, None) or 0) >> found.width:
+                self._context.error(
+                    "PG135", (*loc, key), f"`{key}` has more than {found.width} bits"
+                )
                 return None
-        return ChecksumSpec(name="CRC", kind="crc", **given.model_dump())
+        if found.words is not None and found.width not in (16, 32):
+            key = "words" if isinstance(given, SumParameters) else "xor"
+            text = f"words have 16 or 32 bits, and {found.kind} has {found.width}"
+            self._context.error("PG135", (*loc, key), text)
+            return None
+        return found
 
     def _covers(self, name: str, item: PartSyntax) -> tuple[str, ...] | None:
         if item.covers is None:
@@ -318,6 +330,19 @@ class FrameBuilder:
         if name in covers:
             self._error("PG136", name, "covers", f"the checksum `{name}` covers itself")
         return covers
+
+
+def _spec_of(given: CrcParameters | SumParameters | XorParameters) -> ChecksumSpec:
+    """The algorithm of these parameters; the order of bytes in its words is the part's."""
+    if isinstance(given, CrcParameters):
+        return ChecksumSpec(name="CRC", kind="crc", **given.model_dump())
+    kind: ChecksumKind = "sum" if isinstance(given, SumParameters) else "xor"
+    parameters = given.model_dump()
+    width = parameters.pop(kind)
+    in_words = parameters.pop("words", width > 8)
+    return ChecksumSpec(
+        name=kind, kind=kind, width=width, words="little" if in_words else None, **parameters
+    )
 
 
 def _check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
@@ -363,7 +388,9 @@ def _close_algorithm(name: str) -> str | None:
 def _algorithms(item: PartSyntax) -> str:
     """The algorithms that there are, by name; of CRCs those of the width that is asked for."""
     width = re.search(r"crc\D*(\d+)", str(item.algorithm).casefold())
-    names = [spec.name for spec in SIMPLE_ALGORITHMS]
+    folded = [spec.name for spec in SIMPLE_ALGORITHMS if spec.is_folded_byte]
+    others = [spec.name for spec in SIMPLE_ALGORITHMS if spec.kind == "fletcher"]
+    names = [*folded, "each of these with 16 or 32 bits", *others]
     family = "" if width is None else f"CRC-{width[1]}/"
     names += [spec.name for spec in crc_catalogue() if family and spec.name.startswith(family)]
     crcs = "each CRC by its name in the catalogue, such as CRC-16/KERMIT, or by parameters"

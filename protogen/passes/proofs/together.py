@@ -40,7 +40,7 @@ class Together:
         if any(self._is_open(name, contents) for name in covered):
             return None
         size = sum(stretch.count for name in covered for stretch in contents[name])
-        summed = part.algorithm.kind in ("xor", "sum") and not part.over_wire
+        summed = part.algorithm.is_folded_byte and not part.over_wire
         if size > (_MOST_PLACES if summed else _MOST_TRIED):
             return None
         if summed:
@@ -71,7 +71,7 @@ class Together:
 
     def _summed(self, part: ChecksumPart, places: list[Place]) -> int | None:
         if part.name not in self._worths:
-            numbers = (_number(part.algorithm, register) for register in range(256))
+            numbers = map(part.algorithm.result, range(256))
             self._worths[part.name] = [
                 self._worth(part, number_bytes(part, number)) for number in numbers
             ]
@@ -90,10 +90,6 @@ class Together:
             return self._worth(part, checksum_bytes(self._frame, part, plain))
 
         return most_tried(self._all_places(covered, contents), checksum, bound, tries)
-
-
-def _number(spec: ChecksumSpec, register: int) -> int:
-    return -register & 0xFF if spec.negated else register
 
 
 def _step(spec: ChecksumSpec) -> Sum:

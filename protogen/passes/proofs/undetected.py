@@ -144,10 +144,19 @@ def _weak_checksum(frame: Frame) -> str:
 
 
 def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
-    """Sums modulo 255 take 00 for FF; a CRC sees bursts of its width if its polynomial is odd."""
-    if algorithm.kind == "fletcher":
-        return algorithm.modulus == 255
-    return algorithm.kind == "crc" and (algorithm.width < 8 or algorithm.poly % 2 == 0)
+    """Sums modulo 255 take 00 for FF; a CRC sees bursts of its width if its polynomial is odd.
+
+    Other sums, and exclusive ors, see all bits of a byte that their mask leaves.
+    """
+    match algorithm.kind:
+        case "fletcher":
+            return algorithm.modulus == 255
+        case "crc":
+            return algorithm.width < 8 or algorithm.poly % 2 == 0
+        case _:
+            seen = algorithm.greatest if algorithm.mask is None else algorithm.mask
+            every = algorithm.greatest if algorithm.words else 0xFF
+            return seen & every != every
 
 
 def _stuffing(frame: Frame) -> str:

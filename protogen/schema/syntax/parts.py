@@ -62,13 +62,54 @@ class CrcParameters(Syntax):
     xorout: Count = Field(0, description="What is XORed to the register at the end.")
 
 
+class _FoldedParameters(Syntax):
+    """Parameters that sums and exclusive ors share."""
+
+    init: Count = Field(0, description="What there is before the first byte.")
+    xorout: Count = Field(0, description="What is XORed to the result.")
+    mask: Count | None = Field(None, description="The bits that are kept, behind `xorout`.")
+    add: Count = Field(0, description="What is added at the end.")
+
+
+class SumParameters(_FoldedParameters):
+    """A sum that has no name."""
+
+    sum: Int = Field(ge=1, le=64, description="Width of the sum in bits, 1 to 64.")
+    negated: bool = Field(False, description="Whether it is what brings the sum to 0.")
+    words: bool = Field(
+        False, description="Whether words as wide as the sum (16 or 32 bits) are added, not bytes."
+    )
+
+
+class XorParameters(_FoldedParameters):
+    """An exclusive or that has no name."""
+
+    xor: Int = Field(
+        ge=1, le=32, description="Width in bits: up to 8 of bytes, 16 or 32 of words as wide."
+    )
+
+
 def _written_as_mapping(value: Any) -> str:
     return "mapping" if isinstance(value, dict | Syntax) else "text"
 
 
+def _kind_of_algorithm(value: Any) -> str:
+    if isinstance(value, dict):
+        kind = next((key for key in ("sum", "xor") if key in value), "crc")
+        return f"parameters of {kind}"  # No key, or it would be taken for a place in the file.
+    if isinstance(value, SumParameters):
+        return "parameters of sum"
+    if isinstance(value, XorParameters):
+        return "parameters of xor"
+    return "parameters of crc" if isinstance(value, CrcParameters) else "text"
+
+
 Algorithm = Annotated[
-    Annotated[Text, Tag("text")] | Annotated[CrcParameters, Tag("mapping")],
-    Discriminator(_written_as_mapping),
+    Annotated[Text, Tag("text")]
+    | Annotated[CrcParameters, Tag("parameters of crc")]
+    | Annotated[SumParameters, Tag("parameters of sum")]
+    | Annotated[XorParameters, Tag("parameters of xor")],
+    Discriminator(_kind_of_algorithm),
 ]
 """A checksum algorithm by name or by its parameters."""
 
@@ -105,8 +146,9 @@ class Part(Syntax):
     )
     algorithm: Algorithm | None = Field(
         None,
-        description="The part is a checksum: xor-8, sum-8, sum-8/negated, fletcher-16, "
-        "fletcher-16/256, a name of the CRC RevEng catalogue, or Rocksoft parameters.",
+        description="The part is a checksum: xor-8, sum-8, sum-8/negated, sum-8/inverted (or of 16 "
+        "or 32 bits), fletcher-16, fletcher-16/256, a name of the CRC RevEng catalogue, or the "
+        "parameters of a CRC, a sum or an exclusive or.",
     )
     covers: PartRun | None = Field(None, description="The parts that the checksum covers.")
     over: Literal["content", "wire"] | None = Field(

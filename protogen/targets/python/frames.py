@@ -72,16 +72,23 @@ def _checksum_part(item: ChecksumPart) -> str:
 
 def algorithm(spec: ChecksumSpec) -> str:
     """A checksum algorithm with its parameters."""
-    init = str(spec.init) if spec.init else None
     match spec.kind:
-        case "xor":
-            return call("_checksum.Xor8", init=init)
-        case "sum":
-            return call("_checksum.Sum8", init=init, negated="True" if spec.negated else None)
+        case "xor" | "sum":
+            return _folded(spec)
         case "fletcher":
             modulus = None if spec.modulus == 255 else str(spec.modulus)
             return call("_checksum.Fletcher16", modulus=modulus)
     return _crc(spec)
+
+
+def _folded(spec: ChecksumSpec) -> str:
+    numbers = {"init": spec.init, "xorout": spec.xorout, "add": spec.add}
+    given: dict[str, str | None] = {key: hex(item) for key, item in numbers.items() if item}
+    given["mask"] = None if spec.mask is None else hex(spec.mask)
+    given["words"] = None if spec.words is None else text(spec.words)
+    given["negated"] = "True" if spec.negated else None
+    name = "_checksum.Sum" if spec.kind == "sum" else "_checksum.Xor"
+    return call(name, *([] if spec.width == 8 else [str(spec.width)]), **given)
 
 
 def _crc(spec: ChecksumSpec) -> str:

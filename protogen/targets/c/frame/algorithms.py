@@ -31,14 +31,9 @@ class Algorithm(msgspec.Struct, frozen=True):
 
 def algorithm_of(spec: ChecksumSpec, function: str) -> Algorithm:
     """The C of an algorithm, under that name."""
-    init = hexadecimal(spec.init)
     match spec.kind:
-        case "xor":
-            return Algorithm(function, spec, "uint8_t", init, ("sum = (uint8_t)(sum ^ byte);",))
-        case "sum":
-            final = "(uint8_t)(0U - sum)" if spec.negated else "sum"
-            step = "sum = (uint8_t)(sum + byte);"
-            return Algorithm(function, spec, "uint8_t", init, (step,), final)
+        case "xor" | "sum":
+            return _folded(spec, function)
         case "fletcher":
             # The low byte is the sum of the bytes, the high byte the sum of those sums.
             steps = (
@@ -49,6 +44,43 @@ def algorithm_of(spec: ChecksumSpec, function: str) -> Algorithm:
             return Algorithm(function, spec, "uint16_t", "0", steps)
         case "crc":
             return _crc(spec, function)
+
+
+def _folded(spec: ChecksumSpec, function: str) -> Algorithm:
+    """A sum or an exclusive or. Of words, the upper half of the register counts the bytes."""
+    bits = storage_bits(spec.width)
+    sign = "^" if spec.kind == "xor" else "+"
+    if spec.words is None:
+        type_ = unsigned_type(bits)
+        steps: tuple[str, ...] = (f"sum = ({type_})(sum {sign} byte);",)
+    else:
+        type_ = unsigned_type(2 * bits)
+        place, last = f"(sum >> {bits})", spec.width // 8 - 1
+        shift = f"8U * {place}" if spec.words == "little" else f"8U * ({last}U - {place})"
+        ones = _constant(spec.greatest, 2 * bits)
+        steps = (
+            f"const {type_} word = ({type_})(({type_})byte << ({shift}));",
+            f"const {type_} next = (({type_}){place} + 1U) & {last}U;",
+            f"sum = ({type_})(((sum {sign} word) & {ones}) | ({type_})(next << {bits}));",
+        )
+    init = _constant(spec.init, 2 * bits if spec.words else bits)
+    return Algorithm(function, spec, type_, init, steps, _result(spec, type_))
+
+
+def _result(spec: ChecksumSpec, type_: str) -> str:
+    """What is sent of a sum or an exclusive or."""
+    bits = storage_bits(spec.width)
+    is_whole = spec.words is None and spec.width == bits
+    result = "sum"
+    if spec.negated:
+        result = f"({type_})(0U - {result})"
+    if spec.xorout:
+        result = f"({type_})({result} ^ {_constant(spec.xorout, bits)})"
+    if spec.mask is not None:
+        result = f"({type_})({result} & {_constant(spec.mask, bits)})"
+    if spec.add:
+        result = f"({type_})({result} + {_constant(spec.add, bits)})"
+    return result if is_whole else f"({type_})({result} & {_constant(spec.greatest, bits)})"
 
 
 def _crc(spec: ChecksumSpec, function: str) -> Algorithm:

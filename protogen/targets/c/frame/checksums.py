@@ -95,7 +95,16 @@ def checksum_name(protocol: str, spec: ChecksumSpec) -> str:
     """The name of the C function of an algorithm."""
     name = spec.name
     if find_algorithm(name) != spec:  # The schema gives the parameters.
-        order = f"{'r' if spec.refin else 'n'}{'r' if spec.refout else 'n'}"
-        name = f"crc_{spec.width}_{spec.poly:x}_{spec.init:x}_{order}_{spec.xorout:x}"
+        name = _by_parameters(spec)
     letters = "".join(c if c.isalnum() else "_" for c in name.lower())
     return f"{protocol}_{letters}".replace("__", "_")
+
+
+def _by_parameters(spec: ChecksumSpec) -> str:
+    if spec.kind == "crc":
+        order = f"{'r' if spec.refin else 'n'}{'r' if spec.refout else 'n'}"
+        return f"crc_{spec.width}_{spec.poly:x}_{spec.init:x}_{order}_{spec.xorout:x}"
+    numbers = f"{spec.kind}_{spec.width}_{spec.init:x}"
+    sign = "n" if spec.negated else "p"
+    mask = "" if spec.mask is None else f"{spec.mask:x}"
+    return f"{numbers}_{sign}_{spec.xorout:x}_{mask}_{spec.add:x}_{spec.words or 'bytes'}"

@@ -62,7 +62,7 @@ class FramingView(msgspec.Struct, frozen=True):
     @property
     def sums_blocks(self) -> tuple[str, ...]:
         """The kinds of checksums that add sixteen bytes at a time."""
-        return tuple(sorted({c.spec.kind for c in self.checksums} & {"sum", "xor"}))
+        return tuple(sorted({c.spec.kind for c in self.checksums if c.spec.is_folded_byte}))
 
     @property
     def finds_high(self) -> bool:

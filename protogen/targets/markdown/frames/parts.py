@@ -164,18 +164,36 @@ def part_names(names: Sequence[str]) -> str:
 
 def algorithm_text(spec: ChecksumSpec) -> str:
     """Say how a checksum is computed."""
-    start = f", starting from {hex_number(spec.init, spec.width)}" if spec.init else ""
     match spec.kind:
-        case "xor":
-            return f"the XOR of all bytes{start}"
-        case "sum" if spec.negated:
-            return f"what brings the sum of all bytes to 0 modulo 256{start}"
-        case "sum":
-            return f"the sum of all bytes modulo 256{start}"
+        case "xor" | "sum":
+            return _folded(spec)
         case "fletcher":
             return f"Fletcher-16, both sums modulo {spec.modulus}"
         case "crc":
             return f"{spec.name} ({_rocksoft(spec)})"
+
+
+def _folded(spec: ChecksumSpec) -> str:
+    """Say how a sum or an exclusive or is computed."""
+    units = "all bytes"
+    if spec.words is not None:
+        first = "lowest" if spec.words == "little" else "highest"
+        units = f"all words of {spec.width} bits, {first} byte first, the last filled with zeros"
+    text = f"the XOR of {units}"
+    if spec.kind == "sum":
+        modulus = 256 if spec.width == 8 else f"2^{spec.width}"
+        text = f"the sum of {units} modulo {modulus}"
+        if spec.negated:
+            text = f"what brings the sum of {units} to 0 modulo {modulus}"
+    if spec.init:
+        text += f", starting from {hex_number(spec.init, spec.width)}"
+    if spec.xorout == spec.greatest:
+        text += ", with all bits inverted"
+    elif spec.xorout:
+        text += f", XORed with {hex_number(spec.xorout, spec.width)}"
+    if spec.mask is not None:
+        text += f", of which the bits {hex_number(spec.mask, spec.width)} are kept"
+    return text + (f", plus {hex_number(spec.add, spec.width)}" if spec.add else "")
 
 
 def _rocksoft(spec: ChecksumSpec) -> str:

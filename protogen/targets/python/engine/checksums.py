@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 
+from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
@@ -72,7 +73,7 @@ class ChecksumFunction(FrameFunction):
     def xors_to_nothing(self, part: ChecksumPart, covered: str) -> int | None:
         """Place from which the checksum brings the exclusive or of the content to 0; else None."""
         spec, runs = part.algorithm, self.frame.covered_runs(part)
-        if spec.kind != "xor" or spec.init != 0 or len(runs) != 1 or isinstance(runs[0], bytes):
+        if not is_plain_xor(spec) or len(runs) != 1 or isinstance(runs[0], bytes):
             return None
         if part.type.size != 1 or self.has_padding(part.type):
             return None
@@ -101,7 +102,13 @@ def is_plain_sum(part: ChecksumPart, frame: EngineFrame) -> bool:
     """True if Adler-32 gives the sum: it is that of few bytes, modulo 256."""
     greatest = frame.plan.head_size + frame.plan.payload.greatest + frame.plan.tail_size
     spec = part.algorithm
-    return spec.kind == "sum" and spec.init == 0 and greatest < _SHORT
+    plain = spec.kind == "sum" and spec.is_folded_byte and spec.is_bare and not spec.init
+    return plain and greatest < _SHORT
+
+
+def is_plain_xor(spec: ChecksumSpec) -> bool:
+    """True for the exclusive or of all bytes as it is."""
+    return spec.kind == "xor" and spec.is_folded_byte and spec.is_bare and not spec.init
 
 
 def folded(lines: Lines, data: str, are_more: str, greatest: int) -> str:
@@ -132,7 +139,7 @@ def checksum(part: ChecksumPart, data: str, frame: EngineFrame, constants: Const
     if is_plain_sum(part, frame):
         total = f"_adler32({data}, 0)"
         return f"(-{total} & 0xFF)" if spec.negated else f"({total} & 0xFF)"
-    if spec.kind == "xor" and spec.init == 0:
+    if is_plain_xor(spec):
         return f"_checksum.xor_of({data})"
     function = "function()" if spec.kind == "crc" else "compute"
     compute = constants.named("CHECKSUM", f"{tables.algorithm(spec)}.{function}")

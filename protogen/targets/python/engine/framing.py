@@ -16,7 +16,7 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
-from protogen.targets.python.engine.checksums import FOLDED, checksum, folded
+from protogen.targets.python.engine.checksums import FOLDED, checksum, folded, is_plain_xor
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
@@ -244,7 +244,7 @@ class _Framer(FrameFunction):
         message, covered, spec = self.message, self._covered(part), part.algorithm
         if message is None or not (covered == "payload" or self._covers_payload(part, covered)):
             return ""
-        if spec.kind != "xor" or spec.init != 0:
+        if not is_plain_xor(spec):
             return ""
         if message.sizes.fixed is not None:
             return folded(self.lines, covered, "", message.sizes.fixed)
