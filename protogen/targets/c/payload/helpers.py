@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from ctypes import c_float
 from fractions import Fraction
+from functools import lru_cache
 from math import copysign, inf, isfinite, nextafter
 
 import msgspec
@@ -232,15 +233,14 @@ class Helpers:
     def store(self, type_: NumberType) -> str:
         """The function that writes an unsigned number."""
         layout = _cut(type_)
-        body = (f"at[{i}] = {byte};" for i, byte in enumerate(parted(layout, "value")))
         arguments = ("uint8_t *at", f"{unsigned_type(type_.bits)} value")
+        body = _stored(layout)
         return self._helper(f"store_{layout_name(layout)}", "void", arguments, body)
 
     def write(self, type_: NumberType) -> str:
         """The function that hands an unsigned number to a writer, byte by byte."""
         layout, names = _cut(type_), self._names
-        bytes_ = parted(layout, "value")
-        body = (f"{names.prefix}_write({names.writing}, {byte});" for byte in bytes_)
+        body = _written(layout, f"{names.prefix}_write({names.writing}")
         arguments = (names.writer, f"{unsigned_type(type_.bits)} value")
         return self._helper(f"write_{layout_name(layout)}", "void", arguments, body)
 
@@ -297,6 +297,19 @@ class Helpers:
         return self._helper(f"is_{type_.enum.name}", "bool", (argument,), body)
 
 
+# --- bodies: printed where a helper is asked for the first time -----------------------------------
+
+
+def _stored(type_: NumberType) -> Iterator[str]:
+    for place, byte in enumerate(parted(type_, "value")):
+        yield f"at[{place}] = {byte};"
+
+
+def _written(type_: NumberType, call: str) -> Iterator[str]:
+    for byte in parted(type_, "value"):
+        yield f"{call}, {byte});"
+
+
 # --- floats ---------------------------------------------------------------------------------------
 
 
@@ -345,6 +358,7 @@ def is_plain(type_: NumberType) -> bool:
     return type_.size == 1 and (type_.bits == 8 or not type_.signed)
 
 
+@lru_cache(maxsize=256)
 def widened(type_: NumberType) -> NumberType:
     """The unsigned layout that has the same bytes and the same type in C, but no padding."""
     bits = min(64, type_.byte_bits * type_.size)
