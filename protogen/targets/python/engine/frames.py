@@ -33,6 +33,8 @@ class EngineFrame:
         self.stuffed = region is not None
         self.before = 0 if region is None else region.before
         self.behind = 0 if region is None else region.behind
+        self.greatest_payload = max((item.sizes.greatest for item in sender.messages), default=0)
+        """Bytes of the largest payload that a message has, whatever frames allow."""
         self.gives_content = False
         """True if readers are given the whole content of a frame, and not its payload alone."""
 

@@ -175,12 +175,8 @@ class _Framer(FrameFunction):
             counted = length.base + length.optional
             least = max(0, length.part.least - counted)
             greatest = min(self.plan.payload.greatest, length.part.greatest - counted)
-            if least or not self._always_fits(greatest):
+            if least or self.frame.greatest_payload > greatest:
                 self.lines.refuse_if(f"not {least} <= len(payload) <= {greatest}")
-
-    def _always_fits(self, greatest: int) -> bool:
-        """True if the sizes of all messages are in bounds."""
-        return all(message.sizes.greatest <= greatest for message in self.frame.sender.messages)
 
     # --- parts in wire order ----------------------------------------------------------------------
 
