@@ -178,7 +178,7 @@ def _folded(spec: ChecksumSpec) -> str:
     units = "all bytes"
     if spec.words is not None:
         first = "lowest" if spec.words == "little" else "highest"
-        units = f"all words of {spec.width} bits, {first} byte first, the last filled with zeros"
+        units = f"all words of {spec.width} bits ({first} byte first, zeros behind the last)"
     text = f"the XOR of {units}"
     if spec.kind == "sum":
         modulus = 256 if spec.width == 8 else f"2^{spec.width}"
