@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
@@ -127,6 +127,17 @@ Int = Annotated[int, BeforeValidator(_to_int)]
 
 Count = Annotated[int, BeforeValidator(_to_int), Field(ge=0)]
 """An integer that is not negative."""
+
+
+def _no_number(value: Any) -> Any:
+    """To Python, 1 is True."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+OnlyTrue = Annotated[
+    Literal[True], BeforeValidator(_no_number, json_schema_input_type=Literal[True])
+]
+"""`true`, for a key that is left out otherwise."""
 
 RationalForm = int | float | Annotated[str, Field(pattern=_RATIONAL_PATTERN)]
 """The written form of an exact number."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
@@ -13,6 +13,7 @@ from protogen.schema.syntax.base import (
     Character,
     Count,
     Name,
+    OnlyTrue,
     Rational,
     RationalForm,
     RawNumber,
@@ -76,7 +77,7 @@ NamedBitsRef = Annotated[
 class Fill(Syntax):
     """As many elements or bytes as the payload has left."""
 
-    fill: Literal[True] = Field(description="To the end of the payload.")
+    fill: OnlyTrue = Field(description="To the end of the payload.")
     max: Count | None = Field(None, description="The greatest number of elements or bytes.")
 
 

@@ -14,6 +14,7 @@ from protogen.schema.syntax.base import (
     Count,
     Int,
     Name,
+    OnlyTrue,
     RawNumber,
     ShortForm,
     SourceRef,
@@ -137,11 +138,11 @@ class Part(Syntax):
     type: Annotated[Text, written_as(_PartType), Ref(Kind.TYPE)] | None = Field(
         None, description="Type of the part: uint8, uint16, char, byte ..."
     )
-    id: Literal[True] | None = Field(None, description="The part tells which message this is.")
+    id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
     counts: PartRun | None = Field(
         None, description="The part is the length in bytes of these parts, unstuffed."
     )
-    counter: Literal[True] | None = Field(
+    counter: OnlyTrue | None = Field(
         None, description="The part counts frames; encoders advance it by one and wrap."
     )
     algorithm: Algorithm | None = Field(
