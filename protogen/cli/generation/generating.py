@@ -16,6 +16,7 @@ from protogen.cli.generation.jobs import Job, check, print_diff, say_current, wr
 from protogen.cli.generation.plan import Given, Plan, plan
 from protogen.cli.schemas import compile_files, print_found, print_problems
 from protogen.errors import UserError
+from protogen.targets.side_by_side import emit_all
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -134,9 +135,10 @@ def _compile_and_act(planned: Plan, mode: Mode, keeper: Keeper | None, reads: Re
     pages = _fill(planned, compilations)
     if pages is None:
         return FINDINGS
+    emitters = planned.emitters()
     jobs = [
-        Job(item.emit(protocols), planned.output / item.folder, planned.prune)
-        for item in planned.emitters()
+        Job(files, planned.output / item.folder, planned.prune)
+        for item, files in zip(emitters, emit_all(emitters, protocols), strict=True)
     ]
     if mode.depfile is not None:
         write_depfile(mode.depfile, jobs, compilations)
