@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 from typing import Annotated
 
@@ -84,7 +85,9 @@ def generate(  # noqa: PLR0913 - each option is one argument
     given = Given(schemas, output, target, standalone, choice)
     mode = Mode(check, diff, quiet, depfile, use_project=not no_project)
     if not watch:
-        return generate_once(given, mode, Reads())
+        code = generate_once(given, mode, Reads())
+        gc.freeze()  # At its end, Python would look for garbage in all that was made.
+        return code
     if not mode.writes:
         raise UsageError("--watch writes; --check and --diff do not")
     from protogen.cli.generation.watching import generate_and_watch

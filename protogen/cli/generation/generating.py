@@ -111,15 +111,11 @@ def _keeper(planned: Plan, project: Project | None, mode: Mode) -> Keeper | None
 
 @contextmanager
 def _without_garbage_collection() -> Iterator[None]:
-    """The model only grows and holds no cycles: looking for garbage would find none.
-
-    What is left behind is not looked at when the process ends, either.
-    """
+    """The model only grows and holds no cycles: looking for garbage would find none."""
     gc.disable()
     try:
         yield
     finally:
-        gc.freeze()
         gc.enable()
 
 
