@@ -193,6 +193,15 @@ frame:
 messages:
   ping: {id: {group: 0, kind: 0}, from: station, fields: {echo: byte}}
 """
+NOTHING_BUT_EMPTY_PAYLOADS = """
+frame:
+  sync: {literal: {hex: 7E}, unprotected: accepted}
+  payload: {}
+  sum: {type: uint32, byte_order: big, algorithm: CRC-32/ISO-HDLC, covers: payload, when: payload}
+  end: {literal: {hex: 0A}, unprotected: accepted}
+messages:
+  beat: {from: station}
+"""
 
 
 def protocol_of(text: str, folder: Path) -> Protocol:
@@ -227,3 +236,16 @@ def test_a_payload_whose_size_is_told_behind_it_may_hold_an_end(tmp_path: Path) 
     process.close()
     # A group of 00, FE, and a kind in two bytes of seven bits; an FF would end the frame.
     assert made == [bytes.fromhex("FF 00 FE 00 00 FF"), None]
+
+
+def test_a_part_that_needs_a_payload_may_never_be_there(tmp_path: Path) -> None:
+    """The checksum is longer than the greatest frame."""
+    protocol = protocol_of(NOTHING_BUT_EMPTY_PAYLOADS, tmp_path)
+    process = Process(protocol, COptions())
+    sender = protocol.sender("station")
+    with imported(protocol) as module:
+        frame = check_frame(process, module, sender, sender.messages[0], {}, {})
+        data = bytes.fromhex("7E 0A 00 7E 0A 7E 00 7E 0A")
+        check_events(process, module, "station", [("feed", data), ("flush",)])
+    process.close()
+    assert frame == bytes.fromhex("7E 0A")

@@ -27,7 +27,7 @@ Verdict = Failure | int | None
 """What stands at a start: no frame, or one of so many bytes that ends in front of the next start.
 None where neither is plain."""
 
-_KEPT = 256
+_KEPT = 16
 """Heads and sizes of which is remembered what they tell: a wire must not fill the memory."""
 
 

@@ -119,7 +119,10 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def unlimited(self) -> str:
         """Bound of a payload or all content while its size is unknown: the room for it."""
         size = self.plan.greatest if self.keeps_both else self.buffer_size
-        return f"{size - self.around if self.simple else size}U"
+        if self.simple:
+            # Where all payloads are empty, parts that need one are never there.
+            size = max(size - self.around, 0)
+        return f"{size}U"
 
     # --- start and end ----------------------------------------------------------------------------
 
