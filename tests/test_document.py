@@ -438,7 +438,9 @@ class TestBounds:
         assert found("\n".join(lines), loader) == [("64:9", "PG010")]
 
     def test_a_hundred_thousand_brackets_end_at_once(self, loader: Loader) -> None:
-        assert found("[" * 100_000, loader) == [("1:65", "PG010")]
+        ((place, code),) = found("[" * 100_000, loader)
+        # A libyaml that reads ahead says so at a bound of its own.
+        assert (place, code) in [("1:65", "PG010"), ("1:1001", "PG010")]
 
     def test_an_alias_inside_of_what_it_repeats(self, loader: Loader) -> None:
         assert found("a: &a\n  b: [1, *a]\n", loader) == [("2:10", "PG007")]

@@ -27,6 +27,8 @@ GREATEST_DEPTH = 64
 GREATEST_COUNT = 1_000_000
 """Greatest number of keys and values in a file, aliases written out."""
 
+_TOO_DEEP = f"values are nested more than {GREATEST_DEPTH} deep"
+
 Loader = Callable[[str], Any]
 """Makes a PyYAML loader, of which only the events are used, for a text."""
 
@@ -196,8 +198,7 @@ class _Composer:
 
     def _check_depth(self, height: int, span: Span) -> None:
         if len(self._open) + height > GREATEST_DEPTH:
-            message = f"values are nested more than {GREATEST_DEPTH} deep"
-            raise self._give_up("PG010", span, message)
+            raise self._give_up("PG010", span, _TOO_DEEP)
 
     def _add(self, count: int, span: Span) -> None:
         self._count += count
@@ -243,6 +244,9 @@ def _report_syntax(
     mark = error.problem_mark or error.context_mark
     problem = error.problem or "this is not YAML"
     span = places.of_file() if mark is None else places.point(position_of(mark))
+    if "nesting depth" in problem:  # libyaml reads ahead, and has a bound of its own.
+        problems.add("PG010", span, _TOO_DEEP)
+        return
     hint = next((hint for words, hint in _SYNTAX_HINTS.items() if words in problem), None)
     hint = _mark_hint(error, text) or hint
     notes = []
